@@ -1,0 +1,1 @@
+"""DATA: what an entity is. No pygame, no numba, no behaviour."""

@@ -1,0 +1,81 @@
+"""Camera: which part of the plane is seen, and where on the screen. y is up in the model, down in pixels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from components.field import Vector
+
+DEFAULT_SCALE = 100.0  # pixels per metre at the default zoom
+SMALLEST_SCALE, LARGEST_SCALE = 1e-6, 1e9
+
+
+@dataclass(frozen=True)
+class Viewport:
+    """A rectangle of the window in pixels, y down."""
+
+    left: int = 0
+    top: int = 0
+    width: int = 600
+    height: int = 600
+
+    def contains(self, pixel: Vector) -> bool:
+        """True if the pixel lies inside."""
+        x, y = pixel
+        return self.left <= x < self.left + self.width and self.top <= y < self.top + self.height
+
+
+@dataclass
+class Camera:
+    """Looks at `centre` (m) with `scale` pixels per metre through `viewport`."""
+
+    centre: Vector = (0.0, 0.0)
+    scale: float = DEFAULT_SCALE
+    viewport: Viewport = field(default_factory=Viewport)
+
+    @property
+    def _middle(self) -> NDArray[np.float64]:
+        v = self.viewport
+        return np.array([v.left + v.width / 2.0, v.top + v.height / 2.0])
+
+    def to_pixels(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Model points (m), shape (..., 2), as pixels."""
+        offset = np.asarray(points, dtype=np.float64) - np.array(self.centre)
+        pixels: NDArray[Any] = self._middle + offset * np.array([self.scale, -self.scale])
+        return pixels
+
+    def to_model(self, pixel: Vector) -> Vector:
+        """A pixel as a model point (m)."""
+        middle = self._middle
+        return (
+            float(self.centre[0] + (pixel[0] - middle[0]) / self.scale),
+            float(self.centre[1] - (pixel[1] - middle[1]) / self.scale),
+        )
+
+    def zoom(self, factor: float, at: Vector) -> None:
+        """Zoom so that the model point under pixel `at` stays there."""
+        before = self.to_model(at)
+        self.scale = min(max(self.scale * factor, SMALLEST_SCALE), LARGEST_SCALE)
+        after = self.to_model(at)
+        self.centre = (self.centre[0] + before[0] - after[0], self.centre[1] + before[1] - after[1])
+
+    def pan(self, pixels: Vector) -> None:
+        """Move the picture by so many pixels (right, down)."""
+        self.centre = (self.centre[0] - pixels[0] / self.scale, self.centre[1] + pixels[1] / self.scale)
+
+    def fit(self, points: NDArray[np.float64], margin: float = 90.0) -> None:
+        """Show all points, shape (n, 2), at most at the default zoom for small models; `margin` in pixels."""
+        points = points[np.isfinite(points).all(axis=1)]
+        if len(points) == 0:
+            self.centre, self.scale = (0.0, 0.0), DEFAULT_SCALE
+            return
+        low, high = points.min(axis=0), points.max(axis=0)
+        room = np.maximum([self.viewport.width - 2 * margin, self.viewport.height - 2 * margin], 50.0)
+        extent = np.maximum(high - low, 1e-9)
+        scale = float((room / extent).min())
+        self.centre = (float((low[0] + high[0]) / 2), float((low[1] + high[1]) / 2))
+        self.scale = min(max(scale, SMALLEST_SCALE), 4.0 * DEFAULT_SCALE if len(points) > 1 else DEFAULT_SCALE)

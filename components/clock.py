@@ -1,0 +1,58 @@
+"""Clock: how far a run has come, and where its energy went."""
+
+from __future__ import annotations
+
+from components.field import Field, Role
+from components.world import Handle
+
+
+class Clock(Handle):
+    """Simulated time and the energy account of the run. There is exactly one.
+
+    time = origin + (steps − origin_steps) × time step, so that no rounding accumulates in it.
+    """
+
+    __slots__ = ()
+    table, noun, single = "clock", "clock", True
+
+    time: Field[float] = Field("s", role=Role.STATE, title="time", doc="Simulated time.")
+    steps: Field[int] = Field(dtype=int, default=0, role=Role.STATE, title="steps", doc="Fixed steps taken.")
+    origin: Field[float] = Field(
+        "s", role=Role.STATE, title="time origin", doc="Time at which the present step size began."
+    )
+    origin_steps: Field[int] = Field(
+        dtype=int, default=0, role=Role.STATE, title="origin steps", doc="Steps at the time origin."
+    )
+    step_size: Field[float] = Field(
+        "s", role=Role.STATE, title="step size", doc="Present fixed step; 0: not yet chosen."
+    )
+    initial_energy: Field[float] = Field(
+        "J",
+        role=Role.STATE,
+        title="initial energy",
+        doc="Kinetic and elastic energy at the start of the run.",
+    )
+    work: Field[float] = Field(
+        "J",
+        role=Role.STATE,
+        title="work",
+        doc="Of varying loads, edits and constant forces up to the last edit.",
+    )
+    potential_reference: Field[float] = Field(
+        "J",
+        role=Role.STATE,
+        title="potential reference",
+        doc="Σ constant force · displacement at the last edit.",
+    )
+    dissipated_damping: Field[float] = Field(
+        "J", role=Role.STATE, title="dissipated by damping", doc="By axial dampers and drag."
+    )
+    dissipated_plastic: Field[float] = Field(
+        "J", role=Role.STATE, title="dissipated by yielding", doc="Σ |N| |Δε_p| L₀."
+    )
+    dissipated_impact: Field[float] = Field(
+        "J", role=Role.STATE, title="dissipated by impacts", doc="Kinetic energy lost in impacts."
+    )
+    collisions: Field[int] = Field(
+        dtype=int, default=0, role=Role.STATE, title="collisions", doc="Impacts so far."
+    )

@@ -1,0 +1,97 @@
+"""What follows directly from the document: masses, lengths, limits and constant forces."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from components.load import CONSTANT
+from components.particle import DEFAULT_MASS
+from components.world import Derivation, World
+
+
+def derive_lengths(world: World) -> None:
+    """Original difference and length of every rod, and its rest length."""
+    rods = world.tables["rods"]
+    position = world.tables["particles"].position
+    ends = rods.between
+    difference = world.writable("rods.difference")
+    difference[...] = position[ends[:, 1]] - position[ends[:, 0]]
+    original = world.writable("rods.original_length")
+    original[...] = np.hypot(difference[:, 0], difference[:, 1])
+    prescribed = rods.prescribed_rest_length
+    world.writable("rods.rest_length")[...] = np.where(np.isnan(prescribed), original, prescribed)
+
+
+def derive_masses(world: World) -> None:
+    """Lumped masses (half of each attached rod's density × rest length) and mobilities."""
+    particles, rods = world.tables["particles"], world.tables["rods"]
+    half = 0.5 * rods.density * rods.rest_length
+    lumped = np.zeros(particles.count)
+    np.add.at(lumped, rods.between.T, half)
+    lumped[lumped == 0.0] = DEFAULT_MASS
+    prescribed = particles.prescribed_mass
+    mass = world.writable("particles.mass")
+    mass[...] = np.where(np.isnan(prescribed), lumped, prescribed)
+    mobility = np.where(particles.fixed, 0.0, 1000.0 / mass[:, None])
+    world.writable("particles.mobility")[...] = mobility
+
+
+def derive_limits(world: World) -> None:
+    """Strengths with "unlimited" (None or 0) as infinity."""
+    for limit, strength in [
+        ("tension_limit", "tensile_strength"),
+        ("compression_limit", "compressive_strength"),
+    ]:
+        values = world.tables["rods"].column(strength)
+        unlimited = np.isnan(values) | (values == 0.0)
+        world.writable(f"rods.{limit}")[...] = np.where(unlimited, np.inf, values)
+
+
+def derive_constant_force(world: World) -> None:
+    """Own force, environment's force, mass × accelerations (kN) and constant loads."""
+    particles, loads = world.tables["particles"], world.tables["loads"]
+    environment = world.tables["environment"]
+    acceleration = particles.acceleration + environment.acceleration
+    force = particles.force + environment.force + particles.mass[:, None] * acceleration / 1000.0
+    constant = [row for row, history in enumerate(loads.history) if history["kind"] == CONSTANT["kind"]]
+    np.add.at(force, loads.on[constant], loads.force[constant])
+    world.writable("particles.constant_force")[...] = force
+
+
+DERIVATIONS = (
+    Derivation(
+        ("rods.difference", "rods.original_length", "rods.rest_length"),
+        ("rods.between", "rods.prescribed_rest_length", "particles.position"),
+        derive_lengths,
+    ),
+    Derivation(
+        ("particles.mass", "particles.mobility"),
+        (
+            "particles.prescribed_mass",
+            "particles.fixed",
+            "rods.between",
+            "rods.density",
+            "rods.rest_length",
+        ),
+        derive_masses,
+    ),
+    Derivation(
+        ("rods.tension_limit", "rods.compression_limit"),
+        ("rods.tensile_strength", "rods.compressive_strength"),
+        derive_limits,
+    ),
+    Derivation(
+        ("particles.constant_force",),
+        (
+            "particles.force",
+            "particles.acceleration",
+            "particles.mass",
+            "environment.force",
+            "environment.acceleration",
+            "loads.on",
+            "loads.force",
+            "loads.history",
+        ),
+        derive_constant_force,
+    ),
+)

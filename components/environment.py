@@ -1,0 +1,19 @@
+"""Environment: what acts on every particle."""
+
+from __future__ import annotations
+
+from components.field import Field, Vector
+from components.world import Handle
+
+
+class Environment(Handle):
+    """Force, acceleration and drag on all particles. There is exactly one."""
+
+    __slots__ = ()
+    table, noun, single = "environment", "environment", True
+
+    force: Field[Vector] = Field("kN", shape=(2,), title="force", doc="On every particle.")
+    acceleration: Field[Vector] = Field(
+        "m/s²", shape=(2,), title="acceleration", doc="Of every particle, such as gravity (0, -9.81)."
+    )
+    drag: Field[float] = Field("1/s", minimum=0.0, title="drag", doc="Force −drag × mass × velocity.")

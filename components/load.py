@@ -1,0 +1,126 @@
+"""Load: a force on a particle that follows a history in time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+from components.field import Field, FieldError, Vector
+from components.particle import Particle
+from components.world import Handle
+
+History = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class HistoryKind:
+    """A way in which a load changes in time: force × factor(time).
+
+    parameters: name → default of each number (or list of numbers) that a history of this kind has.
+    factor: "module:function" of the compiled factor(time, values, first), `values[first:]` being the
+        parameters, flattened in order of declaration.
+    static: the factor that stands for it in statics.
+    ends: the time after which the factor no longer changes (infinite: never), from the parameters.
+    """
+
+    name: str
+    parameters: Mapping[str, Any]
+    factor: str
+    static: float
+    ends: Callable[[History], float]
+    check: Callable[[History, str], None] = lambda history, where: None
+
+
+HISTORIES: dict[str, HistoryKind] = {}
+
+RESERVED_HISTORIES = ("sine", "pulse", "table")
+
+
+def register_history(kind: HistoryKind) -> None:
+    """Make a kind of history known to model files, loads and statics."""
+    if kind.name in HISTORIES:
+        raise ValueError(f"A history '{kind.name}' is registered already.")
+    HISTORIES[kind.name] = kind
+
+
+def check_history(value: Any, where: str) -> History:
+    """A history with all its parameters, or FieldError."""
+    if not isinstance(value, Mapping) or "kind" not in value:
+        raise FieldError(f'{where}: history is {value!r}; it must be like {{"kind": "ramp", "duration": 0.5}}.')
+    kind = HISTORIES.get(value["kind"])
+    if kind is None:
+        reserved = " (this version does not provide it yet)" if value["kind"] in RESERVED_HISTORIES else ""
+        raise FieldError(
+            f"{where}: history kind is '{value['kind']}'{reserved}; choose one of {', '.join(sorted(HISTORIES))}."
+        )
+    unknown = sorted(set(value) - {"kind", *kind.parameters})
+    if unknown:
+        allowed = ", ".join(kind.parameters) or "no parameters"
+        raise FieldError(f"{where}: a {kind.name} history has no '{unknown[0]}'; it takes {allowed}.")
+    full = {"kind": kind.name} | {
+        name: _check_parameter(value.get(name, default), default, name, where)
+        for name, default in kind.parameters.items()
+    }
+    kind.check(full, where)
+    return MappingProxyType(full)
+
+
+def _check_parameter(value: Any, default: Any, name: str, where: str) -> Any:
+    if isinstance(default, tuple):
+        if not isinstance(value, list | tuple):
+            raise FieldError(f"{where}: history {name} is {value!r}; it must be a list of numbers.")
+        return tuple(_check_parameter(item, 0.0, name, where) for item in value)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise FieldError(f"{where}: history {name} is {value!r}; it must be a finite number.")
+    return float(value)
+
+
+def _check_ramp(history: History, where: str) -> None:
+    if history["duration"] < 0.0:
+        raise FieldError(f"{where}: history duration is {history['duration']:g} s; it must be at least 0 s.")
+
+
+register_history(
+    HistoryKind("constant", {}, "systems.loads.kernels:constant", static=1.0, ends=lambda history: -math.inf)
+)
+register_history(
+    HistoryKind(
+        "ramp",
+        {"start": 0.0, "duration": 1.0},
+        "systems.loads.kernels:ramp",
+        static=1.0,
+        ends=lambda history: float(history["start"] + history["duration"]),
+        check=_check_ramp,
+    )
+)
+
+CONSTANT = check_history({"kind": "constant"}, "load")
+
+
+class Load(Handle):
+    """A force on one particle, multiplied by a history of time; several may act on the same particle."""
+
+    __slots__ = ()
+    table, noun = "loads", "load"
+
+    name: Field[str] = Field(title="name", doc="Unique among the loads.", default="", dtype=str)
+    on: Field[int] = Field(
+        dtype="reference",
+        default=0,
+        references="particles",
+        title="particle",
+        doc="Row of the particle that it acts on.",
+    )
+    force: Field[Vector] = Field("kN", shape=(2,), title="force", doc="Force at factor 1.")
+    history: Field[History] = Field(
+        dtype=object, default=CONSTANT, title="history", doc="Factor in time.", checker=check_history
+    )
+
+    @property
+    def particle(self) -> Particle:
+        """The particle it acts on."""
+        found: Particle = self.world.tables["particles"][self.on]
+        return found

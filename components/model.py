@@ -1,0 +1,58 @@
+"""Model: the world of a Pinjoint document, with its particles, rods and everything around them."""
+
+from __future__ import annotations
+
+from typing import cast
+
+from components.box import Box
+from components.clock import Clock
+from components.derived import DERIVATIONS
+from components.environment import Environment
+from components.grid import Grid
+from components.load import Load
+from components.particle import Particle
+from components.rod import Rod
+from components.settings import Settings
+from components.table import Table
+from components.world import World
+
+KINDS = (Environment, Settings, Clock, Particle, Rod, Load, Grid, Box)
+
+
+class Model(World):
+    """A world with the tables every Pinjoint document has."""
+
+    def __init__(self) -> None:
+        super().__init__(KINDS, DERIVATIONS)
+
+    @property
+    def particles(self) -> Table[Particle]:
+        return self.tables["particles"]
+
+    @property
+    def rods(self) -> Table[Rod]:
+        return self.tables["rods"]
+
+    @property
+    def loads(self) -> Table[Load]:
+        return self.tables["loads"]
+
+    @property
+    def grids(self) -> Table[Grid]:
+        return self.tables["grids"]
+
+    @property
+    def boxes(self) -> Table[Box]:
+        return self.tables["boxes"]
+
+    @property
+    def environment(self) -> Environment:
+        return cast(Environment, self.tables["environment"][0])
+
+    @property
+    def settings(self) -> Settings:
+        return cast(Settings, self.tables["settings"][0])
+
+    @property
+    def clock(self) -> Clock:
+        return cast(Clock, self.tables["clock"][0])

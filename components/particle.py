@@ -1,0 +1,122 @@
+"""Particle: a lumped mass, a free body or the node of a structure."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from components.field import Field, FieldError, Role, Vector
+from components.world import Handle
+
+DEFAULT_MASS = 1.0  # kg, of a particle without rods
+
+
+class Particle(Handle):
+    """A disc with mass. Present position = original position + displacement; y is up."""
+
+    __slots__ = ()
+    table, noun = "particles", "particle"
+
+    name: Field[str] = Field(title="name", doc="Unique among the particles.", default="", dtype=str)
+    position: Field[Vector] = Field(
+        "m", shape=(2,), title="original position", doc="Where it is undisplaced.", shown=("cm", 100.0)
+    )
+    displacement: Field[Vector] = Field(
+        "m",
+        shape=(2,),
+        role=Role.STATE,
+        title="displacement",
+        doc="Present minus original position.",
+        shown=("cm", 100.0),
+    )
+    velocity: Field[Vector] = Field(
+        "m/s", shape=(2,), role=Role.STATE, title="velocity", doc="Zero in a constrained direction."
+    )
+    fixed: Field[tuple[bool, bool]] = Field(
+        dtype=bool, shape=(2,), default=False, title="constrained", doc="Held by a support in x, in y."
+    )
+    force: Field[Vector] = Field("kN", shape=(2,), title="applied force", doc="Constant force on it.")
+    acceleration: Field[Vector] = Field(
+        "m/s²", shape=(2,), title="applied acceleration", doc="Adds mass × acceleration to its force."
+    )
+    radius: Field[float] = Field(
+        "m", default=0.05, above=0.0, title="radius", doc="Of the disc that collides.", shown=("cm", 100.0)
+    )
+    prescribed_mass: Field[float | None] = Field(
+        "kg",
+        default=None,
+        nullable=True,
+        above=0.0,
+        title="mass",
+        key="mass",
+        doc="Overrides the mass that follows from the rods; None: half the mass of each attached rod.",
+        overrides="mass",
+    )
+    mass: Field[float] = Field(
+        "kg",
+        default=DEFAULT_MASS,
+        role=Role.DERIVED,
+        title="mass",
+        doc="Prescribed, or half the mass of every attached rod, or 1 kg without rods.",
+        overridden_by="prescribed_mass",
+    )
+    mobility: Field[Vector] = Field(
+        "m/s²/kN",
+        shape=(2,),
+        role=Role.DERIVED,
+        title="mobility",
+        doc="Acceleration per force in each direction: 1000/mass, 0 where constrained.",
+    )
+    constant_force: Field[Vector] = Field(
+        "kN",
+        shape=(2,),
+        role=Role.DERIVED,
+        title="constant force",
+        doc="All external force that time does not change: own, environment's, mass × accelerations, loads.",
+    )
+    applied_force: Field[Vector] = Field(
+        "kN",
+        shape=(2,),
+        role=Role.DERIVED,
+        title="external force",
+        doc="All external force now, without reactions.",
+    )
+    reaction: Field[Vector] = Field(
+        "kN",
+        shape=(2,),
+        role=Role.DERIVED,
+        title="reaction",
+        doc="The support's force on it in constrained directions, 0 elsewhere.",
+    )
+
+    def after_assigning(self, field: Field[Any]) -> None:
+        """A constrained direction has no velocity; no rod may lose its length."""
+        if field is Particle.fixed:
+            vx, vy = self.velocity
+            stopped = (0.0 if self.fixed[0] else vx, 0.0 if self.fixed[1] else vy)
+            if stopped != (vx, vy):
+                self.velocity = stopped
+        elif field is Particle.velocity:
+            check_velocities(self.world.describe(self), self.fixed, self.velocity)
+        elif field is Particle.position and "rods" in self.world.tables:
+            self._check_rods()
+
+    def _check_rods(self) -> None:
+        rods = self.world.tables["rods"]
+        without_length = (rods.between == self.row).any(axis=1) & ~(rods.rest_length > 0.0)
+        for row in np.flatnonzero(without_length)[:1].tolist():
+            raise FieldError(
+                f"{self.world.describe(self)}: at this position {self.world.describe(rods[row])} would have"
+                " no length; place it elsewhere or give the rod a rest length."
+            )
+
+
+def check_velocities(where: str, fixed: tuple[bool, bool], velocity: Vector) -> None:
+    """Raise FieldError if a velocity points along a constrained direction."""
+    for axis, held, speed in zip("xy", fixed, velocity, strict=True):
+        if held and speed != 0.0:
+            raise FieldError(
+                f"{where}: velocity {axis} is {speed:g} m/s but it is constrained in {axis};"
+                f" set it to 0 or free the direction."
+            )

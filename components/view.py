@@ -1,0 +1,38 @@
+"""View: everything that decides how a model is shown, besides the model itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from components.camera import Camera
+
+
+@dataclass(frozen=True)
+class Status:
+    """What the status line says.
+
+    time: simulated seconds. speed: simulated seconds per second shown (0: halted). state: such as
+    "running", "at rest", "diverged". hint: the next possible step. problem: why it stopped, or "".
+    """
+
+    time: float = 0.0
+    speed: float = 0.0
+    state: str = ""
+    hint: str = ""
+    problem: str = ""
+
+
+@dataclass
+class View:
+    """How one model is shown in one viewport.
+
+    heading: the word top left in red ("Pause"), or "". all_diagrams: force diagrams of all elements.
+    legend: show the meaning of colours. pixel_ratio: device pixels per point (HiDPI).
+    """
+
+    camera: Camera = field(default_factory=Camera)
+    heading: str = ""
+    all_diagrams: bool = False
+    legend: bool = True
+    pixel_ratio: float = 1.0
+    status: Status = field(default_factory=Status)

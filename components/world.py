@@ -1,0 +1,421 @@
+"""World: one esper context and its tables; the only code that creates, deletes or switches esper things."""
+
+from __future__ import annotations
+
+import difflib
+import itertools
+import weakref
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, ClassVar, TypeVar
+
+import esper
+import numpy as np
+from numpy.typing import NDArray
+
+from components.commands import Assign, Command, Create, Delete, Group, Removed, Restore
+from components.field import Column, Field, FieldError, Role
+from components.table import Table
+
+_world_numbers = itertools.count(1)
+
+
+class Handle:
+    """The component of an entity: its identity, whose Fields read and write one row of a table."""
+
+    __slots__ = ("entity", "world")
+
+    table: ClassVar[str]  # name of the table, such as "rods"
+    noun: ClassVar[str]  # what a person calls one, such as "rod"
+    single: ClassVar[bool] = False  # exactly one in every world
+
+    def __init__(self, world: World, entity: int) -> None:
+        self.world = world
+        self.entity = entity
+
+    @property
+    def row(self) -> int:
+        """The row of the table in which this entity's values are now. Raises LookupError if deleted."""
+        return self.world.row(self)
+
+    @property
+    def exists(self) -> bool:
+        """False once the entity is deleted (and True again when that is undone)."""
+        return bool(self.world.row_of_entity[self.entity] >= 0)
+
+    def after_assigning(self, field: Field[Any]) -> None:
+        """Keep what follows from a Field consistent once it was assigned, or refuse it by FieldError."""
+
+    def __repr__(self) -> str:
+        return f"<{self.world.describe(self)}>" if self.exists else f"<deleted {self.noun}>"
+
+
+H = TypeVar("H", bound=Handle)
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """How derived columns follow from others: `compute` writes `targets` once any of `sources` changed."""
+
+    targets: tuple[str, ...]
+    sources: tuple[str, ...]
+    compute: Callable[[World], None]
+
+
+class World:
+    """A model: tables of entities. Documents change by `execute`; state by columns that `writable` grants.
+
+    on_command: called with the inverse of every executed command (the undo log listens here).
+    revision: grows by one at every change of anything.
+    """
+
+    def __init__(self, kinds: Sequence[type[Handle]], derivations: Iterable[Derivation] = ()) -> None:
+        self.context = f"pinjoint {next(_world_numbers)}"
+        self.revision = 0
+        self.on_command: Callable[[Command], None] | None = None
+        self.row_of_entity: NDArray[np.int64] = np.full(64, -1, dtype=np.int64)
+        self.tables: dict[str, Table[Any]] = {}
+        self.tags_revision = 0
+        self._open: list[Command] | None = None
+        self._derivations: dict[str, Derivation] = {}
+        self._derived_at: dict[Derivation, int] = {}
+        weakref.finalize(self, _delete_context, self.context)
+        for kind in kinds:
+            self.tables[kind.table] = Table(self, kind.table, kind)
+        for derivation in derivations:
+            self.derive(derivation)
+        for kind in kinds:
+            if kind.single:
+                self._create(Create(kind, 1, {}))
+
+    def activate(self) -> None:
+        """Make this world's esper context the current one."""
+        if esper.current_world != self.context:
+            esper.switch_world(self.context)
+
+    # --- revisions -------------------------------------------------------------------------------
+
+    def next_revision(self) -> int:
+        """A new revision number, greater than all before."""
+        self.revision += 1
+        return self.revision
+
+    def version(self, column: str) -> int:
+        """The revision at which a column, named "table.field", last changed."""
+        table, field = column.split(".")
+        return self.tables[table].version(field)
+
+    def newest(self, *roles: Role) -> int:
+        """The revision of the newest change to any column with one of these roles."""
+        return max(
+            table.version(field.name) for table in self.tables.values() for field in table.fields_in(*roles)
+        )
+
+    # --- reading and writing one value -------------------------------------------------------------
+
+    def row(self, handle: Handle) -> int:
+        """The row of a handle. Raises LookupError if its entity is deleted."""
+        row = int(self.row_of_entity[handle.entity])
+        if row < 0:
+            raise LookupError(f"This {handle.noun} was deleted; undo brings it back.")
+        return row
+
+    def read(self, handle: Handle, field: Field[Any]) -> Any:
+        """The value of one Field of one entity."""
+        table = self.tables[handle.table]
+        row = self.row(handle)
+        return field.loaded(table.current(field.name)[row])
+
+    def write(self, handle: Handle, field: Field[Any], value: Any) -> None:
+        """Execute the command that gives one Field of one entity a value. Raises FieldError."""
+        self.assign([handle], field.name, [value])
+
+    def assign(self, handles: Sequence[Handle], field_name: str, values: Sequence[Any]) -> None:
+        """Give one Field of several entities of one kind new values, as one command. Raises FieldError."""
+        if not handles:
+            return
+        table = self.tables[handles[0].table]
+        field = table.fields[field_name]
+        if field.role is Role.DERIVED:
+            if field.overridden_by is None:
+                raise FieldError(f"{self.describe(handles[0])}: {field.title} is computed and cannot be set.")
+            field = table.fields[field.overridden_by]
+        checked = [field.check(v, self.describe(h)) for h, v in zip(handles, values, strict=True)]
+        if field.name == "name":
+            self._check_names(table, handles, checked)
+        column = field.allocate(len(handles))
+        for row, value in enumerate(checked):
+            column[row] = field.stored(value)
+        with self.transaction(f"{field.title} of {self.describe(handles[0])}"):
+            self.execute(Assign(table.name, field.name, tuple(h.entity for h in handles), column))
+            for handle in handles:
+                handle.after_assigning(field)
+
+    def _check_names(self, table: Table[Any], handles: Sequence[Handle], names: Sequence[str]) -> None:
+        for handle, name in zip(handles, names, strict=True):
+            if not name.strip():
+                raise FieldError(f"{self.describe(handle)}: its name is empty; type at least one character.")
+            if name in table and table[name] is not handle or names.count(name) > 1:
+                raise FieldError(f"There is a {table.kind.noun} '{name}' already; choose another name.")
+
+    def describe(self, handle: Handle) -> str:
+        """A handle as a person calls it, such as "rod AB"."""
+        table = self.tables[handle.table]
+        if "name" not in table.fields:
+            return handle.noun
+        name = str(table._columns["name"][self.row(handle)])
+        return name if name.startswith(handle.noun + " ") else f"{handle.noun} {name}"
+
+    @staticmethod
+    def missing(table: str, name: str, present: Iterable[str]) -> str:
+        """The sentence that says that a name is not there, and which one comes nearest."""
+        nearest = difflib.get_close_matches(name, list(present), n=1, cutoff=0.4)
+        hint = f"; did you mean '{nearest[0]}'?" if nearest else "."
+        return f"There is no '{name}' among the {table}{hint}"
+
+    # --- columns for systems -------------------------------------------------------------------------
+
+    def column(self, name: str) -> Column:
+        """A column named "table.field" as a read-only view, derived columns up to date."""
+        table, field = name.split(".")
+        return self.tables[table].column(field)
+
+    def writable(self, name: str) -> Column:
+        """A state or derived column as a writable view, marked as changed. Documents change by commands."""
+        table, field = name.split(".")
+        if self.tables[table].fields[field].role is Role.DOCUMENT:
+            raise ValueError(f"Column {name} is part of the document; change it by a command.")
+        return self.tables[table].writable(field)
+
+    def derive(self, derivation: Derivation) -> None:
+        """Register how columns are derived; the newest registration of a target counts."""
+        for target in derivation.targets:
+            self._derivations[target] = derivation
+        self._derived_at[derivation] = -1
+
+    def refresh(self, name: str) -> None:
+        """Bring a derived column, named "table.field", up to date."""
+        derivation = self._derivations.get(name)
+        if derivation is None:
+            return
+        for source in derivation.sources:
+            self.refresh(source)
+        newest = max(self.version(source) for source in derivation.sources)
+        if newest > self._derived_at[derivation]:
+            self._derived_at[derivation] = self.revision
+            derivation.compute(self)
+
+    # --- commands ------------------------------------------------------------------------------------
+
+    def create(self, kind: type[H], count: int = 1, **columns: Any) -> list[H]:
+        """Create `count` entities, their columns checked as a whole; returns their handles in row order."""
+        table = self.tables[kind.table]
+        checked: dict[str, Column] = {}
+        for name, values in columns.items():
+            checked[name] = table.fields[name].check_column(values, count, kind.noun)
+        if "name" in table.fields and "name" not in checked:
+            checked["name"] = Field._object_column(self.free_names(kind, count), count)
+        self.execute(Create(kind, count, checked))
+        handles: list[H] = table.handles[table.count - count :]
+        return handles
+
+    def free_names(self, kind: type[Handle], count: int) -> list[str]:
+        """The `count` smallest unused names of the form "rod n"."""
+        table = self.tables[kind.table]
+        unused = (f"{kind.noun} {n}" for n in itertools.count(1))
+        return list(itertools.islice((name for name in unused if name not in table), count))
+
+    def delete(self, handles: Iterable[Handle]) -> None:
+        """Delete entities and whatever refers to them."""
+        entities = tuple(handle.entity for handle in handles if handle.exists)
+        if entities:
+            self.execute(Delete(entities))
+
+    def execute(self, command: Command) -> None:
+        """Apply a command and report its inverse to the log."""
+        inverse = self.apply(command)
+        if self._open is not None:
+            self._open.append(inverse)
+        elif self.on_command is not None:
+            self.on_command(inverse)
+
+    @contextmanager
+    def transaction(self, title: str) -> Iterator[None]:
+        """Make all commands inside one entry of the log; if one raises, none of them happened."""
+        if self._open is not None:
+            yield
+            return
+        self._open = []
+        try:
+            yield
+        except BaseException:
+            for inverse in reversed(self._open):
+                self.apply(inverse)
+            self._open = None
+            raise
+        inverses, self._open = tuple(reversed(self._open)), None
+        if inverses and self.on_command is not None:
+            self.on_command(Group(inverses, title))
+
+    def apply(self, command: Command) -> Command:
+        """Apply a command without telling the log; returns its exact inverse."""
+        match command:
+            case Create():
+                return self._create(command)
+            case Delete():
+                return self._delete(command)
+            case Restore():
+                return self._restore(command)
+            case Assign():
+                return self._assign(command)
+            case Group(commands, title):
+                return Group(tuple(reversed([self.apply(part) for part in commands])), title)
+
+    def _create(self, command: Create) -> Command:
+        self.activate()
+        kind = command.kind
+        table = self.tables[kind.table]
+        handles = [kind(self, 0) for _ in range(command.count)]
+        for handle in handles:
+            handle.entity = esper.create_entity(handle)
+        entities = np.array([handle.entity for handle in handles], dtype=np.int64)
+        table.append(handles, entities, dict(command.columns))
+        return Delete(tuple(entities.tolist()))
+
+    def _delete(self, command: Delete) -> Command:
+        self.activate()
+        doomed = self._with_dependents(np.array(command.entities, dtype=np.int64))
+        removed = []
+        # Referring tables first, so that what they refer to can still be named by entity.
+        for table in reversed(self.tables.values()):
+            if table.name not in doomed:
+                continue
+            rows = doomed[table.name]
+            references = self._references_as_entities(table, rows)
+            handles, columns = table.remove(rows)
+            for handle in handles:
+                self.row_of_entity[handle.entity] = -1
+                esper.remove_component(handle.entity, table.kind)
+            self._remap_references(table, rows, inserted=False)
+            removed.append(Removed(table.name, rows, tuple(handles), columns | references))
+        return Restore(tuple(reversed(removed)))
+
+    def _restore(self, command: Restore) -> Command:
+        self.activate()
+        entities: list[int] = []
+        for piece in command.removed:
+            table = self.tables[piece.table]
+            columns = dict(piece.columns)
+            for field in table.fields.values():
+                if field.references is not None:
+                    columns[field.name] = self.row_of_entity[columns[field.name]]
+            ids = np.array([handle.entity for handle in piece.handles], dtype=np.int64)
+            table.insert(piece.rows, piece.handles, ids, columns)
+            for handle in piece.handles:
+                esper.add_component(handle.entity, handle)
+            self._remap_references(table, piece.rows, inserted=True)
+            entities.extend(ids.tolist())
+        return Delete(tuple(entities))
+
+    def _assign(self, command: Assign) -> Command:
+        table = self.tables[command.table]
+        rows = self.row_of_entity[np.array(command.entities, dtype=np.int64)]
+        column = table.writable(command.field)
+        old = column[rows].copy()
+        column[rows] = command.values
+        if command.field == "name":
+            for row, before, after in zip(rows.tolist(), old, command.values, strict=True):
+                table.renamed(table.handles[row], str(before), str(after))
+        return Assign(command.table, command.field, command.entities, old)
+
+    # --- tags: rare marks that esper answers for -----------------------------------------------------
+
+    def tag(self, handle: Handle, tag: type) -> None:
+        """Mark an entity with an (empty) component, such as Selected."""
+        self.activate()
+        if handle.exists and not esper.has_component(handle.entity, tag):
+            esper.add_component(handle.entity, tag())
+            self.tags_revision = self.next_revision()
+
+    def untag(self, handle: Handle, tag: type) -> None:
+        """Take a mark off an entity, if it has it."""
+        self.activate()
+        if esper.try_remove_component(handle.entity, tag) is not None:
+            self.tags_revision = self.next_revision()
+
+    def tagged(self, tag: type) -> list[Handle]:
+        """Handles of the existing entities with a mark, in order of creation."""
+        self.activate()
+        marked = sorted(entity for entity, _ in esper.get_component(tag))
+        return [self.handle(entity) for entity in marked if self.row_of_entity[entity] >= 0]
+
+    def handle(self, entity: int) -> Handle:
+        """The handle of an existing entity. Raises LookupError."""
+        self.activate()
+        for table in self.tables.values():
+            found: Handle | None = esper.try_component(entity, table.kind)
+            if found is not None:
+                return found
+        raise LookupError(f"There is no entity {entity}.")
+
+    # --- references between tables -----------------------------------------------------------------
+
+    def _referring(self, name: str) -> Iterator[tuple[Table[Any], Field[Any]]]:
+        for table in self.tables.values():
+            for field in table.fields.values():
+                if field.references == name:
+                    yield table, field
+
+    def _with_dependents(self, entities: NDArray[np.int64]) -> dict[str, NDArray[np.intp]]:
+        """Rows to delete by table: the entities themselves and all that refer to them."""
+        wanted = np.zeros(len(self.row_of_entity), dtype=bool)
+        wanted[entities] = True
+        doomed: dict[str, NDArray[np.intp]] = {}
+        for table in self.tables.values():  # a table only refers to those declared before it
+            marked = wanted[table.entities]
+            for field in table.fields.values():
+                if field.references in doomed:
+                    hit = np.isin(table.current(field.name)[: table.count], doomed[field.references])
+                    marked = marked | (hit.any(axis=1) if field.shape else hit)
+            if marked.any():
+                doomed[table.name] = np.flatnonzero(marked)
+        return doomed
+
+    def _references_as_entities(self, table: Table[Any], rows: NDArray[np.intp]) -> dict[str, Column]:
+        return {
+            field.name: self.tables[field.references].entities[table.current(field.name)[rows]]
+            for field in table.fields.values()
+            if field.references is not None
+        }
+
+    def _remap_references(self, table: Table[Any], rows: NDArray[np.intp], *, inserted: bool) -> None:
+        """After rows of a table went or came, let those that refer to it follow."""
+        moved = np.ones(table.count + (0 if inserted else len(rows)), dtype=bool)
+        moved[rows] = False
+        old_of_new = np.flatnonzero(moved)
+        for other, field in self._referring(table.name):
+            if other.count == 0:
+                continue
+            column = other.writable(field.name)
+            if inserted:
+                column[...] = old_of_new[column]
+            else:
+                new_of_old = np.cumsum(moved) - 1
+                column[...] = new_of_old[column]
+
+    def place(self, table: Table[Any], first: int) -> None:
+        """Note in which rows the entities of a table are, from row `first` on."""
+        entities = table.entities[first:]
+        if len(entities) and entities.max() >= len(self.row_of_entity):
+            grown = np.full(2 * int(entities.max()), -1, dtype=np.int64)
+            grown[: len(self.row_of_entity)] = self.row_of_entity
+            self.row_of_entity = grown
+        self.row_of_entity[entities] = np.arange(first, table.count)
+
+
+def _delete_context(context: str) -> None:
+    if esper.current_world == context:
+        esper.switch_world("default")
+    if context in esper.list_worlds():
+        esper.delete_world(context)
