@@ -53,6 +53,12 @@ class Clock(Handle):
     dissipated_impact: Field[float] = Field(
         "J", role=Role.STATE, title="dissipated by impacts", doc="Kinetic energy lost in impacts."
     )
+    force_scale: Field[float] = Field(
+        "kN", role=Role.STATE, title="force scale", doc="Largest force of the run, the scale for being at rest."
+    )
+    energy_scale: Field[float] = Field(
+        "J", role=Role.STATE, title="energy scale", doc="Largest energy of the run, the scale for divergence."
+    )
     collisions: Field[int] = Field(
         dtype=int, default=0, role=Role.STATE, title="collisions", doc="Impacts so far."
     )

@@ -26,8 +26,7 @@ def derive_masses(world: World) -> None:
     """Lumped masses (half of each attached rod's density × rest length) and mobilities."""
     particles, rods = world.tables["particles"], world.tables["rods"]
     half = 0.5 * rods.density * rods.rest_length
-    lumped = np.zeros(particles.count)
-    np.add.at(lumped, rods.between.T, half)
+    lumped = np.bincount(rods.between.ravel(), np.repeat(half, 2), particles.count)
     lumped[lumped == 0.0] = DEFAULT_MASS
     prescribed = particles.prescribed_mass
     mass = world.writable("particles.mass")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
@@ -16,6 +16,16 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 Vector = tuple[float, float]
 Column = NDArray[Any]
+
+_FEW = 8  # rows up to which checking values one by one is faster than as an array
+_LARGEST_REFERENCE = 2**32 - 1
+# What numbers and flags given for a whole column may be: numpy's kinds, or the types in a list.
+_PLAIN: dict[Any, tuple[str, set[type]]] = {
+    float: ("fiu", {float, int, np.float64, np.int64}),
+    int: ("i", {int, np.int64}),
+    bool: ("b", {bool, np.bool_}),
+    "reference": ("iu", {int, np.int64, np.uint32}),
+}
 
 
 class Role(Enum):
@@ -73,6 +83,10 @@ class Field(Generic[T]):
         key: str | None = None,
         checker: Callable[[Any, str], Any] | None = None,
     ) -> None:
+        if nullable and (shape or dtype in (int, bool, "reference")):
+            raise ValueError(f"A Field that can be None must be one float, text or object ('{title}' is not).")
+        if dtype == "reference":
+            minimum, maximum = 0, _LARGEST_REFERENCE
         self.unit = unit
         self.title = title
         self.doc = doc
@@ -127,9 +141,10 @@ class Field(Generic[T]):
     def allocate(self, rows: int) -> Column:
         """A column of `rows` rows holding the default."""
         column = np.empty((rows, *self.shape), dtype=self.storage)
-        column[...] = self.stored(self.default) if self.storage != np.dtype(object) else None
         if self.storage == np.dtype(object):
-            column[:] = [self.default] * rows
+            column.fill(self.default)
+        else:
+            column[...] = self.stored(self.default)
         return column
 
     def stored(self, value: Any) -> Any:
@@ -153,7 +168,7 @@ class Field(Generic[T]):
             return None
         if self.checker is not None:
             return self.checker(value, where)
-        if self.dtype is float or self.dtype is int:
+        if self.dtype in (float, int, "reference"):
             return self._check_numbers(value, where)
         if self.dtype is bool:
             return self._check_flags(value, where)
@@ -170,14 +185,19 @@ class Field(Generic[T]):
         )
 
     def _check_number(self, value: Any, where: str, title: str) -> Any:
-        if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.number):
+        if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
             raise FieldError(f"{where}: {title} is {value!r}; it must be a number.")
-        number = self.dtype(value)
+        try:
+            number: Any = float(value) if self.dtype is float else int(value)
+        except (OverflowError, ValueError):  # 10**400 as a float; infinity as an integer
+            number = math.inf
         if not math.isfinite(number):
             raise FieldError(f"{where}: {title} is {number}; it must be a finite number.")
+        if self.dtype is not float and (number != value or number.bit_length() > 63):
+            raise FieldError(f"{where}: {title} is {value}; it must be a whole number below 2^63.")
         problem = self.limit_broken_by(number)
         if problem:
-            raise FieldError(f"{where}: {title} is {number:g}{self._in_unit}; it must be {problem}.")
+            raise FieldError(f"{where}: {title} is {number:.15g}{self._in_unit}; it must be {problem}.")
         return number
 
     def limit_broken_by(self, number: float) -> str | None:
@@ -197,53 +217,84 @@ class Field(Generic[T]):
         flags = tuple(bool(v) for v in values)
         return flags if self.shape else flags[0]
 
-    def _check_text(self, value: Any, where: str) -> str:
+    def _check_text(self, value: Any, where: str) -> Any:
         if not isinstance(value, str):
             raise FieldError(f"{where}: {self.title} is {value!r}; it must be a text.")
+        value = str(value)  # numpy's texts are a type of their own
         if self.choices is not None and value not in self.choices:
             raise FieldError(f"{where}: {self.title} is '{value}'; choose one of {', '.join(self.choices)}.")
         return value
 
     def _components(self, value: Any, where: str, of_what: str) -> list[Any]:
-        if isinstance(value, str | bytes | Mapping) or not hasattr(value, "__len__"):
+        if isinstance(value, str | bytes | Mapping | Set) or not np.iterable(value):
             raise FieldError(f"{where}: {self.title} is {value!r}; it must be a pair of {of_what}, [x, y].")
-        if len(value) != self.shape[0]:
-            raise FieldError(f"{where}: {self.title} has {len(value)} entries; it must have two, [x, y].")
-        return list(value)
+        values = list(value)
+        if len(values) != self.shape[0]:
+            raise FieldError(f"{where}: {self.title} has {len(values)} entries; it must have two, [x, y].")
+        return values
 
     @property
     def _in_unit(self) -> str:
         return f" {self.unit}" if self.unit else ""
 
-    def check_column(self, values: Any, rows: int, where: str) -> Column:
-        """Check a whole column at once; shape (rows, *shape) after broadcasting. Raises FieldError."""
-        if self.storage == np.dtype(object):
-            return self._object_column(values, rows)
+    # --- checking a whole column at once ------------------------------------------------------------
+
+    def check_column(self, values: Any, rows: int, where: Callable[[int], str]) -> Column:
+        """Check a list or array with a value for each row, or one value for all; shape (rows, *shape).
+
+        `where(row)` is what a person calls the element in a row. Raises FieldError.
+        """
         column = np.empty((rows, *self.shape), dtype=self.storage)
+        plain = None if rows <= _FEW and isinstance(values, list) else self._plain(values)
+        if plain is not None and plain.shape in (column.shape, self.shape):
+            plain = np.broadcast_to(plain, column.shape)
+            for row in np.flatnonzero(~self._allowed(plain))[:1].tolist():
+                self.check(plain[row], where(row))
+            column[...] = plain
+            return column
+        if isinstance(values, np.ndarray):
+            values = values.tolist()
+        items = values if isinstance(values, list | tuple) else [values] * rows
+        if len(items) != rows:
+            raise FieldError(
+                f"{self.title}: {len(items)} values for {rows} elements; give each one, or all the same."
+            )
+        for row, item in enumerate(items):
+            column[row] = self.stored(self.check(item, where(row)))
+        return column
+
+    def _plain(self, values: Any) -> Column | None:
+        """`values` as an array, if they are of the right type already; None as NaN."""
+        if self.dtype not in _PLAIN or self.checker is not None:
+            return None
+        kinds, types = _PLAIN[self.dtype]
+        if isinstance(values, np.ndarray):
+            return values if values.dtype.kind in kinds else None
         try:
-            column[...] = np.asarray(values, dtype=self.storage)
-        except (TypeError, ValueError) as error:
-            raise FieldError(f"{where}: {self.title} must be {rows} rows of numbers ({error}).") from None
-        if self.dtype is float:
-            self._check_limits(column, where)
-        return column
+            objects = np.array(values, dtype=object)
+            given = set(map(type, objects.ravel().tolist()))
+            if given <= (types | {type(None)} if self.nullable else types):
+                return objects.astype(np.int64 if self.dtype == "reference" else self.storage)
+        except (ValueError, OverflowError):  # lists of unequal lengths; numbers out of range
+            pass
+        return None
 
-    @staticmethod
-    def _object_column(values: Any, rows: int) -> Column:
-        column = np.empty(rows, dtype=object)
-        column[:] = list(values)
-        return column
+    def _allowed(self, values: Column) -> NDArray[np.bool_]:
+        """Which rows of an array hold numbers that the Field can take, shape (rows,)."""
+        ok: NDArray[np.bool_] = np.isfinite(values)
+        if self.above is not None:
+            ok &= values > self.above
+        if self.minimum is not None:
+            ok &= values >= self.minimum
+        if self.maximum is not None:
+            ok &= values <= self.maximum
+        if self.nullable:
+            ok |= np.isnan(values)
+        return np.asarray(ok.all(axis=1)) if self.shape else ok
 
-    def _check_limits(self, column: Column, where: str) -> None:
-        ok = np.isfinite(column) | (np.isnan(column) if self.nullable else False)
-        with np.errstate(invalid="ignore"):
-            if self.above is not None:
-                ok &= ~(column <= self.above)
-            if self.minimum is not None:
-                ok &= ~(column < self.minimum)
-            if self.maximum is not None:
-                ok &= ~(column > self.maximum)
-        if ok.all():
-            return
-        first = tuple(int(i) for i in np.argwhere(~ok)[0])
-        self._check_number(float(column[first]), f"{where} {first[0]}", self.title)
+
+def same(first: Column, second: Column) -> bool:
+    """True if two columns hold the same values, bit for bit."""
+    if first.dtype == object:
+        return bool(first.tolist() == second.tolist())
+    return first.tobytes() == second.tobytes()

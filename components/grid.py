@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
 from components.field import Field, Vector
+from components.table import Table
 from components.world import Handle
 
 
@@ -23,3 +30,11 @@ class Grid(Handle):
         shown=("cm", 100.0),
     )
     shown: Field[bool] = Field(dtype=bool, default=True, title="shown", doc="Drawn now; at most one is.")
+
+    @classmethod
+    def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
+        """A grid that is shown hides the others; of several shown at once, the last remains."""
+        shown = rows[table.shown[rows]]
+        if "shown" in changed and len(shown):
+            others = [grid for grid in table if grid.shown and grid.row != shown[-1]]
+            table.world.assign(others, "shown", False)

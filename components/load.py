@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -48,15 +49,16 @@ def register_history(kind: HistoryKind) -> None:
 
 def check_history(value: Any, where: str) -> History:
     """A history with all its parameters, or FieldError."""
-    if not isinstance(value, Mapping) or "kind" not in value:
+    if not isinstance(value, Mapping) or not isinstance(value.get("kind"), str):
         raise FieldError(f'{where}: history is {value!r}; it must be like {{"kind": "ramp", "duration": 0.5}}.')
     kind = HISTORIES.get(value["kind"])
     if kind is None:
         reserved = " (this version does not provide it yet)" if value["kind"] in RESERVED_HISTORIES else ""
         raise FieldError(
-            f"{where}: history kind is '{value['kind']}'{reserved}; choose one of {', '.join(sorted(HISTORIES))}."
+            f"{where}: history kind is '{value['kind']}'{reserved};"
+            f" choose one of {', '.join(sorted(HISTORIES))}."
         )
-    unknown = sorted(set(value) - {"kind", *kind.parameters})
+    unknown = sorted(map(str, set(value) - {"kind", *kind.parameters}))
     if unknown:
         allowed = ", ".join(kind.parameters) or "no parameters"
         raise FieldError(f"{where}: a {kind.name} history has no '{unknown[0]}'; it takes {allowed}.")
@@ -73,7 +75,7 @@ def _check_parameter(value: Any, default: Any, name: str, where: str) -> Any:
         if not isinstance(value, list | tuple):
             raise FieldError(f"{where}: history {name} is {value!r}; it must be a list of numbers.")
         return tuple(_check_parameter(item, 0.0, name, where) for item in value)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
         raise FieldError(f"{where}: history {name} is {value!r}; it must be a finite number.")
     return float(value)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import cast
+from typing import Any, cast
 
 from components.box import Box
 from components.clock import Clock
@@ -20,10 +20,16 @@ KINDS = (Environment, Settings, Clock, Particle, Rod, Load, Grid, Box)
 
 
 class Model(World):
-    """A world with the tables every Pinjoint document has."""
+    """A world with the tables every Pinjoint document has.
+
+    foreign: by entity, what its element of the model file held for mods' components, kept verbatim.
+    """
 
     def __init__(self) -> None:
         super().__init__(KINDS, DERIVATIONS)
+        self.title = ""
+        self.description = ""
+        self.foreign: dict[int, dict[str, Any]] = {}
 
     @property
     def particles(self) -> Table[Particle]:

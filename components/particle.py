@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from components.field import Field, FieldError, Role, Vector
-from components.world import Handle
+from components.table import Table
+from components.world import Handle, World
 
 DEFAULT_MASS = 1.0  # kg, of a particle without rods
 
@@ -90,26 +93,18 @@ class Particle(Handle):
         doc="The support's force on it in constrained directions, 0 elsewhere.",
     )
 
-    def after_assigning(self, field: Field[Any]) -> None:
+    @classmethod
+    def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
         """A constrained direction has no velocity; no rod may lose its length."""
-        if field is Particle.fixed:
-            vx, vy = self.velocity
-            stopped = (0.0 if self.fixed[0] else vx, 0.0 if self.fixed[1] else vy)
-            if stopped != (vx, vy):
-                self.velocity = stopped
-        elif field is Particle.velocity:
-            check_velocities(self.world.describe(self), self.fixed, self.velocity)
-        elif field is Particle.position and "rods" in self.world.tables:
-            self._check_rods()
-
-    def _check_rods(self) -> None:
-        rods = self.world.tables["rods"]
-        without_length = (rods.between == self.row).any(axis=1) & ~(rods.rest_length > 0.0)
-        for row in np.flatnonzero(without_length)[:1].tolist():
-            raise FieldError(
-                f"{self.world.describe(self)}: at this position {self.world.describe(rods[row])} would have"
-                " no length; place it elsewhere or give the rod a rest length."
-            )
+        if "velocity" in changed:
+            moving = (table.fixed[rows] & (table.velocity[rows] != 0.0)).any(axis=1)
+            for row in rows[moving][:1].tolist():
+                check_velocities(table.world.describe(table[row]), table[row].fixed, table[row].velocity)
+        elif "fixed" in changed:
+            stopped = np.where(table.fixed[rows], 0.0, table.velocity[rows])
+            table.world.assign([table[row] for row in rows.tolist()], "velocity", stopped)
+        if "position" in changed:
+            _check_rods(table, rows)
 
 
 def check_velocities(where: str, fixed: tuple[bool, bool], velocity: Vector) -> None:
@@ -120,3 +115,27 @@ def check_velocities(where: str, fixed: tuple[bool, bool], velocity: Vector) -> 
                 f"{where}: velocity {axis} is {speed:g} m/s but it is constrained in {axis};"
                 f" set it to 0 or free the direction."
             )
+
+
+def _check_rods(table: Table[Any], rows: NDArray[np.intp]) -> None:
+    """Raise FieldError if a rod at one of these particles has lost its length."""
+    world = table.world
+    moved = np.zeros(table.count, dtype=bool)
+    moved[rows] = True
+    ends = world.column("rods.between")
+    at_them = np.flatnonzero(moved[ends[:, 0]] | moved[ends[:, 1]])
+    for row in rods_without_length(world, at_them)[:1].tolist():
+        first, second = ends[row].tolist()
+        particle = table[first if moved[first] else second]
+        raise FieldError(
+            f"{world.describe(particle)}: at this position {world.describe(world.tables['rods'][row])} would"
+            " have no length; place it elsewhere or give the rod a rest length."
+        )
+
+
+def rods_without_length(world: World, rows: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Those of these rods whose ends are at the same place and that have no rest length of their own."""
+    ends = world.column("particles.position")[world.column("rods.between")[rows]]
+    together = (ends[:, 0] == ends[:, 1]).all(axis=1)
+    without: NDArray[np.intp] = rows[together & np.isnan(world.column("rods.prescribed_rest_length")[rows])]
+    return without

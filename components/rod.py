@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from components.field import Field, FieldError, Role
-from components.particle import Particle
+from components.particle import Particle, rods_without_length
+from components.table import Table
 from components.world import Handle, World
 
 
@@ -107,49 +109,54 @@ class Rod(Handle):
         first, second = self.between
         return particles[first], particles[second]
 
-    def after_assigning(self, field: Field[Any]) -> None:
-        """A rod without a rest length of its own needs some distance between its ends."""
-        if field is Rod.prescribed_rest_length and not self.rest_length > 0.0:
-            raise FieldError(
-                f"{self.world.describe(self)}: its ends are at the same place; give it a rest length above 0."
-            )
+    @classmethod
+    def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
+        """A rod joins two different particles that no other joins, and has some length."""
+        if "between" in changed:
+            _check_ends(table, rows)
+        if "between" in changed or "prescribed_rest_length" in changed:
+            for row in rods_without_length(table.world, rows)[:1].tolist():
+                raise FieldError(
+                    f"{table.world.describe(table[row])}: its ends are at the same place;"
+                    " place them apart or give it a rest length above 0."
+                )
 
 
 def spawn_rods(world: World, between: ArrayLike, **columns: Any) -> list[Rod]:
     """Create rods between pairs of particle rows, shape (n, 2), in bulk. Raises FieldError."""
-    ends = np.asarray(between, dtype=np.int64).reshape(-1, 2)
-    _check_ends(world, ends)
-    with world.transaction("new rod"):
-        rods = world.create(Rod, len(ends), between=ends, **columns)
-        table = world.tables["rods"]
-        lengths = table.rest_length[table.count - len(ends) :]
-        for index in np.flatnonzero(~(lengths > 0.0))[:1].tolist():
-            raise FieldError(
-                f"{world.describe(rods[index])}: its ends are at the same place;"
-                " place them apart or give it a rest length above 0."
-            )
-    return rods
+    ends = np.asarray(between).reshape(-1, 2)
+    return world.create(Rod, len(ends), between=ends, **columns)
 
 
-def _check_ends(world: World, ends: NDArray[np.int64]) -> None:
-    particles, rods = world.tables["particles"], world.tables["rods"]
-    outside = ((ends < 0) | (ends >= particles.count)).any(axis=1)
-    if outside.any():
+def _check_ends(table: Table[Any], rows: NDArray[np.intp]) -> None:
+    names = table.world.tables["particles"].column("name")
+    ends = table.between[rows]
+    for row in ends[ends[:, 0] == ends[:, 1], 0][:1].tolist():
+        raise FieldError(f"A rod needs two different particles; both ends are {names[row]}.")
+    codes = _pair_codes(table.between)
+    alike = codes[np.isin(codes, codes[rows])]
+    pairs, times = np.unique(alike, return_counts=True)
+    for code in pairs[times > 1][:1].tolist():
+        first, second = names[[code >> 32, code & 0xFFFFFFFF]]
         raise FieldError(
-            f"A rod refers to particle row {ends[outside][0].tolist()}; there are {particles.count}."
+            f"There is a rod between {first} and {second} already; two particles share at most one."
         )
-    same = ends[:, 0] == ends[:, 1]
-    if same.any():
-        name = particles.names[int(ends[same][0, 0])]
-        raise FieldError(f"A rod needs two different particles; both ends are {name}.")
-    codes = _pair_codes(np.concatenate([rods.between.astype(np.int64), ends]), particles.count)
-    unique, first = np.unique(codes, return_index=True)
-    if len(unique) < len(codes):
-        repeated = np.setdiff1d(np.arange(len(codes)), first)[0] - rods.count
-        a, b = (particles.names[int(row)] for row in ends[max(int(repeated), 0)])
-        raise FieldError(f"There is a rod between {a} and {b} already; two particles share at most one.")
 
 
-def _pair_codes(pairs: NDArray[np.int64], particles: int) -> NDArray[np.int64]:
-    codes: NDArray[np.int64] = pairs.min(axis=1) * particles + pairs.max(axis=1)
+def _pair_codes(ends: NDArray[np.uint32]) -> NDArray[np.uint64]:
+    """One number for each pair of particle rows, the same in both directions."""
+    low, high = np.minimum(ends[:, 0], ends[:, 1]), np.maximum(ends[:, 0], ends[:, 1])
+    codes: NDArray[np.uint64] = (low.astype(np.uint64) << np.uint64(32)) | high
     return codes
+
+
+def can_yield(world: World) -> bool:
+    """True if plasticity is on and some rod has a strength."""
+    rods = world.tables["rods"]
+    limited = (rods.tension_limit < np.inf) | (rods.compression_limit < np.inf)
+    return bool(world.tables["settings"].plasticity[0]) and bool(limited.any())
+
+
+def has_plastic_strain(world: World) -> bool:
+    """True if plastic strain plays a part: some rod has it, or may get it."""
+    return can_yield(world) or bool(world.tables["rods"].plastic_strain.any())

@@ -13,9 +13,9 @@ INTEGRATORS: dict[str, str] = {AUTOMATIC: "chosen for the model by a fixed rule"
 
 def check_integrator(value: Any, where: str) -> str:
     """A registered integrator's name, or FieldError."""
-    if value not in INTEGRATORS:
+    if not isinstance(value, str) or value not in INTEGRATORS:
         raise FieldError(f"{where}: integrator is {value!r}; choose one of {', '.join(INTEGRATORS)}.")
-    return str(value)
+    return value
 
 
 class Settings(Handle):
@@ -45,5 +45,5 @@ class Settings(Handle):
         default=1.0, minimum=0.0, title="displacement scale", doc="Displacements are drawn this much larger."
     )
     diagram_scale: Field[float] = Field(
-        default=1.0, minimum=0.0, title="force diagram scale", doc="Pixels per kN of the force diagrams."
+        "px/kN", default=1.0, minimum=0.0, title="force diagram scale", doc="Size of the force diagrams."
     )

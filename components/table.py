@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import itertools
+import weakref
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
@@ -22,11 +24,13 @@ class Table(Generic[H]):
     """All entities of one kind: one array per Field, one row per entity, in order of creation.
 
     `table.velocity` is the whole column as a read-only view of shape (count, ...), brought up to date
-    first if it is derived; `table["B"]` is the handle of the entity with that name.
+    first if it is derived; `table["B"]` is the handle of the entity with that name. A view follows its
+    column until entities of this table are created or deleted; from then on it may show the past: take
+    it again.
     """
 
     def __init__(self, world: World, name: str, kind: type[H]) -> None:
-        self.world = world
+        self.world: World = weakref.proxy(world)  # no cycle: a world goes when its last owner lets go
         self.name = name
         self.kind = kind
         self.fields: dict[str, Field[Any]] = {}
@@ -37,6 +41,7 @@ class Table(Generic[H]):
         self._columns: dict[str, Column] = {}
         self._versions: dict[str, int] = {}
         self._by_name: dict[str, H] = {}
+        self._lowest_number = 1  # no "rod n" below it is free
         for field in fields_of(kind):
             self.add_column(field)
 
@@ -44,6 +49,9 @@ class Table(Generic[H]):
         """Add a column that holds the field's default in every row."""
         if field.name in self.fields:
             raise ValueError(f"Table {self.name} already has a column '{field.name}'.")
+        earlier = itertools.takewhile(self.name.__ne__, self.world.tables)
+        if field.references is not None and field.references not in earlier:
+            raise ValueError(f"{self.name}.{field.name} must refer to a table declared before {self.name}.")
         self.fields[field.name] = field
         self._columns[field.name] = field.allocate(len(self.entity))
         self._versions[field.name] = 0
@@ -73,9 +81,7 @@ class Table(Generic[H]):
 
     def column(self, name: str) -> Column:
         """The column as a read-only view, shape (count, ...), derived columns up to date."""
-        view = self.current(name)[: self.count]
-        view.flags.writeable = False
-        return view
+        return _read_only(self.current(name)[: self.count])
 
     def current(self, name: str) -> Column:
         """The column's storage, over its whole capacity, derived columns up to date."""
@@ -86,7 +92,7 @@ class Table(Generic[H]):
     @property
     def entities(self) -> NDArray[np.int64]:
         """esper ids in row order, shape (count,)."""
-        return self.entity[: self.count]
+        return _read_only(self.entity[: self.count])
 
     @property
     def names(self) -> list[str]:
@@ -108,20 +114,26 @@ class Table(Generic[H]):
         self._versions[name] = self.world.next_revision()
         return self._columns[name][: self.count]
 
-    def renamed(self, handle: H, old: str, new: str) -> None:
-        """Keep the index of names in step."""
-        if self._by_name.get(old) is handle:
-            del self._by_name[old]
-        self._by_name[new] = handle
+    def free_names(self, count: int) -> list[str]:
+        """The `count` names of the form "rod n" with the smallest n that are not used."""
+        numbered = ((n, f"{self.kind.noun} {n}") for n in itertools.count(self._lowest_number))
+        free = list(itertools.islice((pair for pair in numbered if pair[1] not in self._by_name), count))
+        self._lowest_number = free[0][0] if free else self._lowest_number
+        return [name for _, name in free]
+
+    def renamed(self, rows: NDArray[np.intp], old: Column) -> None:
+        """Keep the index of names in step after these rows had the names `old`."""
+        self._forget(set(old))
+        self._index([self.handles[row] for row in rows.tolist()], self._columns["name"][rows])
 
     def append(self, handles: list[H], entities: NDArray[np.int64], columns: dict[str, Column]) -> None:
         """Add rows at the end; columns not given take their default."""
         first, last = self.count, self.count + len(handles)
         self._reserve(last)
-        self.entity[first:last] = entities
-        self.handles.extend(handles)
         for name, field in self.fields.items():
             self._columns[name][first:last] = columns[name] if name in columns else field.allocate(len(handles))
+        self.entity[first:last] = entities
+        self.handles.extend(handles)
         self.count = last
         self.world.place(self, first)
         self._structure_changed()
@@ -130,18 +142,15 @@ class Table(Generic[H]):
     def remove(self, rows: NDArray[np.intp]) -> tuple[list[H], dict[str, Column]]:
         """Take rows (ascending) out, keeping the order of the others; return what they held."""
         taken = {name: column[rows] for name, column in self._columns.items()}
+        gone = [self.handles[row] for row in rows.tolist()]
         kept = np.ones(self.count, dtype=bool)
         kept[rows] = False
-        left = int(kept.sum())
-        for column in (self.entity, *self._columns.values()):
-            column[:left] = column[: self.count][kept]
-        gone = [self.handles[row] for row in rows.tolist()]
-        self.handles = [self.handles[row] for row in np.flatnonzero(kept).tolist()]
-        self.count = left
+        self._rearrange(lambda column: column[: self.count][kept])
+        self.handles = list(itertools.compress(self.handles, kept.tolist()))
+        self.count = len(self.handles)
         self.world.place(self, 0)
         self._structure_changed()
-        for name in taken.get("name", ()):
-            del self._by_name[name]
+        self._forget(taken.get("name", ()))
         return gone, taken
 
     def insert(
@@ -153,19 +162,28 @@ class Table(Generic[H]):
     ) -> None:
         """Put rows (ascending, as they are to be afterwards) back where `remove` found them."""
         total = self.count + len(rows)
-        self._reserve(total)
-        moved = np.ones(total, dtype=bool)
-        moved[rows] = False
-        stored = [(self._columns[name], columns[name]) for name in self.fields]
-        for column, values in [(self.entity, entities), *stored]:
-            column[:total][moved] = column[: self.count].copy()
-            column[rows] = values
-        for row, handle in zip(rows.tolist(), handles, strict=True):
-            self.handles.insert(row, handle)
+        old = np.ones(total, dtype=bool)
+        old[rows] = False
+        self._rearrange(lambda column: _spread(column[: self.count], old))
+        self.entity[rows] = entities
+        for name, field in self.fields.items():
+            self._columns[name][rows] = columns[name] if name in columns else field.allocate(len(rows))
+        remaining, restored = iter(self.handles), iter(handles)
+        self.handles = [next(remaining) if was_there else next(restored) for was_there in old.tolist()]
         self.count = total
         self.world.place(self, 0)
         self._structure_changed()
         self._index(handles, columns.get("name", ()))
+
+    def _rearrange(self, arrange: Callable[[Column], Column]) -> None:
+        self.entity = arrange(self.entity)
+        for name, column in self._columns.items():
+            self._columns[name] = arrange(column)
+
+    def _forget(self, names: Iterable[str]) -> None:
+        for name in names:
+            del self._by_name[name]
+        self._lowest_number = 1
 
     def _index(self, handles: Sequence[H], names: Iterable[str]) -> None:
         self._by_name.update(zip(names, handles, strict=False))
@@ -183,9 +201,21 @@ class Table(Generic[H]):
             self._columns[name] = _grown(self._columns[name], field.allocate(capacity), self.count)
 
 
+def _read_only(view: Column) -> Column:
+    view.flags.writeable = False
+    return view
+
+
 def _grown(old: Column, new: Column, count: int) -> Column:
     new[:count] = old[:count]
     return new
+
+
+def _spread(column: Column, where: NDArray[np.bool_]) -> Column:
+    """A new column with the entries of this one in the rows where `where` is true."""
+    spread = np.empty((len(where), *column.shape[1:]), dtype=column.dtype)
+    spread[where] = column
+    return spread
 
 
 def fields_of(kind: type) -> list[Field[Any]]:

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
+from numpy.typing import NDArray
+
 from components.camera import Camera
+from components.model import Model
 
 
 @dataclass(frozen=True)
@@ -27,12 +31,23 @@ class View:
     """How one model is shown in one viewport.
 
     heading: the word top left in red ("Pause"), or "". all_diagrams: force diagrams of all elements.
-    legend: show the meaning of colours. pixel_ratio: device pixels per point (HiDPI).
+    legend: show the meaning of colours. help: show what can be pressed (`keys`: (key, meaning)). pixel_ratio: device pixels per point (HiDPI).
     """
 
     camera: Camera = field(default_factory=Camera)
     heading: str = ""
     all_diagrams: bool = False
     legend: bool = True
+    help: bool = False
     pixel_ratio: float = 1.0
     status: Status = field(default_factory=Status)
+    keys: list[tuple[str, str]] = field(default_factory=list)
+
+
+def drawn_positions(model: Model) -> NDArray[np.float64]:
+    """Where particles are drawn (m), shape (n, 2): original position + displacement × scale."""
+    particles = model.particles
+    drawn: NDArray[np.float64] = (
+        particles.position + particles.displacement * model.settings.displacement_scale
+    )
+    return drawn

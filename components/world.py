@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import itertools
 import weakref
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeVar
@@ -15,24 +15,37 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.commands import Assign, Command, Create, Delete, Group, Removed, Restore
-from components.field import Column, Field, FieldError, Role
+from components.field import Column, Field, FieldError, Role, same
 from components.table import Table
 
 _world_numbers = itertools.count(1)
 
 
 class Handle:
-    """The component of an entity: its identity, whose Fields read and write one row of a table."""
+    """The component of an entity: its identity, whose Fields read and write one row of a table.
 
-    __slots__ = ("entity", "world")
+    It does not keep its world alive (esper keeps every component, and so would keep every world).
+    """
+
+    __slots__ = ("_world", "entity")
 
     table: ClassVar[str]  # name of the table, such as "rods"
     noun: ClassVar[str]  # what a person calls one, such as "rod"
     single: ClassVar[bool] = False  # exactly one in every world
 
     def __init__(self, world: World, entity: int) -> None:
-        self.world = world
+        self._world = weakref.ref(world)
         self.entity = entity
+
+    @property
+    def world(self) -> World:
+        """The world it belongs to. Raises LookupError if that is gone."""
+        world = self._world()
+        if world is None:
+            raise LookupError(
+                f"The model of this {self.noun} is gone; keep the model while you use its elements."
+            )
+        return world
 
     @property
     def row(self) -> int:
@@ -42,10 +55,15 @@ class Handle:
     @property
     def exists(self) -> bool:
         """False once the entity is deleted (and True again when that is undone)."""
-        return bool(self.world.row_of_entity[self.entity] >= 0)
+        world = self._world()
+        return world is not None and bool(world.row_of_entity[self.entity] >= 0)
 
-    def after_assigning(self, field: Field[Any]) -> None:
-        """Keep what follows from a Field consistent once it was assigned, or refuse it by FieldError."""
+    @classmethod
+    def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
+        """Make what follows from changed Fields of some rows agree with them, or refuse it by FieldError.
+
+        Called after rows were created (all Fields changed) or assigned to, inside the same transaction.
+        """
 
     def __repr__(self) -> str:
         return f"<{self.world.describe(self)}>" if self.exists else f"<deleted {self.noun}>"
@@ -67,6 +85,7 @@ class World:
     """A model: tables of entities. Documents change by `execute`; state by columns that `writable` grants.
 
     on_command: called with the inverse of every executed command (the undo log listens here).
+    before_change: called before any command is applied (a running simulation notes what it starts from).
     revision: grows by one at every change of anything.
     """
 
@@ -74,12 +93,14 @@ class World:
         self.context = f"pinjoint {next(_world_numbers)}"
         self.revision = 0
         self.on_command: Callable[[Command], None] | None = None
+        self.before_change: Callable[[], None] | None = None
         self.row_of_entity: NDArray[np.int64] = np.full(64, -1, dtype=np.int64)
         self.tables: dict[str, Table[Any]] = {}
         self.tags_revision = 0
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}
-        self._derived_at: dict[Derivation, int] = {}
+        self._derived_at: dict[Derivation, int] = {}  # revision of the sources it was computed from
+        self._looked_at: dict[Derivation, int] = {}  # revision at which it was last known to be up to date
         weakref.finalize(self, _delete_context, self.context)
         for kind in kinds:
             self.tables[kind.table] = Table(self, kind.table, kind)
@@ -102,7 +123,8 @@ class World:
         return self.revision
 
     def version(self, column: str) -> int:
-        """The revision at which a column, named "table.field", last changed."""
+        """The revision at which a column, named "table.field", last changed; derived ones up to date."""
+        self.refresh(column)
         table, field = column.split(".")
         return self.tables[table].version(field)
 
@@ -131,41 +153,66 @@ class World:
         """Execute the command that gives one Field of one entity a value. Raises FieldError."""
         self.assign([handle], field.name, [value])
 
-    def assign(self, handles: Sequence[Handle], field_name: str, values: Sequence[Any]) -> None:
-        """Give one Field of several entities of one kind new values, as one command. Raises FieldError."""
+    def assign(self, handles: Sequence[Handle], field_name: str, values: Any) -> None:
+        """Give one Field of several entities of one kind new values, as one command. Raises FieldError.
+
+        values: a list or array with one for each, or one for all.
+        """
         if not handles:
             return
         table = self.tables[handles[0].table]
-        field = table.fields[field_name]
-        if field.role is Role.DERIVED:
-            if field.overridden_by is None:
-                raise FieldError(f"{self.describe(handles[0])}: {field.title} is computed and cannot be set.")
-            field = table.fields[field.overridden_by]
-        checked = [field.check(v, self.describe(h)) for h, v in zip(handles, values, strict=True)]
+        rows = np.array([self.row(handle) for handle in handles], dtype=np.intp)
+        first = self.describe(handles[0])
+        field = self._settable(table, field_name, first)
+        column = self._checked(field, values, len(handles), lambda row: self.describe(handles[row]))
         if field.name == "name":
-            self._check_names(table, handles, checked)
-        column = field.allocate(len(handles))
-        for row, value in enumerate(checked):
-            column[row] = field.stored(value)
-        with self.transaction(f"{field.title} of {self.describe(handles[0])}"):
+            self._check_names(table, column.tolist(), instead_of=table._columns["name"][rows].tolist())
+        if same(table.current(field.name)[rows], column):
+            return
+        with self.transaction(f"{field.title} of {first}"):
             self.execute(Assign(table.name, field.name, tuple(h.entity for h in handles), column))
-            for handle in handles:
-                handle.after_assigning(field)
+            table.kind.after_change(table, rows, {field.name})
 
-    def _check_names(self, table: Table[Any], handles: Sequence[Handle], names: Sequence[str]) -> None:
-        for handle, name in zip(handles, names, strict=True):
+    def _settable(self, table: Table[Any], name: str, where: str) -> Field[Any]:
+        """The Field that takes what is assigned to a Field. Raises FieldError."""
+        if name not in table.fields:
+            raise FieldError(self.missing(f"Fields of {table.name}", name, table.fields))
+        field = table.fields[name]
+        if field.role is not Role.DERIVED:
+            return field
+        if field.overridden_by is None:
+            raise FieldError(f"{where}: {field.title} is computed and cannot be set.")
+        return table.fields[field.overridden_by]
+
+    def _checked(self, field: Field[Any], values: Any, count: int, where: Callable[[int], str]) -> Column:
+        """Values as a column that the Field can take. Raises FieldError."""
+        column = field.check_column(values, count, where)
+        if field.references is not None:
+            there = self.tables[field.references].count
+            for row, *_ in np.argwhere(column >= there)[:1].tolist():
+                raise FieldError(
+                    f"{where(row)}: {field.title} is row {int(column[row].max())} of the {field.references},"
+                    f" but there are only {there}; rows count from 0."
+                )
+        return column
+
+    def _check_names(self, table: Table[Any], names: Sequence[str], instead_of: Sequence[str] = ()) -> None:
+        """Raise FieldError unless the names are not empty and, after a renaming, unique in the table."""
+        noun = table.kind.noun
+        given, free = set[str](), set(instead_of)
+        for name in names:
             if not name.strip():
-                raise FieldError(f"{self.describe(handle)}: its name is empty; type at least one character.")
-            if name in table and table[name] is not handle or names.count(name) > 1:
-                raise FieldError(f"There is a {table.kind.noun} '{name}' already; choose another name.")
+                raise FieldError(f"The name of a {noun} is empty; type at least one character.")
+            if name in given or (name in table and name not in free):
+                raise FieldError(f"There is a {noun} '{name}' already; choose another name.")
+            given.add(name)
 
     def describe(self, handle: Handle) -> str:
         """A handle as a person calls it, such as "rod AB"."""
         table = self.tables[handle.table]
         if "name" not in table.fields:
             return handle.noun
-        name = str(table._columns["name"][self.row(handle)])
-        return name if name.startswith(handle.noun + " ") else f"{handle.noun} {name}"
+        return _called(handle.noun, table._columns["name"][self.row(handle)])
 
     @staticmethod
     def missing(table: str, name: str, present: Iterable[str]) -> str:
@@ -191,50 +238,81 @@ class World:
     def derive(self, derivation: Derivation) -> None:
         """Register how columns are derived; the newest registration of a target counts."""
         for target in derivation.targets:
+            replaced = self._derivations.get(target)
+            if replaced is not None and not set(replaced.targets) <= set(derivation.targets):
+                raise ValueError(
+                    f"{target} is derived together with {', '.join(replaced.targets)}; derive all of them."
+                )
+        for target in derivation.targets:
             self._derivations[target] = derivation
-        self._derived_at[derivation] = -1
+        self._derived_at[derivation] = self._looked_at[derivation] = -1
 
     def refresh(self, name: str) -> None:
         """Bring a derived column, named "table.field", up to date."""
         derivation = self._derivations.get(name)
-        if derivation is None:
+        if derivation is None or self._looked_at[derivation] == self.revision:
             return
-        for source in derivation.sources:
-            self.refresh(source)
         newest = max(self.version(source) for source in derivation.sources)
-        if newest > self._derived_at[derivation]:
-            self._derived_at[derivation] = self.revision
+        new_rows = max(self.tables[target.split(".")[0]].structure for target in derivation.targets)
+        if max(newest, new_rows) > self._derived_at[derivation]:
+            now = self.revision
             derivation.compute(self)
+            self._derived_at[derivation] = now
+        self._looked_at[derivation] = self.revision
 
     # --- commands ------------------------------------------------------------------------------------
 
     def create(self, kind: type[H], count: int = 1, **columns: Any) -> list[H]:
-        """Create `count` entities, their columns checked as a whole; returns their handles in row order."""
+        """Create `count` entities of a kind; returns their handles in row order. Raises FieldError.
+
+        columns: by Field, a list or array with one value for each, or one for all; others take their default.
+        """
         table = self.tables[kind.table]
+        if kind.single:
+            raise ValueError(f"There is exactly one {kind.noun}; change the one there is.")
+        if count == 0:
+            return []
         checked: dict[str, Column] = {}
+
+        def where(row: int) -> str:
+            return _called(kind.noun, checked["name"][row]) if "name" in checked else kind.noun
+
+        for field in table.fields.values():
+            if field.references is not None and field.name not in columns:
+                raise FieldError(f"A new {kind.noun} needs '{field.name}': rows of the {field.references}.")
+        if "name" in table.fields:
+            names = columns.pop("name", None)
+            columns = {"name": table.free_names(count) if names is None else names, **columns}
         for name, values in columns.items():
-            checked[name] = table.fields[name].check_column(values, count, kind.noun)
-        if "name" in table.fields and "name" not in checked:
-            checked["name"] = Field._object_column(self.free_names(kind, count), count)
-        self.execute(Create(kind, count, checked))
+            field = self._settable(table, name, kind.noun)
+            checked[field.name] = self._checked(field, values, count, where)
+        if "name" in checked:
+            self._check_names(table, checked["name"].tolist())
+        with self.transaction(f"new {kind.noun}"):
+            self.execute(Create(kind, count, checked))
+            kind.after_change(table, np.arange(table.count - count, table.count), table.fields)
         handles: list[H] = table.handles[table.count - count :]
         return handles
 
-    def free_names(self, kind: type[Handle], count: int) -> list[str]:
-        """The `count` smallest unused names of the form "rod n"."""
-        table = self.tables[kind.table]
-        unused = (f"{kind.noun} {n}" for n in itertools.count(1))
-        return list(itertools.islice((name for name in unused if name not in table), count))
-
     def delete(self, handles: Iterable[Handle]) -> None:
         """Delete entities and whatever refers to them."""
-        entities = tuple(handle.entity for handle in handles if handle.exists)
-        if entities:
-            self.execute(Delete(entities))
+        doomed = [handle for handle in handles if handle.exists]
+        for handle in doomed:
+            if handle.single:
+                raise ValueError(f"There is exactly one {handle.noun}; it cannot be deleted.")
+        if doomed:
+            self.execute(Delete(tuple(handle.entity for handle in doomed)))
 
     def execute(self, command: Command) -> None:
-        """Apply a command and report its inverse to the log."""
-        inverse = self.apply(command)
+        """Apply a command and report its inverse to the log; of a group that raises, nothing happened."""
+        if isinstance(command, Group):
+            with self.transaction(command.title):
+                for part in command.commands:
+                    self.execute(part)
+        else:
+            self._report(self.apply(command))
+
+    def _report(self, inverse: Command) -> None:
         if self._open is not None:
             self._open.append(inverse)
         elif self.on_command is not None:
@@ -243,23 +321,22 @@ class World:
     @contextmanager
     def transaction(self, title: str) -> Iterator[None]:
         """Make all commands inside one entry of the log; if one raises, none of them happened."""
-        if self._open is not None:
-            yield
-            return
-        self._open = []
+        outer, self._open = self._open, []
         try:
             yield
         except BaseException:
             for inverse in reversed(self._open):
                 self.apply(inverse)
-            self._open = None
+            self._open = outer
             raise
-        inverses, self._open = tuple(reversed(self._open)), None
-        if inverses and self.on_command is not None:
-            self.on_command(Group(inverses, title))
+        inverses, self._open = tuple(reversed(self._open)), outer
+        if inverses:
+            self._report(Group(inverses, title))
 
     def apply(self, command: Command) -> Command:
         """Apply a command without telling the log; returns its exact inverse."""
+        if self.before_change is not None:
+            self.before_change()
         match command:
             case Create():
                 return self._create(command)
@@ -274,9 +351,8 @@ class World:
 
     def _create(self, command: Create) -> Command:
         self.activate()
-        kind = command.kind
-        table = self.tables[kind.table]
-        handles = [kind(self, 0) for _ in range(command.count)]
+        table = self.tables[command.kind.table]
+        handles = [command.kind(self, 0) for _ in range(command.count)]
         for handle in handles:
             handle.entity = esper.create_entity(handle)
         entities = np.array([handle.entity for handle in handles], dtype=np.int64)
@@ -308,7 +384,7 @@ class World:
             table = self.tables[piece.table]
             columns = dict(piece.columns)
             for field in table.fields.values():
-                if field.references is not None:
+                if field.references is not None and field.name in columns:
                     columns[field.name] = self.row_of_entity[columns[field.name]]
             ids = np.array([handle.entity for handle in piece.handles], dtype=np.int64)
             table.insert(piece.rows, piece.handles, ids, columns)
@@ -321,12 +397,13 @@ class World:
     def _assign(self, command: Assign) -> Command:
         table = self.tables[command.table]
         rows = self.row_of_entity[np.array(command.entities, dtype=np.int64)]
+        if (rows < 0).any():
+            raise LookupError(f"A {table.kind.noun} to be changed was deleted; undo brings it back.")
         column = table.writable(command.field)
-        old = column[rows].copy()
+        old = column[rows]
         column[rows] = command.values
         if command.field == "name":
-            for row, before, after in zip(rows.tolist(), old, command.values, strict=True):
-                table.renamed(table.handles[row], str(before), str(after))
+            table.renamed(rows, old)
         return Assign(command.table, command.field, command.entities, old)
 
     # --- tags: rare marks that esper answers for -----------------------------------------------------
@@ -376,8 +453,10 @@ class World:
             marked = wanted[table.entities]
             for field in table.fields.values():
                 if field.references in doomed:
-                    hit = np.isin(table.current(field.name)[: table.count], doomed[field.references])
-                    marked = marked | (hit.any(axis=1) if field.shape else hit)
+                    gone = np.zeros(self.tables[field.references].count, dtype=bool)
+                    gone[doomed[field.references]] = True
+                    hit = gone[table.column(field.name)]
+                    marked |= hit.any(axis=1) if field.shape else hit
             if marked.any():
                 doomed[table.name] = np.flatnonzero(marked)
         return doomed
@@ -391,18 +470,13 @@ class World:
 
     def _remap_references(self, table: Table[Any], rows: NDArray[np.intp], *, inserted: bool) -> None:
         """After rows of a table went or came, let those that refer to it follow."""
-        moved = np.ones(table.count + (0 if inserted else len(rows)), dtype=bool)
-        moved[rows] = False
-        old_of_new = np.flatnonzero(moved)
+        kept = np.ones(table.count + (0 if inserted else len(rows)), dtype=bool)
+        kept[rows] = False
+        new_row = np.flatnonzero(kept) if inserted else np.cumsum(kept) - 1
         for other, field in self._referring(table.name):
-            if other.count == 0:
-                continue
-            column = other.writable(field.name)
-            if inserted:
-                column[...] = old_of_new[column]
-            else:
-                new_of_old = np.cumsum(moved) - 1
-                column[...] = new_of_old[column]
+            if other.count:
+                column = other.writable(field.name)
+                column[...] = new_row[column]
 
     def place(self, table: Table[Any], first: int) -> None:
         """Note in which rows the entities of a table are, from row `first` on."""
@@ -412,6 +486,10 @@ class World:
             grown[: len(self.row_of_entity)] = self.row_of_entity
             self.row_of_entity = grown
         self.row_of_entity[entities] = np.arange(first, table.count)
+
+
+def _called(noun: str, name: Any) -> str:
+    return str(name) if str(name).startswith(noun + " ") else f"{noun} {name}"
 
 
 def _delete_context(context: str) -> None:

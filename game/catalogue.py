@@ -1,0 +1,42 @@
+"""All systems that Pinjoint brings along, in order of registration."""
+
+from __future__ import annotations
+
+from components.settings import INTEGRATORS
+from systems.base import Driver, StepSystem
+from systems.loads.system import varying_loads
+from systems.physics.system import (
+    AxialDamping,
+    Drag,
+    Elasticity,
+    ElasticityAfterYielding,
+    ThesisTaylor,
+    VelocityVerlet,
+)
+from systems.plasticity.system import Strength, Yielding
+
+DRIVERS: dict[str, Driver] = {}
+
+
+def register_driver(driver: Driver) -> None:
+    """Make an integrator known to models, the command line and the properties."""
+    key = driver.name.rpartition(".")[2]
+    DRIVERS[key] = driver
+    INTEGRATORS[key] = (driver.__doc__ or "").strip().partition("\n")[0]
+
+
+for _driver in (VelocityVerlet(), ThesisTaylor()):
+    register_driver(_driver)
+
+
+def step_systems() -> list[StepSystem]:
+    """Laws and commits."""
+    return [
+        Elasticity(),
+        ElasticityAfterYielding(),
+        AxialDamping(),
+        Drag(),
+        Strength(),
+        Yielding(),
+        *varying_loads(),
+    ]

@@ -1,0 +1,407 @@
+"""Documents: a Model as the plain data that a model file holds, and back, every number bit for bit."""
+
+from __future__ import annotations
+
+import difflib
+import itertools
+import math
+from collections.abc import Callable, Mapping, Sequence, Set
+from dataclasses import dataclass
+from types import MappingProxyType, NoneType
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.clock import Clock
+from components.commands import Assign
+from components.environment import Environment
+from components.field import Column, Field, FieldError, Role
+from components.grid import Grid
+from components.load import Load
+from components.model import Model
+from components.particle import Particle, check_velocities
+from components.rod import Rod
+from components.settings import Settings
+from components.table import fields_of
+from components.world import Handle
+
+FORMAT = "pinjoint model"
+VERSION = 1
+
+Migration = Callable[[dict[str, Any]], dict[str, Any]]
+MIGRATIONS: dict[int, Migration] = {}  # version → what turns its documents into those of the next version
+
+SECTIONS: Mapping[str, type[Handle]] = MappingProxyType(
+    {
+        "environment": Environment,
+        "settings": Settings,
+        "particles": Particle,
+        "rods": Rod,
+        "loads": Load,
+        "grids": Grid,
+        "state": Clock,
+    }
+)
+REQUIRED: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {"particles": ("name", "position"), "rods": ("name", "between"), "loads": ("on",)}
+)
+FOREIGN = "components"  # where an element keeps what belongs to mods
+
+_HEADER = ("format", "version", "title", "description")
+_SAVED = (Role.DOCUMENT, Role.STATE)
+
+Columns = Mapping[str, Column]
+
+
+class ModelError(ValueError):
+    """A model that cannot be read or written; the message says where, what is wrong and the remedy."""
+
+
+def parse(document: Mapping[str, Any], source: str = "") -> Model:
+    """The model that a document describes; `source` is named in messages. Raises ModelError."""
+    try:
+        return _parsed(document)
+    except RecursionError:
+        raise ModelError(f"{source or 'The document'} is nested too deeply to be a model.") from None
+    except ModelError as error:
+        raise ModelError(f"{source}: {error}" if source else str(error)) from None
+
+
+def _fail(path: str, problem: str) -> NoReturn:
+    raise ModelError(f"{path}: {problem}")
+
+
+# --- from a document to a model ----------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Section:
+    """The elements of one kind in a document, and what to call them in messages."""
+
+    path: str
+    kind: type[Handle]
+    elements: Sequence[Mapping[str, Any]]
+    keys: Set[Any]  # that any element has
+
+    def where(self, row: int, key: str = "") -> str:
+        """The path of an element or of one of its keys, and the element's name if it has one."""
+        element = self.elements[row]
+        path = self.path if self.kind.single else f"{self.path}[{row}]"
+        name = element.get("name")
+        of = f" ({self.kind.noun} {name})" if isinstance(name, str) else ""
+        return f"{path}{'.' if key else ''}{key}{of}"
+
+
+def _parsed(document: Any) -> Model:
+    document = _migrated(document)
+    _refuse_unknown(document, (*_HEADER, *SECTIONS), "$")
+    model = Model()
+    model.title = _text(document, "title")
+    model.description = _text(document, "description")
+    for name, kind in SECTIONS.items():
+        if name in document:
+            _read(model, _section(f"$.{name}", kind, document[name]))
+    return model
+
+
+def _migrated(document: Any) -> Mapping[str, Any]:
+    """The document in the present version of the format."""
+    if not isinstance(document, Mapping):
+        _fail("$", f"it must be an object with the key 'format', not {_kind_of(document)}.")
+    if document.get("format") != FORMAT:
+        _fail("$.format", f'it is {document.get("format")!r}; a model file has "format": "{FORMAT}".')
+    version = document.get("version")
+    if isinstance(version, bool) or not isinstance(version, int):
+        _fail("$.version", f'it is {version!r}; it must be a whole number, now "version": {VERSION}.')
+    if version > VERSION:
+        _fail("$.version", f"it is {version}, but this program reads up to {VERSION}; update Pinjoint.")
+    migrated = dict(document)
+    for old in range(version, VERSION):
+        if old not in MIGRATIONS:
+            _fail("$.version", f"there never was a version {version}; the present one is {VERSION}.")
+        migrated = MIGRATIONS[old](migrated)
+    return migrated
+
+
+def _text(document: Mapping[str, Any], key: str) -> str:
+    text = document.get(key, "")
+    if not isinstance(text, str):
+        _fail(f"$.{key}", f"it is {text!r}; it must be a text.")
+    return text
+
+
+def _section(path: str, kind: type[Handle], value: Any) -> _Section:
+    """The section at a path once its shape and all its keys are checked."""
+    if not kind.single and not isinstance(value, list | tuple):
+        _fail(path, f"it must be a list, not {_kind_of(value)}.")
+    elements = [value] if kind.single else value
+    for row, element in enumerate(elements):
+        if not isinstance(element, Mapping):
+            _fail(path if kind.single else f"{path}[{row}]", f"it must be an object, not {_kind_of(element)}.")
+    section = _Section(path, kind, elements, set().union(*elements))
+    known = [*(field.key for field in _saved_fields(kind)), FOREIGN]
+    if not section.keys <= set(known):
+        for row, element in enumerate(elements):
+            _refuse_unknown(element, known, section.where(row), kind)
+    for key in REQUIRED.get(kind.table, ()):
+        for row, element in enumerate(elements):
+            if key not in element:
+                _fail(section.where(row), f"its '{key}' is missing; every {kind.noun} needs one.")
+    return section
+
+
+def _saved_fields(kind: type[Handle]) -> list[Field[Any]]:
+    return [field for field in fields_of(kind) if field.role in _SAVED]
+
+
+def _refuse_unknown(
+    element: Mapping[Any, Any], keys: Sequence[str], where: str, kind: type[Handle] | None = None
+) -> None:
+    for key in element:
+        if key in keys:
+            continue
+        if kind is not None and key in {field.key for field in fields_of(kind)}:
+            _fail(where, f"'{key}' is computed from the rest and is no part of a model file; remove it.")
+        nearest = difflib.get_close_matches(str(key), keys, n=1, cutoff=0.4)
+        remedy = f"did you mean '{nearest[0]}'?" if nearest else f"the keys are {', '.join(keys)}."
+        _fail(where, f"there is no key '{key}' here; {remedy}")
+
+
+def _kind_of(value: Any) -> str:
+    names = {dict: "an object", list: "a list", str: "a text", bool: "true or false", NoneType: "null"}
+    return names.get(type(value), "a number" if isinstance(value, int | float) else repr(value))
+
+
+def _read(model: Model, section: _Section) -> None:
+    """Put the elements of a section into the model."""
+    kind = section.kind
+    columns = {field.name: _column(model, section, field) for field in _saved_fields(kind)}
+    if kind in _CHECKS:
+        _CHECKS[kind](model, section, columns)
+    handles: Sequence[Handle]
+    if kind.single:
+        handles = [model.tables[kind.table][0]]
+        for name, column in columns.items():
+            model.apply(Assign(kind.table, name, (handles[0].entity,), column))
+    else:
+        handles = model.create(kind, len(section.elements), **columns)
+    if FOREIGN in section.keys:
+        _keep_foreign(model, section, handles)
+
+
+# --- columns -----------------------------------------------------------------------------------------
+
+
+def _column(model: Model, section: _Section, field: Field[Any]) -> Column:
+    """The checked values of one field for all elements of a section, its default where none is given."""
+    if field.name == "name":
+        return _names(section, field)
+    if field.key not in section.keys:
+        return field.allocate(len(section.elements))
+    if field.references is not None:
+        return _rows_by_name(model, section, field)
+    default = field.loaded(field.allocate(1)[0])
+    values = [element.get(field.key, default) for element in section.elements]
+
+    def where(row: int) -> str:
+        return section.where(row, field.key)
+
+    try:
+        for row, value in enumerate(values if field.shape else ()):
+            if not isinstance(value, list | tuple):  # or a column would take it for one vector for all
+                field.check(value, where(row))
+        return field.check_column(values, len(values), where)
+    except FieldError as error:
+        raise ModelError(str(error)) from None
+
+
+def _names(section: _Section, field: Field[Any]) -> Column:
+    """Given names, and the smallest free "load n" where none is given."""
+    noun = section.kind.noun
+    given = {name for element in section.elements if isinstance(name := element.get("name"), str)}
+    free = (name for n in itertools.count(1) if (name := f"{noun} {n}") not in given)
+    column = field.allocate(len(section.elements))
+    row_of: dict[str, int] = {}
+    for row, element in enumerate(section.elements):
+        name = element["name"] if "name" in element else next(free)
+        if not isinstance(name, str) or not name.strip():
+            _fail(section.where(row, "name"), f"it is {name!r}; it must be a text that is not empty.")
+        if name in row_of:
+            first = section.where(row_of[name])
+            _fail(section.where(row, "name"), f"{first} has this name already; choose another.")
+        row_of[name] = row
+        column[row] = name
+    return column
+
+
+def _rows_by_name(model: Model, section: _Section, field: Field[Any]) -> Column:
+    """References, which documents make by name, as rows of the table that they point into."""
+    assert field.references is not None
+    target = model.tables[field.references]
+    row_of = {name: row for row, name in enumerate(target.names)}
+    column = field.allocate(len(section.elements))
+    for row, element in enumerate(section.elements):
+        value = element[field.key]
+        names = value if field.shape else [value]
+        if not _are_names(names, field.shape):
+            form = 'the names of two particles, ["A", "B"]' if field.shape else "the name of a particle"
+            _fail(section.where(row, field.key), f"it is {value!r}; it must be {form}.")
+        for name in names:
+            if name not in row_of:
+                _fail(section.where(row, field.key), model.missing(target.name, name, row_of))
+        column[row] = [row_of[name] for name in names] if field.shape else row_of[value]
+    return column
+
+
+def _are_names(names: Any, shape: tuple[int, ...]) -> bool:
+    count = shape[0] if shape else 1
+    return isinstance(names, list | tuple) and len(names) == count and all(isinstance(n, str) for n in names)
+
+
+# --- what holds between several facts ------------------------------------------------------------------
+
+
+# The data layer sees to these rules too; here they are checked beforehand to tell the path.
+
+
+def _check_particles(model: Model, section: _Section, columns: Columns) -> None:
+    fixed, velocity = columns["fixed"], columns["velocity"]
+    for row in np.flatnonzero((fixed & (velocity != 0.0)).any(axis=1))[:1].tolist():
+        try:
+            check_velocities(section.where(row, "velocity"), fixed[row].tolist(), velocity[row].tolist())
+        except FieldError as error:
+            raise ModelError(str(error)) from None
+
+
+def _check_rods(model: Model, section: _Section, columns: Columns) -> None:
+    ends = np.sort(columns["between"].astype(np.int64), axis=1)
+    for row in np.flatnonzero(ends[:, 0] == ends[:, 1])[:1].tolist():
+        problem = f"both ends are '{model.particles.names[ends[row, 0]]}'; a rod needs two different particles."
+        _fail(section.where(row, "between"), problem)
+    pairs = ends[:, 0] * model.particles.count + ends[:, 1]
+    _, first, pair = np.unique(pairs, return_index=True, return_inverse=True)
+    for row in np.flatnonzero(first[pair] != np.arange(len(ends)))[:1].tolist():
+        other = section.where(int(first[pair[row]]))
+        _fail(section.where(row, "between"), f"{other} joins these particles already; remove one of the two.")
+    _check_lengths(model, section, columns)
+
+
+def _check_lengths(model: Model, section: _Section, columns: Columns) -> None:
+    position = model.particles.position[columns["between"]]
+    with np.errstate(over="ignore"):
+        lengths = np.hypot(*(position[:, 1] - position[:, 0]).T)
+    usable = ((lengths > 0.0) | ~np.isnan(columns["prescribed_rest_length"])) & (lengths < math.inf)
+    for row in np.flatnonzero(~usable)[:1].tolist():
+        remedy = "give it a 'rest_length' or place them apart" if lengths[row] == 0.0 else "place them nearer"
+        _fail(section.where(row), f"the distance between its ends is {lengths[row]:g} m; {remedy}.")
+
+
+def _check_grids(model: Model, section: _Section, columns: Columns) -> None:
+    shown = np.flatnonzero(columns["shown"]).tolist()
+    if len(shown) > 1:
+        problem = f'{section.where(shown[0])} is shown already; give all but one grid "shown": false.'
+        _fail(section.where(shown[1], "shown"), problem)
+
+
+_CHECKS: Mapping[type[Handle], Callable[[Model, _Section, Columns], None]] = MappingProxyType(
+    {Particle: _check_particles, Rod: _check_rods, Grid: _check_grids}
+)
+
+
+# --- what belongs to mods ------------------------------------------------------------------------------
+
+
+def _keep_foreign(model: Model, section: _Section, handles: Sequence[Handle]) -> None:
+    for row, (element, handle) in enumerate(zip(section.elements, handles, strict=True)):
+        if FOREIGN not in element:
+            continue
+        where, components = section.where(row, FOREIGN), element[FOREIGN]
+        if not isinstance(components, Mapping):
+            _fail(where, f"it must be an object, not {_kind_of(components)}.")
+        for name, values in components.items():
+            if not isinstance(name, str) or "." not in name or not isinstance(values, Mapping):
+                _fail(where, f'{name!r} must be like "mod.Component": {{…}}.')
+        model.foreign[handle.entity] = _copied(components, where)
+
+
+def _copied(value: Any, where: str) -> Any:
+    """A copy of a value that JSON can hold."""
+    if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):
+        return {key: _copied(item, where) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_copied(item, where) for item in value]
+    if value is None or isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)):
+        return value
+    _fail(where, f"{value!r} cannot be kept in a model file.")
+
+
+# --- from a model to a document ------------------------------------------------------------------------
+
+
+def document(model: Model) -> dict[str, Any]:
+    """The document that `parse` turns into this model again, bit for bit. Raises ModelError."""
+    made: dict[str, Any] = {"format": FORMAT, "version": VERSION}
+    made |= {key: text for key in ("title", "description") if (text := getattr(model, key))}
+    for name, kind in SECTIONS.items():
+        elements = _elements(model, kind)
+        if not kind.single:
+            made |= {name: elements} if elements else {}
+        elif elements[0] or kind is not Clock:
+            made[name] = elements[0]
+    return made
+
+
+def _elements(model: Model, kind: type[Handle]) -> list[dict[str, Any]]:
+    """One object per entity, without the facts that are as by default (settings and the like: with all)."""
+    table = model.tables[kind.table]
+    always = {"name", *REQUIRED.get(kind.table, ())}
+    elements: list[dict[str, Any]] = [{} for _ in range(table.count)]
+    for field in _saved_fields(kind):
+        column = table.column(field.name)
+        _refuse_non_finite(model, kind, field, column)
+        if field.key in always or (kind.single and field.role is Role.DOCUMENT):
+            rows = list(range(table.count))
+        else:
+            rows = np.flatnonzero(_differs_from_default(field, column)).tolist()
+            column = column[rows]
+        for row, value in zip(rows, _json_values(model, field, column), strict=True):
+            elements[row][field.key] = value
+    for handle, element in zip(table.handles, elements, strict=True):
+        if handle.entity in model.foreign:
+            element[FOREIGN] = _copied(model.foreign[handle.entity], model.describe(handle))
+    return elements
+
+
+def _differs_from_default(field: Field[Any], column: Column) -> NDArray[np.bool_]:
+    """Which rows do not hold the default's very bits, so that -0.0 is not taken for 0.0; shape (n,)."""
+    if column.dtype == np.dtype(object):
+        return np.array([value != field.default for value in column], dtype=bool)
+    default = field.allocate(1).view(np.uint8).ravel()
+    bits = column.view(np.uint8).reshape(len(column), len(default))
+    differs: NDArray[np.bool_] = (bits != default).any(axis=1)
+    return differs
+
+
+def _json_values(model: Model, field: Field[Any], column: Column) -> list[Any]:
+    if field.references is not None:
+        names = np.array(model.tables[field.references].names, dtype=object)
+        values: list[Any] = names[column].tolist()
+    elif column.dtype == np.dtype(object):
+        values = [_copied(value, field.title) for value in column]
+    elif field.nullable:
+        values = [None if value != value else value for value in column.tolist()]
+    else:
+        values = column.tolist()
+    return values
+
+
+def _refuse_non_finite(model: Model, kind: type[Handle], field: Field[Any], column: Column) -> None:
+    if field.dtype is not float:
+        return
+    finite = np.isfinite(column) | (np.isnan(column) if field.nullable else False)
+    for row in np.argwhere(~finite)[:1, 0].tolist():
+        raise ModelError(
+            f"{model.describe(model.tables[kind.table][row])}: {field.title} is {column[row]}, which no file"
+            " can hold; rewind or undo to a state before it."
+        )

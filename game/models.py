@@ -1,0 +1,167 @@
+"""Models in files: found by path or name, mistakes explained, written as a whole or not at all."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import os
+import re
+import shutil
+import uuid
+from collections.abc import Iterable, Mapping
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any, NoReturn
+
+import msgspec
+
+from components.model import Model
+from game.document import ModelError, document, parse
+
+__all__ = ["ModelError", "bundled", "document", "laid_out", "load", "parse", "save"]
+
+
+def bundled() -> list[str]:
+    """Names of the models that come with the program, in alphabetical order."""
+    names = (entry.name for entry in _bundled_files())
+    return sorted(name.removesuffix(".json") for name in names if name.endswith(".json"))
+
+
+def _bundled_files() -> Iterable[Traversable]:
+    return files("assets").joinpath("models").iterdir()
+
+
+# --- reading ---------------------------------------------------------------------------------------
+
+
+def load(source: str | Path | Mapping[str, Any]) -> Model:
+    """The model in a file, in the bundled model of that name, or in a document. Raises ModelError."""
+    if isinstance(source, Mapping):
+        return parse(source)
+    try:
+        raw = _found(source).read_bytes()
+    except FileNotFoundError:
+        raise _missing(source) from None
+    except (OSError, ValueError) as error:
+        problem = f"{source} cannot be read: {_reason(error)}. Check its path and permissions."
+        raise ModelError(problem) from None
+    return parse(_decoded(raw, str(source)), str(source))
+
+
+def _found(source: str | Path) -> Path | Traversable:
+    """A bundled model's name wins over a file, so that it means the same in every folder."""
+    if isinstance(source, str):
+        for entry in _bundled_files():
+            if entry.name == f"{source}.json":
+                return entry
+    return Path(source)
+
+
+def _missing(source: str | Path) -> ModelError:
+    nearest = difflib.get_close_matches(Path(source).stem, bundled(), n=1, cutoff=0.4)
+    hint = f"; did you mean '{nearest[0]}'?" if nearest else "."
+    return ModelError(
+        f"There is no file and no bundled model '{source}'{hint}"
+        " game.models.bundled() lists the bundled models."
+    )
+
+
+def _reason(error: Exception) -> str:
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)
+
+
+def _decoded(raw: bytes, source: str) -> Any:
+    """What JSON bytes say. Raises ModelError if they are not JSON or an object repeats a key."""
+    raw = raw.removeprefix(b"\xef\xbb\xbf")
+    try:
+        content = msgspec.json.decode(raw)
+        # The decoder keeps the last of repeated keys only, and with the others some texts are gone.
+        if _count_texts(raw) != _count_texts(msgspec.json.encode(content)):
+            _refuse_repeated_keys(_decoded_strictly(raw, source), f"{source}: $")
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        _decoded_strictly(raw, source)  # knows the line
+        raise _not_json(source, error) from None
+    except RecursionError:
+        raise ModelError(f"{source} is nested too deeply to be a model.") from None
+    return content
+
+
+def _count_texts(valid: bytes) -> int:
+    """How many texts, keys included, valid JSON holds: without its escapes, quotes only delimit them."""
+    return re.sub(rb"\\.", b"", valid).count(b'"') // 2
+
+
+class _Pairs(list[tuple[str, Any]]):
+    """An object of a JSON text, repeated keys included."""
+
+
+def _decoded_strictly(raw: bytes, source: str) -> Any:
+    def refuse(constant: str) -> NoReturn:
+        raise ModelError(f"{source} contains {constant}; every number must be finite.")
+
+    try:
+        return json.loads(raw, object_pairs_hook=_Pairs, parse_constant=refuse)
+    except (json.JSONDecodeError, UnicodeDecodeError) as error:
+        raise _not_json(source, error) from None
+
+
+def _not_json(source: str, error: Exception) -> ModelError:
+    return ModelError(f"{source} is not a JSON file ({error}); correct it or save the model anew.")
+
+
+def _refuse_repeated_keys(value: Any, path: str) -> None:
+    if isinstance(value, _Pairs):
+        keys: set[str] = set()
+        for key, item in value:
+            if key in keys:
+                raise ModelError(f"{path}.{key}: this key stands twice in one object; keep one of the two.")
+            keys.add(key)
+            _refuse_repeated_keys(item, f"{path}.{key}")
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            _refuse_repeated_keys(item, f"{path}[{index}]")
+
+
+# --- writing ---------------------------------------------------------------------------------------
+
+
+def save(model: Model, path: str | Path) -> None:
+    """Write a model to a file, one element a line, as a whole or not at all. Raises ModelError."""
+    content = document(model)
+    try:
+        _replace(Path(os.path.realpath(path)), laid_out(content, depth=2).encode() + b"\n")
+    except (OSError, ValueError) as error:
+        raise ModelError(
+            f"{path} was not saved: {_reason(error)}. What it held is unchanged; choose another folder"
+            " or name, or remove the cause."
+        ) from None
+
+
+def _replace(path: Path, content: bytes) -> None:
+    """Give a file new content; at every moment it has either the old or the new one."""
+    temporary = path.with_name(f".{uuid.uuid4().hex}.tmp")
+    try:
+        with temporary.open("xb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        if path.exists():
+            shutil.copymode(path, temporary)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def laid_out(value: Any, depth: int, indent: str = "") -> str:
+    """JSON text whose outermost `depth` levels have one entry a line, indented by 2 spaces."""
+    if depth == 0 or not isinstance(value, dict | list) or not value:
+        return msgspec.json.format(msgspec.json.encode(value), indent=0).decode()
+    inner = indent + "  "
+    if isinstance(value, dict):
+        entries = [f"{laid_out(key, 0)}: {laid_out(item, depth - 1, inner)}" for key, item in value.items()]
+        opening, closing = "{", "}"
+    else:
+        entries = [laid_out(item, depth - 1, inner) for item in value]
+        opening, closing = "[", "]"
+    return f"{opening}\n{inner}" + f",\n{inner}".join(entries) + f"\n{indent}{closing}"

@@ -1,0 +1,142 @@
+"""Step programs: laws, commits and a driver, compiled into one and bound to the columns of a model."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from components.field import Column, Role
+from components.model import Model
+from game.program_cache import compile_module
+from game.program_writer import Writer
+from systems.base import ACCOUNTS, Driver, StepSystem, StopReason
+from systems.loads.system import loads_end
+
+_AT_STRENGTH = 1e-9  # relative distance from its strength at which a rod is said to yield
+_ACCOUNT = (*ACCOUNTS, "initial_energy", "potential_reference", "force_scale", "energy_scale")
+
+
+class Program:
+    """A compiled step program, bound to the columns of one model.
+
+    measures: kinetic, fᵀM⁻¹f, elastic, potential energy (J), residual, largest force, round-off (kN) of
+        the state last observed.
+    compile_seconds: what writing and compiling it took, or loading it from the cache.
+    """
+
+    def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver) -> None:
+        started = time.perf_counter()
+        self.model = model
+        self.systems = tuple(systems)
+        self.driver = driver
+        self._writer = Writer(systems, driver)
+        self._module = compile_module(self._writer.source(), self._writer.kernels)
+        self.measures = np.zeros(7)
+        self._state_revision = -1
+        self.bind()
+        self.advance(0)
+        self.observe()
+        self.compile_seconds = time.perf_counter() - started
+
+    @property
+    def resists_motion(self) -> bool:
+        """True if something depends on velocity: dampers or drag."""
+        return self._writer.rates
+
+    def bind(self) -> None:
+        """Take hold of the model's columns; needed after every change of its document."""
+        particles, rods = self.model.particles.count, self.model.rods.count
+        extra: dict[str, Any] = {}
+        for b in self._writer.bound:
+            extra.update(b.system.arrays(self.model))
+        written = {w.replace(".", "_", 1) for b in self._writer.commits for w in b.system.writes}
+        self._columns = [
+            extra[name] if name in extra else self._column(name, name in written)
+            for name in self._writer.columns
+        ]
+        self._force, self._resisting, self._predicted = (np.zeros((particles, 2)) for _ in range(3))
+        self._direction = np.zeros((rods, 2))
+        self._power, self._gained = np.zeros(len(ACCOUNTS)), np.zeros(len(ACCOUNTS))
+        self._loads_end = loads_end(self.model)
+        self._state_revision = -1
+
+    def _column(self, name: str, written: bool) -> Any:
+        table, _, column = name.partition("_")
+        return self.model.writable(f"{table}.{column}") if written else self.model.column(f"{table}.{column}")
+
+    def advance(self, steps: int) -> tuple[int, StopReason]:
+        """Take up to `steps` fixed steps of clock.step_size; returns how many, and why it stopped."""
+        clock = self.model.clock
+        fresh = self._state_revision == self.model.newest(Role.STATE)
+        total, first = clock.steps, clock.steps - clock.origin_steps
+        account = np.array([getattr(clock, name) for name in _ACCOUNT])
+        taken, reason = self._call(
+            "advance",
+            steps,
+            fresh,
+            total,
+            first,
+            clock.origin,
+            clock.step_size,
+            self._loads_end,
+            *self._state(),
+            self._predicted,
+            self._power,
+            self._gained,
+            account,
+            self.measures,
+        )
+        for name, value in zip(_ACCOUNT, account, strict=True):
+            self.model.writable(f"clock.{name}")[0] = value
+        self.model.writable("clock.steps")[0] = total + taken
+        self.model.writable("clock.time")[0] = clock.origin + (first + taken) * clock.step_size
+        self._state_revision = self.model.newest(Role.STATE)
+        return taken, StopReason(reason)
+
+    def observe(self) -> None:
+        """Bring the derived columns of rods and particles, and the measures, up to date."""
+        model, clock = self.model, self.model.clock
+        count = model.rods.count
+        axial_force, length, strain = (
+            model.writable(f"rods.{name}") for name in ("axial_force", "length", "strain")
+        )
+        displacement, velocity = model.particles.displacement, model.particles.velocity
+        applied, force, resisting = (np.zeros_like(displacement) for _ in range(3))
+        self._call(
+            "observe",
+            clock.time,
+            clock.step_size,
+            displacement,
+            velocity,
+            applied,
+            force,
+            resisting,
+            np.zeros((count, 2)),
+            np.zeros(len(ACCOUNTS)),
+            self.measures,
+            axial_force,
+            length,
+            strain,
+        )
+        self._derive_supports_and_yielding(axial_force, applied, force + resisting)
+
+    def _derive_supports_and_yielding(self, axial_force: Column, applied: Column, net_force: Column) -> None:
+        model = self.model
+        model.writable("particles.applied_force")[...] = applied
+        model.writable("particles.reaction")[...] = np.where(model.particles.fixed, 0.0 - net_force, 0.0)
+        rods = model.rods
+        at_limit = (axial_force >= rods.tension_limit * (1.0 - _AT_STRENGTH)) | (
+            axial_force <= -rods.compression_limit * (1.0 - _AT_STRENGTH)
+        )
+        model.writable("rods.yielding")[...] = at_limit & model.settings.plasticity
+
+    def _state(self) -> tuple[Column, ...]:
+        displacement = self.model.writable("particles.displacement")
+        velocity = self.model.writable("particles.velocity")
+        return displacement, velocity, self._force, self._resisting, self._direction
+
+    def _call(self, entry: str, *arguments: Any) -> Any:
+        return getattr(self._module, entry)(*arguments, *self._columns)

@@ -1,0 +1,212 @@
+"""Results: what a run found, as data, as JSON, as a table to read and as CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
+from typing import Any
+
+import numpy as np
+
+from components.field import Field
+from components.model import Model
+from components.particle import Particle
+from components.rod import Rod
+from components.table import fields_of
+from components.world import Handle
+from game.models import laid_out
+
+ENERGIES = (
+    "kinetic",
+    "elastic",
+    "dissipated_damping",
+    "dissipated_plastic",
+    "dissipated_impact",
+    "work",
+    "imbalance",
+)
+
+State = dict[str, Any]
+Run = Mapping[str, Any]
+
+
+def _facts(kind: type[Handle], *names: str) -> tuple[Field[Any], ...]:
+    fields = {field.name: field for field in fields_of(kind)}
+    return tuple(fields[name] for name in names)
+
+
+# What is reported of every element: key in a state → its facts, under their names and in their units.
+REPORTED: Mapping[str, tuple[Field[Any], ...]] = {
+    "particles": _facts(Particle, "position", "displacement", "velocity", "reaction", "mass"),
+    "rods": _facts(Rod, "axial_force", "length", "strain", "plastic_strain", "yielding"),
+}
+_NOUNS = {"particles": Particle.noun, "rods": Rod.noun}
+_IN_TABLES = {Particle.displacement.name: ("mm", 1000.0)}  # else units as in files
+
+
+class ResultError(ValueError):
+    """A result that is not a finite number; the message names the element."""
+
+
+# --- one state -----------------------------------------------------------------------------------------
+
+
+def state(
+    model: Model,
+    energy: Mapping[str, float],
+    load_factor: float | None = None,
+    residual: float | None = None,
+) -> State:
+    """The present state of a model as plain data: SI units with kN, vectors as [x, y].
+
+    energy: J, with the keys of ENERGIES. load_factor: of statics. residual: what is left of the
+    largest force that is out of balance. `position` is the original one. Raises ResultError.
+    """
+    made = {
+        "time": model.clock.time,
+        "load_factor": load_factor,
+        "particles": _elements(model, "particles"),
+        "rods": _elements(model, "rods"),
+        "energy": {name: energy[name] for name in ENERGIES},
+        "residual": residual,
+        "collisions": model.clock.collisions,
+    }
+    for key in ("time", "load_factor", "energy", "residual"):
+        made[key] = _plain(made[key], key)
+    return made
+
+
+def _elements(model: Model, name: str) -> dict[str, dict[str, Any]]:
+    table = model.tables[name]
+    columns = []
+    for field in REPORTED[name]:
+        column = table.column(field.name)
+        for row in np.argwhere(~np.isfinite(column))[:1, 0].tolist():
+            raise ResultError(
+                f"{model.describe(table[row])}: {field.title} is {column[row]}, not a finite number;"
+                " report a state before it."
+            )
+        columns.append(column.tolist())
+    keys = [field.name for field in REPORTED[name]]
+    rows = zip(*columns, strict=True)
+    return {name: dict(zip(keys, row, strict=True)) for name, row in zip(table.names, rows, strict=True)}
+
+
+def _plain(value: Any, where: str) -> Any:
+    """A value as JSON has them, numpy's included, every number finite."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ResultError(f"{where} is {value}, not a finite number; report a state before it.")
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item, f"{where}.{key}") for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item, f"{where}[{index}]") for index, item in enumerate(value)]
+    return value
+
+
+# --- as text -------------------------------------------------------------------------------------------
+
+
+def as_json(run: Run) -> str:
+    """A run as JSON in full double precision, one element a line. Raises ResultError."""
+    return laid_out(_plain(run, "run"), depth=5) + "\n"
+
+
+def as_csv(run: Run) -> str:
+    """A run as tidy CSV: one number a line, in full double precision. Raises ResultError.
+
+    Columns: time (s), load_factor (empty in dynamics), element ("particle", "rod", "energy" or "run"),
+    name, quantity (vectors as two: "velocity_x", "velocity_y"), value (yielding: 1 or 0), unit.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["time", "load_factor", "element", "name", "quantity", "value", "unit"])
+    for made in _plain(run, "run")["states"]:
+        writer.writerows([made["time"], made["load_factor"], *row] for row in _quantities(made))
+    return text.getvalue()
+
+
+def _quantities(made: State) -> Iterator[tuple[Any, ...]]:
+    """(element, name, quantity, value, unit) of every number in a state."""
+    for group, fields in REPORTED.items():
+        for name, values in made[group].items():
+            for field in fields:
+                value = values[field.name]
+                if field.shape:
+                    for axis, part in zip("xy", value, strict=True):
+                        yield _NOUNS[group], name, f"{field.name}_{axis}", part, field.unit
+                else:
+                    yield (
+                        _NOUNS[group],
+                        name,
+                        field.name,
+                        int(value) if value is True or value is False else value,
+                        field.unit,
+                    )
+    for name, value in made["energy"].items():
+        yield "energy", "", name, value, "J"
+    for name in ("residual", "collisions"):
+        yield "run", "", name, made[name], ""
+
+
+def as_table(run: Run) -> str:
+    """A run as aligned tables to read: displacements in mm, all else in the units of files."""
+    run = _plain(run, "run")
+    lines = [f"{run['model']}: {run['status']}"]
+    lines += [run["message"]] if run["message"] else []
+    step = f" of {_shown(run['time_step'])} s" if run["time_step"] else ""
+    lines.append(f"time {_shown(run['time'])} s, {run['steps']} steps{step}, integrator {run['integrator']}")
+    lines.append(f"computed in {_shown(run['wall_seconds'])} s, compiled in {_shown(run['compile_seconds'])} s")
+    for made in run["states"]:
+        lines += ["", *_state_lines(made)]
+    return "\n".join(lines) + "\n"
+
+
+def _state_lines(made: State) -> Iterator[str]:
+    factor = made["load_factor"]
+    yield f"At time {_shown(made['time'])} s" + ("" if factor is None else f", load factor {_shown(factor)}")
+    for group in REPORTED:
+        if made[group]:
+            yield ""
+            yield from _aligned(_element_rows(group, made[group]))
+    yield ""
+    energies = [[name.replace("_", " "), _shown(value)] for name, value in made["energy"].items()]
+    yield from _aligned([["energy", "J"], *energies])
+    yield ""
+    residual = [] if made["residual"] is None else [f"residual {_shown(made['residual'])}"]
+    yield ", ".join([*residual, f"collisions {made['collisions']}"])
+
+
+def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list[list[str]]:
+    """Two rows of headings, then one row per element."""
+    titles, units, factors = [_NOUNS[group]], [""], []
+    for field in REPORTED[group]:
+        unit, factor = _IN_TABLES.get(field.name, (field.unit, 1.0))
+        for axis in (" x", " y") if field.shape else ("",):
+            titles.append(field.title + axis)
+            units.append(unit)
+            factors.append(factor)
+    rows = [titles, units]
+    for name, values in elements.items():
+        numbers = chain.from_iterable(v if isinstance(v, list) else [v] for v in values.values())
+        scaled = (v if isinstance(v, bool) else v * factor for v, factor in zip(numbers, factors, strict=True))
+        rows.append([name, *map(_shown, scaled)])
+    return rows
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value + 0.0:.7g}"  # + 0.0: no minus before a zero
+
+
+def _aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    """The rows with their first column to the left and the others to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for name, *numbers in rows:
+        cells = [name.ljust(widths[0]), *(n.rjust(w) for n, w in zip(numbers, widths[1:], strict=True))]
+        yield "  ".join(cells).rstrip()

@@ -1,0 +1,16 @@
+"""Scenes: the modes of the program, a state machine with pause as its hub."""
+
+from game.scenes.base import Scene, SceneError, Scenes
+from game.scenes.force_method import ForceMethod
+from game.scenes.load import Load
+from game.scenes.pause import Pause
+from game.scenes.properties import Properties
+from game.scenes.save import Save
+from game.scenes.simulation import Simulation
+
+__all__ = ["Scene", "SceneError", "Scenes", "all_scenes"]
+
+
+def all_scenes() -> list[Scene]:
+    """The six modes; the first is the one the program starts in."""
+    return [Pause(), Simulation(), Properties(), Save(), Load(), ForceMethod()]

@@ -1,0 +1,68 @@
+"""What a scene is, and the machine that moves between them at one point of the frame."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, ClassVar
+
+if TYPE_CHECKING:
+    from game.session import Session
+
+
+class SceneError(ValueError):
+    """A transition that does not exist; the message says from where to where, and what does."""
+
+
+class Scene:
+    """One mode. Systems say by their `scenes` in which they are active; keys are in input/bindings.py.
+
+    heading: the word shown top left in red. targets: scenes that may follow.
+    """
+
+    name: ClassVar[str]
+    heading: ClassVar[str] = ""
+    targets: ClassVar[tuple[str, ...]] = ("pause",)
+    runs: ClassVar[bool] = False
+
+    def enter(self, session: Session) -> None:
+        """Called once when the scene becomes the active one."""
+
+    def exit(self, session: Session) -> None:
+        """Called once when it stops being the active one."""
+
+    def hint(self, session: Session) -> str:
+        """The next possible step, for the status line."""
+        return ""
+
+
+class Scenes:
+    """The state machine: exactly one scene is active; a requested transition waits for `apply`."""
+
+    def __init__(self, scenes: Sequence[Scene]) -> None:
+        self._by_name = {scene.name: scene for scene in scenes}
+        self.active = scenes[0]
+        self._requested: list[str] = []
+
+    def __getitem__(self, name: str) -> Scene:
+        return self._by_name[name]
+
+    def request(self, *names: str) -> None:
+        """Ask for a transition, or a chain of them. Raises SceneError if one is not legal."""
+        here = self._by_name[self._requested[-1]] if self._requested else self.active
+        for name in names:
+            if name not in self._by_name:
+                known = ", ".join(self._by_name)
+                raise SceneError(f"There is no scene '{name}'; there are {known}.")
+            if name not in here.targets:
+                targets = ", ".join(here.targets)
+                raise SceneError(f"From {here.name} one cannot go to {name}, only to {targets}.")
+            here = self._by_name[name]
+        self._requested.extend(names)
+
+    def apply(self, session: Session) -> None:
+        """Make the requested transitions: exit, then enter."""
+        while self._requested:
+            name = self._requested.pop(0)
+            self.active.exit(session)
+            self.active = self._by_name[name]
+            self.active.enter(session)

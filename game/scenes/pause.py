@@ -1,0 +1,25 @@
+"""Pause: the hub, where a person looks, selects and edits."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from game.scenes.base import Scene
+
+if TYPE_CHECKING:
+    from game.session import Session
+
+
+class Pause(Scene):
+    """Time stands still."""
+
+    name = "pause"
+    heading = "Pause"
+    targets = ("simulation", "properties", "save", "load", "force method")
+
+    def hint(self, session: Session) -> str:
+        if session.model.particles.count == 0:
+            return "Open a model:  pinjoint isostatic     F1 shows all keys"
+        if session.selected:
+            return "I its forces     Esc deselect     F1 keys"
+        return "Space run     click select     I forces     wheel zoom     F1 keys"

@@ -1,0 +1,336 @@
+"""Simulation: one model on its way through time, by fixed steps that no frame rate can change."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import asdict, dataclass
+
+from components.field import Column, Role
+from components.model import Model
+from components.snapshot import Snapshot
+from components.world import Derivation
+from game.catalogue import DRIVERS
+from game.program import Program
+from game.program_writer import REVIEW_INTERVAL
+from game.schedule import Schedule
+from systems.base import Driver, StopReason
+from systems.loads.system import loads_end
+from systems.physics.spectrum import spectrum
+
+SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
+ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square
+SMALL = 200  # rods up to which a model is small
+FREE_STEP = 1e-3  # s, where nothing limits the step
+DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
+DEFAULT_DRIVER = "velocity_verlet"
+
+OBSERVED = (
+    "rods.axial_force",
+    "rods.length",
+    "rods.strain",
+    "rods.yielding",
+    "particles.applied_force",
+    "particles.reaction",
+)
+
+
+@dataclass(frozen=True)
+class Energy:
+    """The energy account of a run, in J: initial + work = kinetic + elastic + dissipated + imbalance."""
+
+    initial: float
+    work: float
+    kinetic: float
+    elastic: float
+    dissipated_damping: float
+    dissipated_plastic: float
+    dissipated_impact: float
+
+    @property
+    def imbalance(self) -> float:
+        """What the integration has lost (positive) or created (negative)."""
+        dissipated = self.dissipated_damping + self.dissipated_plastic + self.dissipated_impact
+        return self.initial + self.work - (self.kinetic + self.elastic + dissipated)
+
+    def as_dict(self) -> dict[str, float]:
+        """All entries by name, the imbalance included."""
+        return asdict(self) | {"imbalance": self.imbalance}
+
+
+class Simulation:
+    """Advances one model and keeps its derived columns, its energy account and its last good state.
+
+    reason: why the last advance ended; message: the same as a sentence, or "".
+    warning: what a person should know though the run goes on, or "".
+    compute_seconds, compile_seconds: spent so far in steps, and in compiling or loading programs.
+    """
+
+    def __init__(self, model: Model, schedule: Schedule) -> None:
+        self.model = model
+        self.schedule = schedule
+        self.reason = StopReason.DONE
+        self.message = ""
+        self.warning = ""
+        self.compute_seconds = 0.0
+        self.compile_seconds = 0.0
+        self.stable_step = math.inf
+        self._programs: dict[tuple[str, ...], Program] = {}
+        self._program: Program | None = None
+        self._armed = False  # the energy account and the step size fit the present document
+        self._armed_revision = -1
+        self._before_edit: Column | None = None
+        self._safe: Snapshot | None = None
+        model.before_change = self._before_change
+        model.derive(Derivation(OBSERVED, self._sources(), lambda world: self.observe()))
+        if self._started:  # a saved run: it goes on with the step size it had
+            self._review_step(edited=False)
+            self._armed = True
+
+    def _sources(self) -> tuple[str, ...]:
+        tables = ("particles", "rods", "loads", "environment", "settings", "clock")
+        return tuple(
+            f"{name}.{field.name}"
+            for name in tables
+            for field in self.model.tables[name].fields_in(Role.DOCUMENT, Role.STATE)
+        )
+
+    @property
+    def _started(self) -> bool:
+        return self.model.clock.step_size > 0.0
+
+    # --- getting ready ---------------------------------------------------------------------------
+
+    @property
+    def driver(self) -> Driver:
+        """The integrator that the settings ask for."""
+        return DRIVERS.get(self.model.settings.integrator, DRIVERS[DEFAULT_DRIVER])
+
+    @property
+    def integrator(self) -> str:
+        """Its name."""
+        return self.driver.name.rpartition(".")[2]
+
+    @property
+    def program(self) -> Program:
+        """The step program, bound to the model as it is now."""
+        if self._program is None:
+            self._bind()
+        assert self._program is not None
+        return self._program
+
+    @property
+    def armed_revision(self) -> int:
+        """Changes whenever the document that is run changed."""
+        return self._armed_revision
+
+    def forget(self) -> None:
+        """The state was replaced (undo, restart): nothing is known about how the run ended."""
+        self._before_edit = None
+        self._safe = None
+        self.reason, self.message = StopReason.DONE, ""
+
+    def _before_change(self) -> None:
+        """Before anything is edited, note the energy that the edit starts from; the program is void."""
+        if self._armed:
+            self.observe()
+            self._before_edit = self.program.measures.copy()
+            self._armed = False
+        self._program = None
+
+    def _arm(self) -> Program:
+        """Get ready to run after edits: account for them, choose the step size, note a safe state."""
+        if not self._armed:
+            self._account_for_edit()
+            self._review_step(edited=True)
+            self._armed = True
+            self._armed_revision = self.model.revision
+            self._safe = None
+            self.reason, self.message = StopReason.DONE, ""
+        if self._safe is None:
+            self._safe = Snapshot.take(self.model)
+        return self.program
+
+    def _bind(self) -> None:
+        systems = self.schedule.step_plan(self.model)
+        key = (*(system.name for system in systems), self.driver.name)
+        if key in self._programs:
+            self._programs[key].bind()
+        else:
+            self._programs[key] = Program(self.model, systems, self.driver)
+            self.compile_seconds += self._programs[key].compile_seconds
+        self._program = self._programs[key]
+
+    def _account_for_edit(self) -> None:
+        """What an edit adds to the energy counts as work; the first of a run is the initial energy."""
+        self.observe()
+        kinetic, _, elastic, potential = self.program.measures[:4]
+        model, clock = self.model, self.model.clock
+        if not self._started:
+            model.writable("clock.initial_energy")[0] = kinetic + elastic
+        elif self._before_edit is not None:
+            kinetic_before, _, elastic_before, potential_before = self._before_edit[:4]
+            work = potential_before - clock.potential_reference
+            work += kinetic + elastic - kinetic_before - elastic_before
+            model.writable("clock.work")[0] += work
+        model.writable("clock.potential_reference")[0] = potential
+        self._before_edit = None
+
+    def _review_step(self, *, edited: bool) -> None:
+        """Choose the step size: after an edit anew, in a review only if the stable step changed much."""
+        settings, clock = self.model.settings, self.model.clock
+        present = clock.step_size
+        if settings.time_step is not None and not edited and self._started:
+            return
+        found = spectrum(self.model, self.model.rods.axial_force)
+        self.stable_step = math.inf
+        if found.frequency > 0.0 or found.damping_ratio > 0.0:
+            self.stable_step = self.driver.stable_step(found.frequency, found.damping_ratio)
+        self.warning = ""
+        if settings.time_step is not None:
+            self._take_step_size(settings.time_step)
+            if settings.time_step > self.stable_step:
+                self.warning = (
+                    f"The time step {settings.time_step:.3g} s is above the largest stable one,"
+                    f" {self.stable_step:.3g} s for {self.integrator}; the run will probably diverge."
+                    " Set it to automatic or make it smaller."
+                )
+            return
+        wanted = self._automatic_step(found.frequency)
+        if edited or not 0.5 * wanted <= present <= min(1.5 * wanted, 0.95 * self.stable_step):
+            self._take_step_size(wanted)
+
+    def _automatic_step(self, frequency: float) -> float:
+        if self.stable_step == 0.0:
+            return _rounded_down(DOUBTFUL_STEP / frequency)
+        share = ACCURATE if self.model.rods.count <= SMALL else SAFETY
+        return _rounded_down(min(share * self.stable_step, FREE_STEP))
+
+    def _take_step_size(self, size: float) -> None:
+        clock = self.model.clock
+        if size != clock.step_size:
+            self.model.writable("clock.origin")[0] = clock.time
+            self.model.writable("clock.origin_steps")[0] = clock.steps
+            self.model.writable("clock.step_size")[0] = size
+
+    # --- running -----------------------------------------------------------------------------------
+
+    @property
+    def halted(self) -> bool:
+        """True if the run ended by itself, at rest or diverged, and nothing was edited since."""
+        return self._armed and self.reason in (StopReason.REST, StopReason.DIVERGED)
+
+    def advance(self, steps: int) -> int:
+        """Take up to `steps` fixed steps; returns how many. Stops at rest and before garbage."""
+        program = self._arm()
+        started = time.perf_counter()
+        taken = 0
+        while taken < steps and not self.halted:
+            done, self.reason = program.advance(steps - taken)
+            taken += done
+            if self.reason is StopReason.REST:
+                self.message = f"At rest since t = {self.model.clock.time:.6g} s."
+            elif self.reason is StopReason.DIVERGED:
+                self._explain_divergence()
+            elif self.reason is StopReason.REVIEW:
+                self._safe = Snapshot.take(self.model)
+                self._review_step(edited=False)
+        self.compute_seconds += time.perf_counter() - started
+        return taken
+
+    def run_to(self, target: float) -> None:
+        """Advance to exactly this time (s): full steps, then one short one."""
+        self._arm()
+        clock = self.model.clock
+        while not self.halted:
+            left = target - clock.time
+            if left <= 4.0 * math.ulp(target):
+                return
+            full = int(left / clock.step_size * (1.0 + 1e-12))
+            if full == 0:
+                self._short_step(target)
+            else:
+                self.advance(min(full, REVIEW_INTERVAL - clock.steps % REVIEW_INTERVAL))
+
+    def _short_step(self, target: float) -> None:
+        size, start = self.model.clock.step_size, self.model.clock.time
+        self._take_step_size(target - start)
+        self.advance(1)
+        self._take_step_size(size)
+        if not self.halted:
+            self.model.writable("clock.time")[0] = target
+            self.model.writable("clock.origin")[0] = target
+
+    def run_until_rest(self, limit: float) -> bool:
+        """Advance until at rest, at most to the time `limit` (s); True if it came to rest."""
+        self._arm()
+        clock = self.model.clock
+        while not self.halted and clock.time < limit:
+            left = int((limit - clock.time) / clock.step_size)
+            if left == 0:
+                self.run_to(limit)
+            else:
+                self.advance(min(left, REVIEW_INTERVAL))
+        if not self.halted:
+            self.message = self._why_not_at_rest(limit)
+        return self.reason is StopReason.REST
+
+    def _why_not_at_rest(self, limit: float) -> str:
+        message = f"Not at rest within {limit:g} s of simulated time."
+        if not self.program.resists_motion:
+            return f"{message} Nothing damps the motion, so it never will be; give rods damping or set a drag."
+        if loads_end(self.model) > limit:
+            return f"{message} A load still changes; raise the limit."
+        return f"{message} Raise the limit, or the damping of the rods or the drag."
+
+    def _explain_divergence(self) -> None:
+        """Go back to the last good state and say what happened and what helps."""
+        failed, size = self.model.clock.time, self.model.clock.step_size
+        assert self._safe is not None
+        self._safe.restore(self.model)
+        limit = self.stable_step
+        if size > limit:
+            remedy = (
+                f"The time step {size:.3g} s is above the largest stable one, {limit:.3g} s:"
+                " set it to automatic or make it smaller."
+            )
+        else:
+            remedy = "Make the time step smaller, or choose the integrator velocity_verlet."
+        self.message = (
+            f"The simulation diverged near t = {failed:.6g} s: energy appeared from nowhere. {remedy}"
+            f" The last good state, at t = {self.model.clock.time:.6g} s, was kept."
+        )
+
+    # --- reading ---------------------------------------------------------------------------------
+
+    def observe(self) -> None:
+        """Bring axial forces, lengths, reactions and energies up to date with the state."""
+        self.program.observe()
+
+    @property
+    def energy(self) -> Energy:
+        """The energy account now."""
+        program, clock = self._arm(), self.model.clock
+        self.observe()
+        kinetic, _, elastic, potential = program.measures[:4]
+        return Energy(
+            initial=clock.initial_energy,
+            work=clock.work + potential - clock.potential_reference,
+            kinetic=float(kinetic),
+            elastic=float(elastic),
+            dissipated_damping=clock.dissipated_damping,
+            dissipated_plastic=clock.dissipated_plastic,
+            dissipated_impact=clock.dissipated_impact,
+        )
+
+    @property
+    def residual(self) -> float:
+        """Largest unbalanced force (kN) on a free particle, dampers apart."""
+        self.observe()
+        return float(self.program.measures[4])
+
+
+def _rounded_down(size: float) -> float:
+    """To three significant digits, so that the last bits of an eigenvalue do not matter."""
+    digits = 2 - math.floor(math.log10(size))
+    return math.floor(size * 10.0**digits) / 10.0**digits

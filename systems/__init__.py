@@ -1,0 +1,1 @@
+"""BEHAVIOUR: what happens to entities, one folder per domain."""

@@ -1,0 +1,126 @@
+"""The contract that our systems and a modder's share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from enum import Enum, IntEnum
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import esper
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from components.model import Model
+
+__all__ = ["ACCOUNTS", "Driver", "Law", "Phase", "Commit", "StepSystem", "StopReason", "System"]
+
+
+class Phase(Enum):
+    """When in a frame a system runs, in this order."""
+
+    INPUT = "input"  # input devices become named actions
+    EDIT = "edit"  # what follows from actions: hovering, dragging, camera
+    STEP = "step"  # the fixed steps; step systems are compiled into one program
+    EVENTS = "events"  # what happened in the steps is told to others
+    RENDER = "render"  # pictures; reads only
+
+
+class StopReason(IntEnum):
+    """Why a step program returned."""
+
+    DONE = 0  # took all the steps it was asked for
+    REVIEW = 1  # a fixed number of steps since the step size was last reviewed
+    REST = 2  # nothing moves any more
+    DIVERGED = 3  # energy came from nowhere, or a number is not finite
+
+
+ACCOUNTS = ("work", "dissipated_damping", "dissipated_plastic", "dissipated_impact")
+
+
+class System(esper.Processor):  # type: ignore[misc,unused-ignore]
+    """Behaviour, run once in every frame of the scenes it is active in.
+
+    name: qualified, such as "physics.elasticity"; unique.
+    before, after: names of systems in the same phase that must run later, earlier.
+    reads, writes: columns ("particles.velocity") or named resources it touches. Two systems of a phase
+        that touch the same thing, one writing, must be ordered by before/after.
+    adds: columns that it adds to; additions never conflict.
+    scenes: names of the scenes it is active in; None: all.
+    """
+
+    name: ClassVar[str] = ""
+    phase: ClassVar[Phase] = Phase.EDIT
+    before: ClassVar[tuple[str, ...]] = ()
+    after: ClassVar[tuple[str, ...]] = ()
+    reads: ClassVar[tuple[str, ...]] = ()
+    writes: ClassVar[tuple[str, ...]] = ()
+    adds: ClassVar[tuple[str, ...]] = ()
+    scenes: ClassVar[tuple[str, ...] | None] = None
+
+    def needs(self, model: Model) -> bool:
+        """False if this model has nothing for the system to do; it is then left out of the plan."""
+        return True
+
+    def process(self, frame: Any) -> None:
+        """Do one frame's work. `frame` is the running session's frame."""
+        raise NotImplementedError
+
+
+class StepSystem(System):
+    """Compiled behaviour inside the fixed steps: a law, a commit or a driver.
+
+    kernel: "module:function" of a numba-compiled function, or the function itself. Its parameters are
+        bound by name: `<table>_<column>`, `time`, `dt`, an entry of `arrays`, or one of the quantities
+        that the role provides.
+    """
+
+    phase: ClassVar[Phase] = Phase.STEP
+    scenes: ClassVar[tuple[str, ...] | None] = ("simulation", "force method")
+    kernel: ClassVar[str | Callable[..., Any]] = ""
+
+    def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
+        """Further read-only arrays for the kernel, renewed whenever the document changes."""
+        return {}
+
+    def process(self, frame: Any) -> None:
+        """Step systems run inside the step program, not frame by frame."""
+
+
+class Law(StepSystem):
+    """Forces from a (trial) state; pure.
+
+    each = "rods": the kernel maps scalars of one rod to an axial force (kN). Provided are `elongation` (m),
+        `rate` (m/s, of elongation) and `axial_force`. Laws add up in order of name, those without `rate`
+        first. A law that takes `axial_force` is given the sum so far and its result replaces it.
+    each = "particles": maps one particle's values (vectors as pairs) to a force (x, y).
+    each = "loads": `factor(time, values, first)`; `arrays` gives `<name>_on`, `_force`, `_values`, `_first`.
+    account: where the energy goes that the law's force takes from the motion (particles) or dissipates.
+    """
+
+    each: ClassVar[str] = "rods"
+    account: ClassVar[str] = "work"
+
+
+class Commit(StepSystem):
+    """History of one rod, brought up to date once per accepted step.
+
+    The kernel maps scalars of one rod (`elongation` provided) to (the new value of the one column in
+    `writes`, the energy dissipated in kN·m).
+    """
+
+    account: ClassVar[str] = "dissipated_plastic"
+
+
+class Driver(StepSystem):
+    """Advances time: an integrator. Its kernel is *source*: see systems/physics/integrators.py.
+
+    stable_step: the largest stable step (s) for the highest angular frequency ω (rad/s) and damping
+        ratio ζ there; infinite if unconditionally stable.
+    """
+
+    order: ClassVar[int] = 0
+
+    @staticmethod
+    def stable_step(frequency: float, damping_ratio: float) -> float:
+        """Largest stable step (s) for the highest angular frequency and the damping ratio there."""
+        raise NotImplementedError

@@ -1,0 +1,64 @@
+"""Loads that change in time: one law per kind of history that a model uses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.load import CONSTANT, HISTORIES, HistoryKind
+from systems.base import Law
+
+if TYPE_CHECKING:
+    from components.model import Model
+
+
+class VaryingLoads(Law):
+    """Loads whose history is of one kind; constant loads are part of the constant force."""
+
+    each = "loads"
+    reads = ("loads.on", "loads.force", "loads.history")
+    adds = ("particles.force",)
+
+    def __init__(self, kind: HistoryKind) -> None:
+        self.kind = kind
+        self.name = f"loads.{kind.name}"  # type: ignore[misc]
+        self.kernel = kind.factor  # type: ignore[misc]
+
+    def _rows(self, model: Model) -> list[int]:
+        histories = model.loads.history
+        return [row for row, history in enumerate(histories) if history["kind"] == self.kind.name]
+
+    def needs(self, model: Model) -> bool:
+        return bool(self._rows(model))
+
+    def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
+        """Particles, forces and flattened parameters of these loads."""
+        rows = self._rows(model)
+        values: list[float] = []
+        first: list[int] = []
+        for row in rows:
+            first.append(len(values))
+            for name in self.kind.parameters:
+                parameter = model.loads.history[row][name]
+                values.extend(parameter if isinstance(parameter, tuple) else (parameter,))
+        prefix = self.name.replace(".", "_")
+        return {
+            f"{prefix}_on": np.ascontiguousarray(model.loads.on[rows]),
+            f"{prefix}_force": np.ascontiguousarray(model.loads.force[rows]),
+            f"{prefix}_values": np.array(values, dtype=np.float64),
+            f"{prefix}_first": np.array(first, dtype=np.uint32),
+        }
+
+
+def varying_loads() -> list[VaryingLoads]:
+    """One law for every registered history that changes in time."""
+    return [VaryingLoads(kind) for kind in HISTORIES.values() if kind.name != CONSTANT["kind"]]
+
+
+def loads_end(model: Model) -> float:
+    """The time (s) after which no load changes any more; −∞ without varying loads."""
+    ends = [HISTORIES[history["kind"]].ends(history) for history in model.loads.history]
+    return max(ends, default=-np.inf)

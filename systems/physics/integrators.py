@@ -1,0 +1,185 @@
+"""Drivers as source: the step program is written around them and compiled as one module.
+
+In this source `*columns` stands for the flat list of the model's columns (particles_mobility,
+particles_mass, … can therefore be used by name), which the program writer puts in: arrays in tuples cost
+twice as much per step in small models. Provided by the program are
+
+    forces(time, dt, displacement, velocity, force, resisting, direction, *columns)
+        force ← loads, environment and rods without dampers (kN); resisting ← dampers and drag;
+        direction ← unit vectors of the rods
+    accept(time, dt, displacement, velocity, force, resisting, direction, account, *columns)
+        the same at an accepted state: commits history first
+    resist(time, dt, velocity, resisting, direction, power, *columns)
+        resisting ← dampers and drag at another velocity; power ← what each account gains (kN·m/s)
+
+and the constants RATES (something depends on velocity) and POWERS (some account gains by the step).
+`account` holds the accounts of systems.base.ACCOUNTS first, in J.
+"""
+
+# ruff: noqa: F821
+# mypy: ignore-errors
+
+
+def velocity_verlet(
+    steps,
+    first,
+    origin,
+    dt,
+    displacement,
+    velocity,
+    force,
+    resisting,
+    direction,
+    predicted,
+    power,
+    gained,
+    account,
+    *columns,
+):
+    """x₊ = x + h v + h²/2 a; v* = v + h a; a* = a(x₊, v*); v₊ = v + h/2 (a + a*); a₊ = a(x₊, v₊)."""
+    half = 0.5 * dt
+    for step in range(1, steps + 1):
+        time = origin + (first + step) * dt
+        for i in range(displacement.shape[0]):
+            ax = force[i, 0]
+            ay = force[i, 1]
+            if RATES:
+                ax += resisting[i, 0]
+                ay += resisting[i, 1]
+            ax *= particles_mobility[i, 0]
+            ay *= particles_mobility[i, 1]
+            vx = velocity[i, 0]
+            vy = velocity[i, 1]
+            hx = vx + half * ax
+            hy = vy + half * ay
+            displacement[i, 0] += dt * hx
+            displacement[i, 1] += dt * hy
+            velocity[i, 0] = hx
+            velocity[i, 1] = hy
+            if RATES:
+                predicted[i, 0] = vx + dt * ax
+                predicted[i, 1] = vy + dt * ay
+        accept(time, dt, displacement, predicted, force, resisting, direction, account, *columns)
+        for i in range(displacement.shape[0]):
+            ax = force[i, 0]
+            ay = force[i, 1]
+            if RATES:
+                ax += resisting[i, 0]
+                ay += resisting[i, 1]
+            velocity[i, 0] += half * (ax * particles_mobility[i, 0])
+            velocity[i, 1] += half * (ay * particles_mobility[i, 1])
+        if RATES or POWERS:
+            resist(time, dt, velocity, resisting, direction, gained, *columns)
+        if POWERS:
+            for k in range(power.shape[0]):
+                account[k] += 500.0 * dt * (power[k] + gained[k])
+                power[k] = gained[k]
+
+
+def taylor2(
+    steps,
+    first,
+    origin,
+    dt,
+    displacement,
+    velocity,
+    force,
+    resisting,
+    direction,
+    predicted,
+    power,
+    gained,
+    account,
+    *columns,
+):
+    """The thesis' x += v h + a h²/2, v += a h."""
+    half = 0.5 * dt
+    for step in range(1, steps + 1):
+        time = origin + (first + step) * dt
+        for i in range(displacement.shape[0]):
+            ax = force[i, 0]
+            ay = force[i, 1]
+            if RATES:
+                ax += resisting[i, 0]
+                ay += resisting[i, 1]
+            ax *= particles_mobility[i, 0]
+            ay *= particles_mobility[i, 1]
+            displacement[i, 0] += dt * (velocity[i, 0] + half * ax)
+            displacement[i, 1] += dt * (velocity[i, 1] + half * ay)
+            velocity[i, 0] += dt * ax
+            velocity[i, 1] += dt * ay
+        accept(time, dt, displacement, velocity, force, resisting, direction, account, *columns)
+        if POWERS:
+            resist(time, dt, velocity, resisting, direction, gained, *columns)
+            for k in range(power.shape[0]):
+                account[k] += 500.0 * dt * (power[k] + gained[k])
+                power[k] = gained[k]
+
+
+def advance(
+    steps,
+    fresh,
+    total,
+    first,
+    origin,
+    dt,
+    loads_end,
+    displacement,
+    velocity,
+    force,
+    resisting,
+    direction,
+    predicted,
+    power,
+    gained,
+    account,
+    measures,
+    *columns,
+):
+    """Take up to `steps` steps; returns (steps taken, StopReason).
+
+    fresh: the forces are still those of the present state. total: all steps so far. first: steps since
+    the time origin. Checks happen whenever the total is a multiple of CHECK_INTERVAL, so that what comes
+    out does not depend on how the steps are divided into calls.
+    """
+    if not fresh:
+        time = origin + first * dt
+        forces(time, dt, displacement, velocity, force, resisting, direction, *columns)
+        if POWERS:
+            resist(time, dt, velocity, resisting, direction, power, *columns)
+    taken = 0
+    while taken < steps:
+        now = min(steps - taken, CHECK_INTERVAL - (total + taken) % CHECK_INTERVAL)
+        integrate(
+            now,
+            first + taken,
+            origin,
+            dt,
+            displacement,
+            velocity,
+            force,
+            resisting,
+            direction,
+            predicted,
+            power,
+            gained,
+            account,
+            *columns,
+        )
+        taken += now
+        if (total + taken) % CHECK_INTERVAL == 0:
+            measure(
+                displacement,
+                velocity,
+                force,
+                resisting,
+                measures,
+                *columns,
+            )
+            time = origin + (first + taken) * dt
+            reason = judge(measures, account, dt, SHADOW, time >= loads_end)
+            if reason != 0:
+                return taken, reason
+        if (total + taken) % REVIEW_INTERVAL == 0:
+            return taken, 1
+    return taken, 0

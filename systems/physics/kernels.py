@@ -1,0 +1,61 @@
+"""Laws of rods and particles: scalars of one element in, its force out."""
+
+from systems.kernels import compiled
+
+REST_RESIDUAL = 1e-8  # of the largest force; larger: rests sooner, less exactly
+SMALL_SHARE = 1e-3  # of the largest force ever, taken as scale where all forces die out
+DIVERGENCE_SHARE = 0.2  # of all energy ever supplied; smaller: may stop good runs at large steps
+
+
+@compiled
+def elastic(elongation, rods_stiffness, rods_rest_length):
+    """N = EA ε, ε = (L − L₀)/L₀."""
+    return rods_stiffness * (elongation / rods_rest_length)
+
+
+@compiled
+def elastic_after_yielding(elongation, rods_stiffness, rods_rest_length, rods_plastic_strain):
+    """N = EA (ε − ε_p)."""
+    return rods_stiffness * (elongation / rods_rest_length - rods_plastic_strain)
+
+
+@compiled
+def axial_damper(rate, rods_damping):
+    """Force of the axial damper, tension positive: C × rate of elongation."""
+    return rods_damping * rate
+
+
+@compiled
+def drag(particles_mass, particles_velocity, environment_drag):
+    """−drag × m × v, in kN."""
+    factor = -0.001 * environment_drag * particles_mass
+    return factor * particles_velocity[0], factor * particles_velocity[1]
+
+
+@compiled
+def judge(measures, account, dt, shadow, loads_are_over):
+    """Decide from the measures of a state whether the run stops: 0 go on, 2 rest, 3 diverged.
+
+    measures: kinetic energy, Σ fᵀM⁻¹f, elastic energy, potential of constant forces (all J), residual,
+        largest force and round-off of the forces (kN).
+    account: the accounts, then initial energy, potential reference, force scale, energy scale.
+    shadow: 1 if the integrator conserves kinetic − (h²/8) fᵀM⁻¹f + elastic, else 0.
+
+    Diverged: energy came from nowhere. Rest: REQUIREMENTS' residual and a kinetic energy to match it,
+    relative to the present forces or, in a model that swings out to nothing, to a small part of the
+    largest ever.
+    """
+    kinetic, power_norm, elastic, potential = measures[0], measures[1], measures[2], measures[3]
+    residual, largest, round_off = measures[4], measures[5], measures[6]
+    supplied = account[0] + potential - account[5]
+    mechanical = kinetic + elastic - shadow * dt * dt / 8.0 * power_norm
+    created = mechanical - (account[4] + supplied)
+    account[6] = max(account[6], largest)
+    account[7] = max(account[7], abs(account[4]), abs(account[0]), abs(supplied))
+    if not created <= DIVERGENCE_SHARE * account[7] + 1e-24:
+        return 3
+    still_force = max(REST_RESIDUAL * max(largest, SMALL_SHARE * account[6]), 8.0 * round_off)
+    still_energy = REST_RESIDUAL**2 * max(elastic, SMALL_SHARE**2 * account[7])
+    if loads_are_over and residual <= still_force and kinetic <= still_energy:
+        return 2
+    return 0

@@ -1,0 +1,111 @@
+"""Step systems of the mechanics of rods and particles."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, ClassVar
+
+from components.rod import has_plastic_strain
+from systems.base import Driver, Law
+
+if TYPE_CHECKING:
+    from components.model import Model
+
+
+class Elasticity(Law):
+    """Axial force of rods that never yielded and cannot: N = EA ε."""
+
+    name = "physics.elasticity"
+    kernel = "systems.physics.kernels:elastic"
+    reads = ("rods.stiffness", "rods.rest_length")
+    adds = ("rods.axial_force",)
+
+    def needs(self, model: Model) -> bool:
+        return bool(model.rods.count) and not has_plastic_strain(model)
+
+
+class ElasticityAfterYielding(Law):
+    """Axial force of rods with plastic strain: N = EA (ε − ε_p)."""
+
+    name = "physics.elasticity_after_yielding"
+    kernel = "systems.physics.kernels:elastic_after_yielding"
+    reads = ("rods.stiffness", "rods.rest_length", "rods.plastic_strain")
+    adds = ("rods.axial_force",)
+
+    def needs(self, model: Model) -> bool:
+        return bool(model.rods.count) and has_plastic_strain(model)
+
+
+class AxialDamping(Law):
+    """Viscous force along the axis of the rods, on top of N."""
+
+    name = "physics.axial_damping"
+    kernel = "systems.physics.kernels:axial_damper"
+    reads = ("rods.damping",)
+    adds = ("rods.axial_force",)
+    account = "dissipated_damping"
+
+    def needs(self, model: Model) -> bool:
+        return bool((model.rods.damping > 0.0).any())
+
+
+class Drag(Law):
+    """The environment's resistance to all motion."""
+
+    name = "physics.drag"
+    each = "particles"
+    kernel = "systems.physics.kernels:drag"
+    reads = ("particles.mass", "particles.velocity", "environment.drag")
+    adds = ("particles.force",)
+    account = "dissipated_damping"
+
+    def needs(self, model: Model) -> bool:
+        return model.environment.drag > 0.0
+
+
+class VelocityVerlet(Driver):
+    """Second order, symplectic without dampers: energy is bounded for ever.
+
+    Dampers are evaluated at the corrected velocity, which keeps the order and most of the stable step.
+    """
+
+    name = "physics.velocity_verlet"
+    kernel = "systems.physics.integrators:velocity_verlet"
+    reads = ("particles.mobility",)
+    writes = ("particles.displacement", "particles.velocity", "clock.time")
+    order: ClassVar[int] = 2
+    conserved_energy = "kinetic − (h²/8) fᵀM⁻¹f + elastic"
+
+    @staticmethod
+    def stable_step(frequency: float, damping_ratio: float) -> float:
+        """(2/ω)(√(1+ζ²) − ζ), written so that no digits cancel."""
+        return 2.0 / (frequency * (math.sqrt(1.0 + damping_ratio**2) + damping_ratio))
+
+
+class ThesisTaylor(Driver):
+    """The thesis' scheme x += v h + a h²/2, v += a h: first order, and energy grows by 1 + (ωh)²/2 a step.
+
+    For comparison only. Without damping it is unstable at any step.
+    """
+
+    name = "physics.taylor2"
+    kernel = "systems.physics.integrators:taylor2"
+    reads = ("particles.mobility",)
+    writes = ("particles.displacement", "particles.velocity", "clock.time")
+    order: ClassVar[int] = 1
+
+    @staticmethod
+    def stable_step(frequency: float, damping_ratio: float) -> float:
+        """2ζ/ω up to ζ = ½ (from |λ|² = 1 − 2ζωh + (ωh)²/2 + …), then 1/(2ζω) … see integrators.py."""
+        return taylor2_limit(frequency, damping_ratio)
+
+
+def taylor2_limit(frequency: float, damping_ratio: float) -> float:
+    """Largest h for which x += v h + a h²/2, v += a h with a = −ω²x − 2ζωv does not grow.
+
+    The amplification matrix has trace 2 − z²/2 − 2ζz and determinant 1 − 2ζz + z²/2 (z = ωh; the ζz³
+    terms cancel), so that the Jury conditions give z ≤ 4ζ and z ≤ 1/ζ.
+    """
+    if damping_ratio == 0.0:
+        return 0.0
+    return min(4.0 * damping_ratio, 1.0 / damping_ratio) / frequency

@@ -1,0 +1,36 @@
+"""Step systems of perfect plasticity."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from components.rod import can_yield
+from systems.base import Commit, Law
+
+if TYPE_CHECKING:
+    from components.model import Model
+
+
+class Strength(Law):
+    """No axial force passes a rod's strength."""
+
+    name = "plasticity.strength"
+    kernel = "systems.plasticity.kernels:limited"
+    after = ("physics.elasticity_after_yielding",)
+    reads = ("rods.tension_limit", "rods.compression_limit")
+    adds = ("rods.axial_force",)
+
+    def needs(self, model: Model) -> bool:
+        return can_yield(model)
+
+
+class Yielding(Commit):
+    """Plastic strain takes up what exceeds the elastic range."""
+
+    name = "plasticity.yielding"
+    kernel = "systems.plasticity.kernels:yielded"
+    reads = ("rods.stiffness", "rods.rest_length", "rods.tension_limit", "rods.compression_limit")
+    writes = ("rods.plastic_strain",)
+
+    def needs(self, model: Model) -> bool:
+        return can_yield(model)

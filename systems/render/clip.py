@@ -1,0 +1,31 @@
+"""Clipping of segments to a rectangle, so that no mark lies far outside the window."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Points = NDArray[np.float64]
+
+
+def clip_segments(
+    start: Points, end: Points, low: Points, high: Points
+) -> tuple[Points, Points, NDArray[np.intp]]:
+    """The parts of segments, each (n, 2), inside the rectangle from `low` to `high`, and their rows.
+
+    Liang and Barsky's method: along start + t (end − start) each side of the rectangle bounds t.
+    Segments with a coordinate that is not finite are left out.
+    """
+    step = end - start
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at_low, at_high = (low - start) / step, (high - start) / step
+        first, last = np.fmin(at_low, at_high), np.fmax(at_low, at_high)
+        parallel = step == 0.0
+        inside = (start >= low) & (start <= high)
+        first = np.where(parallel, np.where(inside, 0.0, np.inf), first)
+        last = np.where(parallel, np.where(inside, 1.0, -np.inf), last)
+        t0 = np.maximum(first.max(axis=1, initial=0.0), 0.0)
+        t1 = np.minimum(last.min(axis=1, initial=1.0), 1.0)
+        rows = np.flatnonzero((t0 <= t1) & np.isfinite(step).all(axis=1))
+    t0, t1, origin, step = t0[rows, None], t1[rows, None], start[rows], step[rows]
+    return origin + t0 * step, origin + t1 * step, rows

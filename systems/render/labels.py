@@ -1,0 +1,104 @@
+"""Labels: texts that look for a free place of their own, the important ones first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.camera import Viewport
+from systems.render.marks import Mark, Panel, Points, Text
+from systems.render.theme import Colour
+from systems.render.typography import line_height, text_width
+
+_CELL = 3.0  # points: how finely the picture is divided into free and taken
+
+
+class Occupancy:
+    """Which parts of a viewport are taken: firmly (other labels, panels), or by lines one had better not cover."""
+
+    def __init__(self, viewport: Viewport, unit: float) -> None:
+        self.viewport = viewport
+        self.cell = _CELL * unit
+        shape = (int(viewport.height / self.cell) + 1, int(viewport.width / self.cell) + 1)
+        self.taken: NDArray[np.bool_] = np.zeros(shape, dtype=bool)
+        self.lined: NDArray[np.bool_] = np.zeros(shape, dtype=bool)
+
+    def block(self, left: float, top: float, width: float, height: float) -> None:
+        """Take a rectangle."""
+        self.taken[self._cells(left, top, width, height)] = True
+
+    def block_squares(self, centres: Points, half: NDArray[np.float64]) -> None:
+        """Take many squares of half width `half` (n,) about `centres` (n, 2)."""
+        for (x, y), h in zip(centres.tolist(), half.tolist(), strict=True):
+            self.block(x - h, y - h, 2.0 * h, 2.0 * h)
+
+    def line(self, start: Points, end: Points) -> None:
+        """Note lines that labels had better not cover, each (n, 2), inside or near the viewport."""
+        count = (np.abs(end - start).max(axis=1, initial=0.0) / self.cell).astype(np.int64) + 2
+        of = np.repeat(np.arange(len(start)), count)
+        step = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+        share = (step / (count - 1)[of])[:, None]
+        samples = start[of] + share * (end - start)[of]
+        cells = ((samples - [self.viewport.left, self.viewport.top]) / self.cell).astype(np.int64)
+        rows, columns = cells[:, 1], cells[:, 0]
+        ok = (rows >= 0) & (columns >= 0) & (rows < self.lined.shape[0]) & (columns < self.lined.shape[1])
+        self.lined[rows[ok], columns[ok]] = True
+
+    def is_free(self, left: float, top: float, width: float, height: float, *, off_lines: bool) -> bool:
+        """True if a rectangle lies in the viewport and nothing takes any of it."""
+        v = self.viewport
+        if left < v.left or top < v.top or left + width > v.left + v.width or top + height > v.top + v.height:
+            return False
+        cells = self._cells(left, top, width, height)
+        return not (self.taken[cells].any() or (off_lines and self.lined[cells].any()))
+
+    def _cells(self, left: float, top: float, width: float, height: float) -> tuple[slice, slice]:
+        x, y = left - self.viewport.left, top - self.viewport.top
+        columns = slice(max(int(x / self.cell), 0), max(int((x + width) / self.cell) + 1, 0))
+        return slice(max(int(y / self.cell), 0), max(int((y + height) / self.cell) + 1, 0)), columns
+
+
+@dataclass(frozen=True)
+class Label:
+    """A text that is to be placed with its middle at one of `places`, the best first.
+
+    rank: labels of lower rank come first. backing: colour behind the text, or None; a label without one
+    does not cover lines. pinned: it is drawn at its first place if nowhere is free.
+    """
+
+    text: str
+    places: list[tuple[float, float]]
+    size: int
+    colour: Colour
+    rank: float
+    weight: str = "regular"
+    backing: Colour | None = None
+    pinned: bool = False
+
+
+def place_labels(labels: Iterable[Label], occupancy: Occupancy, unit: float) -> list[Mark]:
+    """Marks of the labels that found a free place, in order of rank; the others are left out."""
+    marks: list[Mark] = []
+    for label in sorted(labels, key=lambda label: label.rank):
+        width = text_width(label.text, label.size, label.weight) + 7.0 * unit
+        height = line_height(label.size) + 1.0 * unit
+        place = _free_place(label, width, height, occupancy)
+        if place is None:
+            continue
+        x, y = place
+        occupancy.block(x - width / 2, y - height / 2, width, height)
+        if label.backing is not None:
+            marks.append(Panel(x - width / 2, y - height / 2, width, height, 4.0 * unit, label.backing))
+        marks.append(Text(label.text, x, y, label.size, label.colour, label.weight, "centre"))
+    return marks
+
+
+def _free_place(label: Label, width: float, height: float, occupancy: Occupancy) -> tuple[float, float] | None:
+    for off_lines in (True,) if label.backing is None else (True, False):
+        for x, y in label.places:
+            if occupancy.is_free(x - width / 2, y - height / 2, width, height, off_lines=off_lines):
+                return x, y
+    return label.places[0] if label.pinned else None

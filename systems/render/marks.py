@@ -1,0 +1,103 @@
+"""Marks: what a picture consists of, in pixels, y down. Plain data, in painter's order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.camera import Viewport
+from systems.render.theme import Colour
+
+Points = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """Straight lines from `start` to `end`, each (n, 2), of one width and colour."""
+
+    start: Points
+    end: Points
+    width: float
+    colour: Colour
+
+
+@dataclass(frozen=True)
+class Fills:
+    """Filled convex polygons with `corners` (n, k, 2)."""
+
+    corners: Points
+    colour: Colour
+
+
+@dataclass(frozen=True)
+class Stamps:
+    """One symbol at many places `at` (n, 2).
+
+    symbol: a name in symbols.py. size: its own measure in pixels (a radius, a length). turns: quarter
+    turns clockwise. unit: pixels per point. ink, hollow: its two colours.
+    """
+
+    symbol: str
+    at: Points
+    size: float
+    unit: float
+    ink: Colour
+    hollow: Colour
+    turns: int = 0
+
+
+@dataclass(frozen=True)
+class Rectangles:
+    """Upright filled rectangles (n, 4): left, top, width, height in whole pixels."""
+
+    boxes: NDArray[np.int64]
+    colour: Colour
+
+
+@dataclass(frozen=True)
+class Panel:
+    """An upright box with rounded corners and, perhaps, a hairline around it."""
+
+    left: float
+    top: float
+    width: float
+    height: float
+    radius: float
+    fill: Colour
+    outline: Colour | None = None
+
+
+@dataclass(frozen=True)
+class Text:
+    """One line of text.
+
+    x, y: the point at `anchor` ("left", "centre" or "right") and half the height of capitals.
+    size: font size in whole pixels. weight: "regular" or "semibold".
+    """
+
+    text: str
+    x: float
+    y: float
+    size: int
+    colour: Colour
+    weight: str = "regular"
+    anchor: str = "left"
+
+
+Mark = Strokes | Fills | Stamps | Rectangles | Panel | Text
+
+
+@dataclass
+class Picture:
+    """Everything to be drawn in one viewport."""
+
+    viewport: Viewport
+    background: Colour
+    marks: list[Mark] = field(default_factory=list)
+
+    @property
+    def texts(self) -> list[str]:
+        """All that is written, in order."""
+        return [mark.text for mark in self.marks if isinstance(mark, Text)]

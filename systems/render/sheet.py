@@ -1,0 +1,123 @@
+"""Sheet: a model measured in the pixels of one viewport, and the marks made on it so far."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.camera import Viewport
+from components.view import View
+from systems.render.clip import clip_segments
+from systems.render.deformed import drawn_positions
+from systems.render.labels import Label, Occupancy
+from systems.render.marks import Mark, Points
+from systems.render.theme import Colour, Theme
+
+if TYPE_CHECKING:
+    from components.model import Model
+
+Rows = NDArray[np.intp]
+
+FEW = 30  # elements, up to which each shows its name
+MANY = 2000  # rods, above which what cannot be seen singly is left out
+
+# Directions by quarter turns clockwise, in pixels: right, down, left, up.
+DIRECTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+
+
+@dataclass
+class Sheet:
+    """What the drawing functions share.
+
+    unit: pixels per point. centres: particles in pixels, shape (n, 2). radii: drawn radii in pixels (n,).
+    ends: rows of the particles at the rods' ends (m, 2). rods: rows of the rods that can be seen; start,
+    end: their visible parts in pixels, aligned with `rods`. particles: rows of those that can be seen.
+    legend: names of the colours that occur and mean something. notes: what a person must know of scales.
+    """
+
+    model: Model
+    view: View
+    theme: Theme
+    unit: float
+    centres: Points
+    radii: NDArray[np.float64]
+    ends: NDArray[np.intp]
+    rods: Rows
+    start: Points
+    end: Points
+    particles: Rows
+    occupancy: Occupancy
+    marks: list[Mark] = field(default_factory=list)
+    labels: list[Label] = field(default_factory=list)
+    legend: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def viewport(self) -> Viewport:
+        return self.view.camera.viewport
+
+    def font(self, points: float) -> int:
+        """A font size in whole pixels."""
+        return max(round(points * self.unit), 7)
+
+    def tagged(self, tag: type, table: str) -> Rows:
+        """Rows of the entities of one table that carry a tag."""
+        return np.array([h.row for h in self.model.tagged(tag) if h.table == table], dtype=np.intp)
+
+    def chosen(self, wanted: Rows, rows: Rows) -> NDArray[np.bool_]:
+        """For each of `rows`, whether it is among `wanted`."""
+        return np.isin(rows, wanted) if len(wanted) else np.zeros(len(rows), dtype=bool)
+
+    def colours_of(
+        self, rows: Rows, layers: Iterable[tuple[Rows, Colour]], otherwise: Colour
+    ) -> list[tuple[Colour, NDArray[np.bool_]]]:
+        """Rows grouped by colour: each colour with the mask of its rows; later layers win."""
+        choice = np.zeros(len(rows), dtype=np.int64)
+        colours = [otherwise]
+        for wanted, colour in layers:
+            choice[self.chosen(wanted, rows)] = len(colours)
+            colours.append(colour)
+        return [(colour, choice == index) for index, colour in enumerate(colours) if (choice == index).any()]
+
+
+def measure(model: Model, view: View, theme: Theme) -> Sheet:
+    """The model in pixels. Elements at places that are not finite numbers are left out."""
+    camera, unit = view.camera, view.pixel_ratio
+    centres = camera.to_pixels(drawn_positions(model))
+    ends = model.rods.between.astype(np.intp)
+    low = np.array([camera.viewport.left, camera.viewport.top], dtype=np.float64)
+    high = low + [camera.viewport.width, camera.viewport.height]
+    margin = 150.0 * unit
+    start, end, rods = clip_segments(centres[ends[:, 0]], centres[ends[:, 1]], low - margin, high + margin)
+    radii = np.maximum(model.particles.radius * camera.scale, _smallest_radius(start, end, unit))
+    reach = radii[:, None] + 40.0 * unit
+    with np.errstate(invalid="ignore"):
+        seen = ((centres > low - reach) & (centres < high + reach)).all(axis=1)
+    return Sheet(
+        model,
+        view,
+        theme,
+        unit,
+        centres,
+        radii,
+        ends,
+        rods,
+        start,
+        end,
+        np.flatnonzero(seen),
+        Occupancy(camera.viewport, unit),
+    )
+
+
+def typical_length(start: Points, end: Points) -> float:
+    """Median length in pixels of segments; infinite if there are none."""
+    return float(np.median(np.hypot(*(end - start).T))) if len(start) else np.inf
+
+
+def _smallest_radius(start: Points, end: Points, unit: float) -> float:
+    """5 points, so that a particle can be seen and hit; less where rods are so short that it would hide them."""
+    return float(np.clip(0.18 * typical_length(start, end), 1.25 * unit, 5.0 * unit))

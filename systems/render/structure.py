@@ -1,0 +1,182 @@
+"""The model itself: grid, ghost of the undeformed structure, rods, particles and names."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.tags import Hovered, Selected
+from systems.render.clip import clip_segments
+from systems.render.labels import Label
+from systems.render.marks import Points, Rectangles, Stamps, Strokes
+from systems.render.sheet import FEW, MANY, Rows, Sheet, typical_length
+from systems.render.theme import Colour, faded
+
+_CLOSEST_LINES = 8.0  # points between grid lines
+_GHOST_FROM = 4.0  # points of displacement
+
+
+def draw_grid(sheet: Sheet) -> None:
+    """The lines of the shown grid; only every 2nd, 5th, 10th, … where they would be too close."""
+    selected = sheet.tagged(Selected, "grids")
+    grids = sheet.model.grids
+    camera, viewport = sheet.view.camera, sheet.viewport
+    left, top = camera.to_model((viewport.left, viewport.top))
+    right, bottom = camera.to_model((viewport.left + viewport.width, viewport.top + viewport.height))
+    for row in np.flatnonzero(grids.shown).tolist():
+        colour = sheet.theme.selected if row in selected else sheet.theme.grid
+        spacing = grids.spacing[row]
+        across = _grid_lines(left, right, float(spacing[0]), sheet)
+        up = _grid_lines(bottom, top, float(spacing[1]), sheet)
+        x = np.round(camera.to_pixels(np.stack([across, 0.0 * across], axis=1))[:, 0])
+        y = np.round(camera.to_pixels(np.stack([0.0 * up, up], axis=1))[:, 1])
+        sheet.marks.append(Rectangles(_lines(sheet, x, y), colour))
+
+
+def _grid_lines(low: float, high: float, spacing: float, sheet: Sheet) -> NDArray[np.float64]:
+    pixels = spacing * sheet.view.camera.scale
+    step = spacing * _coarsening(_CLOSEST_LINES * sheet.unit / pixels)
+    return step * np.arange(math.ceil(low / step), math.floor(high / step) + 1)
+
+
+def _coarsening(least: float) -> float:
+    """The smallest of 1, 2, 5, 10, 20, … that is at least `least`."""
+    if least <= 1.0:
+        return 1.0
+    decade = 10.0 ** math.floor(math.log10(least))
+    return next(decade * step for step in (1.0, 2.0, 5.0, 10.0) if decade * step >= least)
+
+
+def _lines(sheet: Sheet, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Boxes of upright and level lines across the viewport, centred on x and y."""
+    v, thick = sheet.viewport, max(round(sheet.unit), 1)
+    upright = np.stack([x - thick // 2, 0 * x + v.top, 0 * x + thick, 0 * x + v.height], axis=1)
+    level = np.stack([0 * y + v.left, y - thick // 2, 0 * y + v.width, 0 * y + thick], axis=1)
+    return np.concatenate([upright, level]).astype(np.int64)
+
+
+def draw_ghost(sheet: Sheet) -> None:
+    """The undeformed rods, faint and dashed, where the drawn ones have visibly left them."""
+    if not 0 < sheet.ends.shape[0] <= MANY:
+        return
+    original = sheet.view.camera.to_pixels(sheet.model.particles.position)
+    moved = np.hypot(*(sheet.centres - original).T)
+    far = (moved[sheet.ends] > _GHOST_FROM * sheet.unit).any(axis=1)
+    viewport = sheet.viewport
+    low = np.array([viewport.left, viewport.top], dtype=np.float64)
+    ends = sheet.ends[far]
+    start, end, _ = clip_segments(
+        original[ends[:, 0]], original[ends[:, 1]], low, low + [viewport.width, viewport.height]
+    )
+    if len(start):
+        dashes = _dashed(start, end, 5.0 * sheet.unit)
+        sheet.marks.append(Strokes(*dashes, sheet.unit, sheet.theme.ghost))
+
+
+def _dashed(start: Points, end: Points, dash: float) -> tuple[Points, Points]:
+    """Segments cut into dashes and gaps of about that length, a dash at both ends."""
+    step = end - start
+    count = np.maximum(np.round((np.hypot(*step.T) / dash - 1.0) / 2.0), 0.0).astype(np.int64) + 1
+    of = np.repeat(np.arange(len(start)), count)
+    index = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    share = (1.0 / (2 * count - 1))[of]
+    first, last = (2 * index * share)[:, None], ((2 * index + 1) * share)[:, None]
+    return start[of] + first * step[of], start[of] + last * step[of]
+
+
+def draw_halos(sheet: Sheet) -> None:
+    """A soft glow around what is selected and around what a click would hit."""
+    theme, u = sheet.theme, sheet.unit
+    for tag, colour, opacity in ((Selected, theme.selected, 0.16), (Hovered, theme.hover, 0.22)):
+        glow = faded(colour, opacity)
+        rods = sheet.chosen(sheet.tagged(tag, "rods"), sheet.rods)
+        if rods.any():
+            sheet.marks.append(Strokes(sheet.start[rods], sheet.end[rods], 11.0 * u, glow))
+        chosen = sheet.chosen(sheet.tagged(tag, "particles"), sheet.particles)
+        _draw_circles(sheet, "disc", sheet.particles[chosen], glow, glow, 5.0 * u)
+
+
+def draw_rods(sheet: Sheet) -> None:
+    """A line between the drawn positions of the ends: red if selected, violet while yielding."""
+    rods, theme = sheet.model.rods, sheet.theme
+    yielding = np.empty(0, dtype=np.intp)
+    if (np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)).any():
+        yielding = np.flatnonzero(rods.yielding)
+    selected = sheet.tagged(Selected, "rods")
+    width = float(np.clip(0.12 * typical_length(sheet.start, sheet.end) / sheet.unit, 1.0, 2.5)) * sheet.unit
+    layers = [(yielding, theme.yielding), (selected, theme.selected)]
+    for colour, mask in sheet.colours_of(sheet.rods, layers, theme.ink):
+        wider = 1.0 if colour == theme.ink else 1.35
+        sheet.marks.append(Strokes(sheet.start[mask], sheet.end[mask], width * wider, colour))
+    if len(yielding):
+        sheet.legend.append("yielding")
+    sheet.occupancy.line(sheet.start, sheet.end)
+
+
+def draw_particles(sheet: Sheet) -> None:
+    """Open circles of their own radius; red if selected. Very small ones are filled."""
+    theme = sheet.theme
+    layers = [(sheet.tagged(Selected, "particles"), theme.selected)]
+    for colour, mask in sheet.colours_of(sheet.particles, layers, theme.ink):
+        rows = sheet.particles[mask]
+        small = sheet.radii[rows] < 3.0 * sheet.unit
+        _draw_circles(sheet, "disc", rows[small], colour, colour, 0.0)
+        _draw_circles(sheet, "ring", rows[~small], colour, theme.hollow, 0.0)
+    if len(sheet.particles) <= MANY:
+        sheet.occupancy.block_squares(sheet.centres[sheet.particles], 0.8 * sheet.radii[sheet.particles])
+
+
+def _draw_circles(sheet: Sheet, symbol: str, rows: Rows, ink: Colour, hollow: Colour, extra: float) -> None:
+    """Stamps of one kind, grouped by radius to a quarter of a pixel."""
+    radii = np.round(4.0 * (sheet.radii[rows] + extra)) / 4.0
+    for radius in np.unique(radii).tolist():
+        at = sheet.centres[rows[radii == radius]]
+        sheet.marks.append(Stamps(symbol, at, radius, sheet.unit, ink, hollow))
+
+
+def label_names(sheet: Sheet) -> None:
+    """Names of the selected and hovered elements, and of all where there are few."""
+    all_of_them = sheet.model.particles.count + sheet.model.rods.count <= FEW
+    for table, rows in (("particles", sheet.particles), ("rods", sheet.rods)):
+        marked = np.union1d(sheet.tagged(Selected, table), sheet.tagged(Hovered, table))
+        wanted = np.arange(len(rows)) if all_of_them else np.flatnonzero(sheet.chosen(marked, rows))
+        for index in wanted[:FEW].tolist():
+            row = int(rows[index])
+            places = _beside_particle(sheet, row) if table == "particles" else _beside_rod(sheet, index)
+            _add_name(sheet, sheet.model.tables[table].handles[row].name, places, row in marked)
+
+
+def _add_name(sheet: Sheet, name: str, places: list[tuple[float, float]], marked: bool) -> None:
+    theme = sheet.theme
+    sheet.labels.append(
+        Label(
+            name,
+            places,
+            sheet.font(12.0 if marked else 11.0),
+            theme.text if marked else theme.muted,
+            rank=-1e12 if marked else 1e12,
+            weight="semibold" if marked else "regular",
+            backing=faded(theme.background, 0.86) if marked else None,
+        )
+    )
+
+
+def _beside_particle(sheet: Sheet, row: int) -> list[tuple[float, float]]:
+    x, y = sheet.centres[row].tolist()
+    reach = sheet.radii[row] + 11.0 * sheet.unit
+    around = [(-1, -1), (1, -1), (-1, 1), (1, 1), (0, -1), (-1.3, 0), (1.3, 0), (0, 1)]
+    return [(x + far * dx * reach, y + far * dy * reach) for far in (0.85, 1.3, 1.9) for dx, dy in around]
+
+
+def _beside_rod(sheet: Sheet, index: int) -> list[tuple[float, float]]:
+    start, end = sheet.start[index], sheet.end[index]
+    step = end - start
+    normal = np.array([step[1], -step[0]]) / max(float(np.hypot(*step)), 1e-9)
+    away = normal * (10.0 + 6.0 * abs(normal[0])) * sheet.unit
+    return [
+        tuple(start + share * step + side * away)
+        for share in (0.5, 0.35, 0.65)
+        for side in (-1.0, 1.0, -1.7, 1.7)
+    ]

@@ -1,0 +1,65 @@
+"""Supports, and on which sides of a particle there is room."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from systems.render.marks import Stamps
+from systems.render.sheet import DIRECTIONS, Sheet
+from systems.render.symbols import SUPPORT_DEPTH
+
+RIGHT, DOWN, LEFT, UP = range(4)
+NO_SUPPORT = -1
+
+
+def crowding(sheet: Sheet) -> NDArray[np.float64]:
+    """How much the rods crowd each side of each particle, shape (n, 4), sides as in DIRECTIONS.
+
+    Σ cos² of the angle between the side and the attached rods, in the original geometry, so that it does
+    not change while a structure moves.
+    """
+    rods = sheet.model.rods
+    crowd = np.zeros((len(sheet.centres), 4))
+    length = np.maximum(rods.original_length, 1e-300)[:, None]
+    unit = rods.difference / length * [1.0, -1.0]
+    for end, outward in ((0, unit), (1, -unit)):
+        np.add.at(crowd, sheet.ends[:, end], np.maximum(outward @ DIRECTIONS.T, 0.0) ** 2)
+    return crowd
+
+
+def support_sides(fixed: NDArray[np.bool_], crowd: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The side of each particle on which its support stands, shape (n,); NO_SUPPORT where it has none.
+
+    Below or to the left, or the opposite side where that is clearly freer; for both directions below
+    rather than at a side, and above only where all else is crowded.
+    """
+    sides = np.full(len(fixed), NO_SUPPORT)
+    x, y = fixed[:, 0], fixed[:, 1]
+    vertical = np.where(crowd[:, UP] < crowd[:, DOWN] - 0.3, UP, DOWN)
+    horizontal = np.where(crowd[:, RIGHT] < crowd[:, LEFT] - 0.3, RIGHT, LEFT)
+    reluctance = np.zeros(4)
+    reluctance[[RIGHT, DOWN, LEFT, UP]] = 0.5, 0.0, 0.45, 0.8
+    sides[y & ~x] = vertical[y & ~x]
+    sides[x & ~y] = horizontal[x & ~y]
+    sides[x & y] = np.argmin(crowd[x & y] + reluctance, axis=1)
+    return sides
+
+
+def draw_supports(sheet: Sheet, sides: NDArray[np.int64]) -> None:
+    """Triangles on a line (one direction) or on a plate (both), touching the particles from outside."""
+    fixed = sheet.model.particles.fixed
+    for side in range(4):
+        for symbol, both in (("roller", False), ("pinned", True)):
+            rows = sheet.particles[
+                (sides[sheet.particles] == side) & (fixed[sheet.particles].all(axis=1) == both)
+            ]
+            if not len(rows):
+                continue
+            apex = sheet.centres[rows] + DIRECTIONS[side] * (sheet.radii[rows] - sheet.unit)[:, None]
+            size = SUPPORT_DEPTH * sheet.unit
+            sheet.marks.append(
+                Stamps(symbol, apex, size, sheet.unit, sheet.theme.ink, sheet.theme.hollow, side)
+            )
+            middle = apex + DIRECTIONS[side] * size / 2
+            sheet.occupancy.block_squares(middle, np.full(len(rows), size / 2))

@@ -1,0 +1,90 @@
+"""Symbols: the shapes that are stamped on a picture, as polygons about their own origin.
+
+Every symbol points to the right, y down; supports and arrows are turned by quarter turns.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+Polygon = NDArray[np.float64]
+Parts = list[tuple[str, Polygon]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
+
+ARROW_LENGTH = 20.0  # points
+SUPPORT_DEPTH = 23.0  # points from the particle's rim to the far side of the ground
+_RIM = 1.75  # points
+_HALF_WIDTH, _HEIGHT = 8.5, 14.0  # points, of a support's triangle
+
+
+def symbol_parts(symbol: str, size: float, unit: float) -> Parts:
+    """The polygons of a symbol in pixels, for a size in pixels and pixels per point."""
+    return _SYMBOLS[symbol](size, unit)
+
+
+def _circle(radius: float) -> Polygon:
+    corners = max(12, math.ceil(4.0 * math.sqrt(16.0 * radius)))
+    angle = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
+    return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def _bar(left: float, top: float, right: float, bottom: float) -> Polygon:
+    return np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
+
+
+def _ring(radius: float, unit: float) -> Parts:
+    """An open circle whose rim lies inside the radius."""
+    return [("ink", _circle(radius)), ("hollow", _circle(max(radius - _RIM * unit, 0.0)))]
+
+
+def _disc(radius: float, unit: float) -> Parts:
+    return [("ink", _circle(radius))]
+
+
+def _arrow(length: float, unit: float) -> Parts:
+    """An arrow of that length from the origin to the right."""
+    head, half = 8.0 * unit, 4.0 * unit
+    shaft = _bar(0.0, -unit, length - 0.8 * head, unit)
+    point = np.array([[length - head, -half], [length, 0.0], [length - head, half]])
+    return [("ink", shaft), ("ink", point)]
+
+
+def _triangle(unit: float) -> Parts:
+    """An open triangle that touches the origin with its apex."""
+    outer = np.array([[0.0, 0.0], [_HEIGHT, _HALF_WIDTH], [_HEIGHT, -_HALF_WIDTH]])
+    slant = math.hypot(_HEIGHT, _HALF_WIDTH)
+    apex = _RIM * slant / _HALF_WIDTH  # where the inner edges meet, a rim's width inside the outer ones
+    base = _HEIGHT - _RIM
+    inner_half = (base - apex) * _HALF_WIDTH / _HEIGHT
+    inner = np.array([[apex, 0.0], [base, inner_half], [base, -inner_half]])
+    return [("ink", outer * unit), ("hollow", inner * unit)]
+
+
+def _roller(size: float, unit: float) -> Parts:
+    """Support in one direction: a triangle, a gap and the line that it slides along."""
+    line = _bar(_HEIGHT + 2.5, -11.0, _HEIGHT + 4.25, 11.0)
+    return [*_triangle(unit), ("ink", line * unit)]
+
+
+def _pinned(size: float, unit: float) -> Parts:
+    """Support in both directions: a triangle on a filled plate with hatched ground."""
+    plate = _bar(_HEIGHT - 0.5, -11.0, _HEIGHT + 3.5, 11.0)
+    hatch = [
+        np.array(
+            [[_HEIGHT + 3.0, y], [_HEIGHT + 8.0, y + 4.5], [_HEIGHT + 8.0, y + 5.7], [_HEIGHT + 3.0, y + 1.2]]
+        )
+        for y in np.arange(-10.5, 7.0, 4.1)
+    ]
+    return [*_triangle(unit), *(("ink", part * unit) for part in [plate, *hatch])]
+
+
+_SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
+    "ring": _ring,
+    "disc": _disc,
+    "arrow": _arrow,
+    "roller": _roller,
+    "pinned": _pinned,
+}

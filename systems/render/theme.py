@@ -1,0 +1,90 @@
+"""Theme: the named colours of a picture, read from assets/themes."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass, fields
+from importlib.resources import files
+
+Colour = tuple[int, int, int, int]  # red, green, blue, opacity, each 0 to 255
+
+
+@dataclass(frozen=True)
+class Theme:
+    """What each colour of a picture means.
+
+    title: what a person calls the theme.
+    background, panel, line: behind the model; behind bars and boxes; hairlines around those.
+    text, muted: what is said; what is said in passing.
+    ink, hollow: rods, rims and supports; the inside of particles and supports.
+    ghost, grid: the undeformed structure; lines to draw along.
+    selected, hover: what a person selected; what a click would hit.
+    tension, compression, zero, yielding: rods by their axial force.
+    force: arrows of external forces and reactions.
+    heading, problem, problem_panel: the mode's name; why something stopped, and what it is written on.
+    running, resting, halted: the state's dot in the status bar.
+    """
+
+    title: str
+    background: Colour
+    panel: Colour
+    line: Colour
+    text: Colour
+    muted: Colour
+    ink: Colour
+    hollow: Colour
+    ghost: Colour
+    grid: Colour
+    selected: Colour
+    hover: Colour
+    tension: Colour
+    compression: Colour
+    zero: Colour
+    yielding: Colour
+    force: Colour
+    heading: Colour
+    problem: Colour
+    problem_panel: Colour
+    running: Colour
+    resting: Colour
+    halted: Colour
+
+
+def theme_names() -> list[str]:
+    """Names of the themes that come with the program, in alphabetical order."""
+    folder = files("assets") / "themes"
+    return sorted(
+        entry.name.removesuffix(".json") for entry in folder.iterdir() if entry.name.endswith(".json")
+    )
+
+
+def load_theme(name: str = "light") -> Theme:
+    """The theme of that name. Raises ValueError if there is none or if its file is wrong."""
+    if name not in theme_names():
+        raise ValueError(f"There is no theme '{name}'; choose one of {', '.join(theme_names())}.")
+    text = (files("assets") / "themes" / f"{name}.json").read_text(encoding="utf-8")
+    return theme_from(json.loads(text), f"theme {name}")
+
+
+def theme_from(entries: dict[str, str], where: str) -> Theme:
+    """A theme from its title and "#RRGGBB" colours; every colour is required. Raises ValueError."""
+    known = {field.name for field in fields(Theme)}
+    wrong = sorted(known ^ set(entries))
+    if wrong:
+        problem = "lacks the colour" if wrong[0] in known else "has an unknown colour"
+        raise ValueError(f"{where} {problem} '{wrong[0]}'; it needs exactly {', '.join(sorted(known))}.")
+    colours = {key: _colour(value, f"{where}, {key}") for key, value in entries.items() if key != "title"}
+    return Theme(title=entries["title"], **colours)
+
+
+def _colour(text: str, where: str) -> Colour:
+    if not re.fullmatch(r"#[0-9A-Fa-f]{6}", text):
+        raise ValueError(f"{where}: '{text}' is no colour; write it like #0064FF.")
+    red, green, blue = bytes.fromhex(text[1:])
+    return red, green, blue, 255
+
+
+def faded(colour: Colour, opacity: float) -> Colour:
+    """The colour at that opacity, 0 to 1."""
+    return (*colour[:3], round(255 * opacity))

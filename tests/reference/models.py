@@ -1,0 +1,158 @@
+"""Small model dicts with known answers. Lengths in m, forces in kN, masses in kg."""
+
+import math
+from typing import Any
+
+from tests.reference.elements import Document, Model
+
+Pair = tuple[float, float]
+
+
+def model(particles: list[Document], rods: list[Document], **sections: Any) -> Model:
+    """Return a model dict of these particles and rods; further sections by keyword."""
+    return {"format": "pinjoint model", "version": 1, "particles": particles, "rods": rods} | sections
+
+
+def particle(name: str, x: float, y: float, **properties: Any) -> Document:
+    """Return a particle at the original position (x, y)."""
+    return {"name": name, "position": [x, y]} | properties
+
+
+def rod(start: str, end: str, **properties: Any) -> Document:
+    """Return a rod that is named by its two ends."""
+    return {"name": start + end, "between": [start, end]} | properties
+
+
+def triangle(force: Pair = (120, -160), **properties: Any) -> Model:
+    """Return the thesis' isostatic triangle: roller A, loaded B, pinned C; rods take `properties`."""
+    return model(
+        [
+            particle("A", 0, 0, fixed=[False, True]),
+            particle("B", 1, 1, force=list(force)),
+            particle("C", 2, 0, fixed=[True, True]),
+        ],
+        [rod(start, end, **properties) for start, end in ("AB", "BC", "CA")],
+    )
+
+
+def square(force: Pair = (0, -100), **properties: Any) -> Model:
+    """Return the thesis' hyperstatic square with both diagonals: roller A, loaded C, pinned D."""
+    return model(
+        [
+            particle("A", 0, 0, fixed=[False, True]),
+            particle("B", 0, 1.5),
+            particle("C", 1.5, 1.5, force=list(force)),
+            particle("D", 1.5, 0, fixed=[True, True]),
+        ],
+        [rod(start, end, **properties) for start, end in ("AB", "BC", "CD", "DA", "AC", "BD")],
+    )
+
+
+def oscillator(
+    omega: float, zeta: float = 0.0, mass: float = 2.0, force: float = 0.0, **properties: Any
+) -> Model:
+    """Return one mass on one rod of length 1 along x: exactly linear, u'' + 2ζω u' + ω² u = F/m.
+
+    The mass is particle B, its displacement is along x; `properties` go to it.
+    """
+    stiffness = mass * omega**2 / 1000
+    damping = 2 * zeta * mass * omega / 1000
+    return model(
+        [
+            particle("A", 0, 0, fixed=[True, True]),
+            particle("B", 1, 0, fixed=[False, True], mass=mass, force=[force, 0], **properties),
+        ],
+        [rod("A", "B", stiffness=stiffness, damping=damping)],
+    )
+
+
+def chain(count: int, stiffness: float, mass: float) -> Model:
+    """Return `count` masses in a row between fixed ends, on rods of length 1 with k = `stiffness` [N/m]."""
+    ends = (0, count + 1)
+    particles = [particle(f"p{i}", i, 0, fixed=[i in ends, True], mass=mass) for i in range(count + 2)]
+    rods = [rod(f"p{i}", f"p{i + 1}", stiffness=stiffness / 1000, damping=0) for i in range(count + 1)]
+    return model(particles, rods)
+
+
+def pendulum(
+    amplitude: float, length: float = 1.0, gravity: float = 9.81, mass: float = 1.0, stiffness: float = 200.0
+) -> Model:
+    """Return a mass on a stiff rod, released `amplitude` [rad] from the vertical below the pivot."""
+    bob = (length * math.sin(amplitude), -length * math.cos(amplitude))
+    return model(
+        [particle("O", 0, 0, fixed=[True, True]), particle("P", *bob, mass=mass)],
+        [rod("O", "P", stiffness=stiffness, damping=0)],
+        environment={"acceleration": [0, -gravity]},
+    )
+
+
+def von_mises_truss(
+    height: float = 1.0,
+    half_span: float = 5.0,
+    stiffness: float = 1.28e6,
+    force: float = -1.0,
+    guided: bool = True,
+    **properties: Any,
+) -> Model:
+    """Return two rods from fixed supports to a crown B, loaded by `force` [kN] in y; guided in y or free."""
+    return model(
+        [
+            particle("A", -half_span, 0, fixed=[True, True]),
+            particle("B", 0, height, fixed=[guided, False], force=[0, force]),
+            particle("C", half_span, 0, fixed=[True, True]),
+        ],
+        [rod("A", "B", stiffness=stiffness, **properties), rod("B", "C", stiffness=stiffness, **properties)],
+    )
+
+
+def three_bar_truss(force: float, strength: float, stiffness: float = 1000.0) -> Model:
+    """Return a vertical bar of length 1 and two at 45° hung from fixed points, `force` [kN] down at P."""
+    properties = {"stiffness": stiffness, "tensile_strength": strength, "compressive_strength": strength}
+    return model(
+        [
+            particle("L", -1, 1, fixed=[True, True]),
+            particle("M", 0, 1, fixed=[True, True]),
+            particle("R", 1, 1, fixed=[True, True]),
+            particle("P", 0, 0, force=[0, -force]),
+        ],
+        [rod(support, "P", **properties) for support in "LMR"],
+    )
+
+
+def panel_truss(force: float = -10.0) -> Model:
+    """Return four panels of 2 m, height 2 m: pin L1, rollers L3 and L5, `force` [kN] in y at L2.
+
+    Redundant by one; diagonals L1-U2, U2-L3, L3-U4, U4-L5.
+    """
+    lower = [particle(f"L{i}", 2 * i - 2, 0) for i in range(1, 6)]
+    upper = [particle(f"U{i}", 2 * i - 2, 2) for i in range(2, 5)]
+    lower[0]["fixed"] = [True, True]
+    lower[2]["fixed"] = lower[4]["fixed"] = [False, True]
+    lower[1]["force"] = [0, force]
+    chords = [("L1", "L2"), ("L2", "L3"), ("L3", "L4"), ("L4", "L5"), ("U2", "U3"), ("U3", "U4")]
+    posts = [("L2", "U2"), ("L3", "U3"), ("L4", "U4")]
+    diagonals = [("L1", "U2"), ("U2", "L3"), ("L3", "U4"), ("U4", "L5")]
+    return model(lower + upper, [rod(start, end) for start, end in chords + posts + diagonals])
+
+
+def opensees_truss() -> Model:
+    """Return the three-rod elastic truss of the OpenSees manual (inches and kips; E 3000, A 10, 5, 5)."""
+    supports = [particle(str(i), x, 0, fixed=[True, True]) for i, x in enumerate((0, 144, 168), start=1)]
+    return model(
+        [*supports, particle("4", 72, 96, force=[100, -50])],
+        [rod(str(i), "4", stiffness=3000 * area) for i, area in enumerate((10, 5, 5), start=1)],
+    )
+
+
+def two_discs(
+    restitution: float, mass1: float = 1.0, mass2: float = 1.0, offset: float = 0.0, speed: float = 5.0
+) -> Model:
+    """Return two free discs of radius 0.05; 1 comes along x at `speed`, 2 rests, `offset` in y."""
+    return model(
+        [
+            particle("1", -0.5, 0, velocity=[speed, 0], mass=mass1, radius=0.05),
+            particle("2", 0, offset, mass=mass2, radius=0.05),
+        ],
+        [],
+        settings={"restitution": restitution},
+    )

@@ -1,0 +1,260 @@
+"""Equilibrium of small pin-jointed structures by dense matrices, independent of time stepping.
+
+`direct_stiffness` is the linear elastic textbook method. `solve` follows the load through a sequence of
+factors with exact (or linearised) geometry and elastic-perfectly plastic rods. Both take supports as they
+are in the model (a support's displacement is a settlement), forces in kN and lengths in m.
+
+Loads count with the final value of their history. Factors multiply forces and loads; accelerations grow
+from 0 to 1 along with the first factor and then stay.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tests.reference.elements import Document, Elements, Model, read
+
+LARGEST_MOVE = 0.02  # of the shortest rod, in one increment: a jump to another branch is longer
+SMALLEST_INCREMENT = 1e-11  # of the way to the next factor
+RESIDUAL = 1e-12  # of the largest force; the correction made from here on reaches round-off
+ITERATIONS = 12
+
+
+class NoEquilibrium(Exception):
+    """No stable equilibrium follows continuously; `factor` is the last load factor that has one."""
+
+    def __init__(self, factor: float, state: Document):
+        super().__init__(f"No stable equilibrium follows the one at the load factor {factor:.12g}.")
+        self.factor = factor
+        self.state = state
+
+
+def stiffness_matrix(model: Model) -> np.ndarray:
+    """Return the linear elastic stiffness [kN/m] about the original positions, (2n, 2n), no supports."""
+    elements = read(model)
+    stiffness = np.zeros((2 * len(elements.particles), 2 * len(elements.particles)))
+    for rod in elements.rods:
+        along = np.array(rod.span) / math.hypot(*rod.span)
+        pattern = np.concatenate([-along, along])
+        freedoms = [2 * rod.start, 2 * rod.start + 1, 2 * rod.end, 2 * rod.end + 1]
+        stiffness[np.ix_(freedoms, freedoms)] += rod.stiffness / rod.rest_length * np.outer(pattern, pattern)
+    return stiffness
+
+
+def direct_stiffness(model: Model) -> Document:
+    """Return the linear elastic solution at the load factor 1, first-order about the original positions.
+
+    K u = f with prescribed support displacements; misfit and plastic strain enter as initial forces.
+    """
+    elements = read(model)
+    force = (_scaled_forces(elements) + _acceleration_forces(elements)).ravel()
+    u = np.array([particle.displacement for particle in elements.particles]).ravel()
+    free = ~np.array([particle.fixed for particle in elements.particles]).ravel()
+    stiffness = stiffness_matrix(model)
+    initial = np.zeros(u.size)
+    axial_forces = []
+    for rod in elements.rods:
+        length = math.hypot(*rod.span)
+        along = np.array(rod.span) / length
+        n = rod.stiffness * ((length - rod.rest_length) / rod.rest_length - rod.plastic_strain)
+        initial[2 * rod.start : 2 * rod.start + 2] -= n * along
+        initial[2 * rod.end : 2 * rod.end + 2] += n * along
+        axial_forces.append(n)
+    supports = stiffness[np.ix_(free, ~free)] @ u[~free]
+    u[free] = np.linalg.solve(stiffness[np.ix_(free, free)], (force - initial)[free] - supports)
+    reaction = np.where(free, 0.0, stiffness @ u + initial - force)
+    for index, rod in enumerate(elements.rods):
+        along = np.array(rod.span) / math.hypot(*rod.span)
+        ends = u[2 * rod.end : 2 * rod.end + 2] - u[2 * rod.start : 2 * rod.start + 2]
+        axial_forces[index] += rod.stiffness / rod.rest_length * float(along @ ends)
+    plastic_strain = [rod.plastic_strain for rod in elements.rods]
+    return _by_names(elements, 1.0, u, axial_forces, reaction, plastic_strain)
+
+
+def solve(model: Model, factors: Sequence[float] = (1.0,), geometry: str = "exact") -> list[Document]:
+    """Follow the equilibrium through the load factors in turn; return one state per factor.
+
+    `geometry` is "exact", or "linear" for first-order theory with the same yielding. A state holds, by
+    names, displacement [m], reaction [kN], axial_force [kN], plastic_strain, and factor and residual [kN].
+    Raises NoEquilibrium where stability is lost: a limit point, a bifurcation, or a plastic collapse.
+    """
+    path = _Path(model, geometry)
+    path.settle_initial_state()
+    return [path.follow_to(factor) for factor in factors]
+
+
+@dataclass(frozen=True)
+class _Response:
+    """Structure's answer to trial displacements: forces that hold it there, and their derivative."""
+
+    internal: np.ndarray  # kN, shape (2n,)
+    tangent: np.ndarray  # kN/m, shape (2n, 2n)
+    axial_force: list[float]
+    plastic_strain: list[float]
+
+
+class _Path:
+    """The equilibrium path: the last state in equilibrium, and the way on to the next factor.
+
+    The external force is `amounts @ patterns`: so much of the forces and loads, of the accelerations' forces,
+    and of the forces that hold the given initial state.
+    """
+
+    def __init__(self, model: Model, geometry: str):
+        if geometry not in ("exact", "linear"):
+            raise ValueError(f"The geometry {geometry!r} is unknown; use 'exact' or 'linear'.")
+        self.exact = geometry == "exact"
+        self.elements = read(model)
+        self.free = ~np.array([particle.fixed for particle in self.elements.particles]).ravel()
+        self.u = np.array([particle.displacement for particle in self.elements.particles]).ravel()
+        self.plastic_strain = [rod.plastic_strain for rod in self.elements.rods]
+        self.largest_move = LARGEST_MOVE * min(rod.rest_length for rod in self.elements.rods)
+        holding = np.where(self.free, self.respond(self.u).internal, 0.0)
+        scaled = _scaled_forces(self.elements).ravel()
+        self.patterns = np.array([scaled, _acceleration_forces(self.elements).ravel(), holding])
+        self.amounts = np.array([0.0, 0.0, 1.0])
+
+    def settle_initial_state(self) -> None:
+        """Release what holds the given state at zero load (misfit, settlements), little by little."""
+        self.walk_to(np.zeros(3))
+
+    def follow_to(self, factor: float) -> Document:
+        """Change the load factor to `factor`; return the state there."""
+        self.walk_to(np.array([factor, 1.0, 0.0]))
+        return self.state()
+
+    def walk_to(self, amounts: np.ndarray) -> None:
+        """Follow the path to `amounts`; halve an increment that fails, double one that succeeds."""
+        start = self.amounts
+        scale = max(np.abs(start @ self.patterns).max(), np.abs(amounts @ self.patterns).max())
+        reached, increment = 0.0, 1 / 8
+        while reached < 1.0 and scale > 0.0:
+            target = min(1.0, reached + increment)
+            trial = start + target * (amounts - start)
+            found = self.newton(trial @ self.patterns, scale)
+            if found is not None:
+                self.u, self.plastic_strain = found
+                self.amounts = trial
+                reached, increment = target, 2 * increment
+                continue
+            increment = (target - reached) / 2
+            if increment < SMALLEST_INCREMENT:
+                raise NoEquilibrium(float(self.amounts[0]), self.state())
+        self.amounts = amounts
+
+    def newton(self, external: np.ndarray, scale: float) -> tuple[np.ndarray, list[float]] | None:
+        """Return displacements and plastic strains in stable equilibrium with `external`, or None."""
+        free = self.free
+        u = self.u.copy()
+        for _ in range(ITERATIONS):
+            response = self.respond(u)
+            residual = (external - response.internal)[free]
+            tangent = response.tangent[np.ix_(free, free)]
+            largest = max(scale, max(abs(n) for n in response.axial_force))
+            relative = np.abs(residual).max(initial=0.0) / largest
+            try:
+                u[free] += np.linalg.solve(tangent, residual)
+            except np.linalg.LinAlgError:
+                return None
+            if np.abs(u - self.u).max() > self.largest_move:
+                return None
+            if relative <= RESIDUAL:
+                return (u, self.respond(u).plastic_strain) if _is_positive_definite(tangent) else None
+        return None
+
+    def respond(self, u: np.ndarray) -> _Response:
+        """Return the forces and the consistent tangent at u, yielding from the last committed state."""
+        internal = np.zeros(u.size)
+        tangent = np.zeros((u.size, u.size))
+        axial_forces, plastic_strains = [], []
+        for rod, committed in zip(self.elements.rods, self.plastic_strain, strict=True):
+            freedoms = [2 * rod.start, 2 * rod.start + 1, 2 * rod.end, 2 * rod.end + 1]
+            elongation, along, length = self.kinematics(rod.span, rod.rest_length, u[freedoms])
+            strain = elongation / rod.rest_length
+            trial = rod.stiffness * (strain - committed)
+            n = min(max(trial, -rod.compressive_strength), rod.tensile_strength)
+            material = rod.stiffness / rod.rest_length if n == trial else 0.0
+            block = material * np.outer(along, along)
+            if self.exact:
+                block += n / length * (np.eye(2) - np.outer(along, along))
+            internal[freedoms] += n * np.concatenate([-along, along])
+            tangent[np.ix_(freedoms, freedoms)] += np.block([[block, -block], [-block, block]])
+            axial_forces.append(n)
+            plastic_strains.append(committed if n == trial else strain - n / rod.stiffness)
+        return _Response(internal, tangent, axial_forces, plastic_strains)
+
+    def kinematics(
+        self, span: tuple[float, float], rest_length: float, ends: np.ndarray
+    ) -> tuple[float, np.ndarray, float]:
+        """Return elongation [m], unit vector of the axis, and length [m], for the displacements of both ends.
+
+        Exact: L − L₀ = ((2D + Δ)·Δ + D² − L₀²) / (L + L₀), written so that small Δ loses no digits.
+        Linear: L − L₀ = D·Δ/|D| + |D| − L₀, with the axis as it was.
+        """
+        original = np.array(span)
+        change = ends[2:] - ends[:2]
+        original_length = math.hypot(*span)
+        misfit = original_length - rest_length
+        if not self.exact:
+            along = original / original_length
+            return float(along @ change) + misfit, along, original_length
+        present = original + change
+        length = math.hypot(*present)
+        squares = float((2 * original + change) @ change) + misfit * (original_length + rest_length)
+        return squares / (length + rest_length), present / length, length
+
+    def state(self) -> Document:
+        """Return the present state by names."""
+        response = self.respond(self.u)
+        unbalanced = response.internal - self.amounts @ self.patterns
+        reaction = np.where(self.free, 0.0, unbalanced)
+        residual = float(np.abs(unbalanced[self.free]).max(initial=0.0))
+        factor = float(self.amounts[0])
+        state = _by_names(self.elements, factor, self.u, response.axial_force, reaction, self.plastic_strain)
+        return state | {"residual": residual}
+
+
+def _is_positive_definite(matrix: np.ndarray) -> bool:
+    try:
+        np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        return False
+    return True
+
+
+def _scaled_forces(elements: Elements) -> np.ndarray:
+    """Return what the load factor multiplies [kN], shape (particles, 2): forces, and loads' final value."""
+    forces = np.array([particle.force for particle in elements.particles]) + elements.environment_force
+    for load in elements.loads:
+        forces[load.particle] += load.factor(math.inf) * np.array(load.force)
+    return forces
+
+
+def _acceleration_forces(elements: Elements) -> np.ndarray:
+    """Return mass × (own + environment's acceleration) [kN], shape (particles, 2)."""
+    accelerations = [np.add(p.acceleration, elements.environment_acceleration) for p in elements.particles]
+    masses = np.array([particle.mass for particle in elements.particles])
+    forces: np.ndarray = masses[:, None] * np.array(accelerations) / 1000
+    return forces
+
+
+def _by_names(
+    elements: Elements,
+    factor: float,
+    u: np.ndarray,
+    axial_forces: list[float],
+    reaction: np.ndarray,
+    plastic_strains: list[float],
+) -> Document:
+    particles = [particle.name for particle in elements.particles]
+    rods = [rod.name for rod in elements.rods]
+    pairs = {"displacement": u.reshape(-1, 2), "reaction": reaction.reshape(-1, 2)}
+    numbers = {"axial_force": axial_forces, "plastic_strain": plastic_strains}
+    state: Document = {"factor": factor}
+    for title, rows in pairs.items():
+        state[title] = {name: (float(x), float(y)) for name, (x, y) in zip(particles, rows, strict=True)}
+    for title, values in numbers.items():
+        state[title] = {name: float(value) for name, value in zip(rods, values, strict=True)}
+    return state
