@@ -38,19 +38,20 @@ class Camera:
     viewport: Viewport = field(default_factory=Viewport)
 
     @property
-    def _middle(self) -> NDArray[np.float64]:
+    def middle(self) -> Vector:
+        """The pixel in the middle of the viewport."""
         v = self.viewport
-        return np.array([v.left + v.width / 2.0, v.top + v.height / 2.0])
+        return v.left + v.width / 2.0, v.top + v.height / 2.0
 
     def to_pixels(self, points: ArrayLike) -> NDArray[np.float64]:
         """Model points (m), shape (..., 2), as pixels."""
         offset = np.asarray(points, dtype=np.float64) - np.array(self.centre)
-        pixels: NDArray[Any] = self._middle + offset * np.array([self.scale, -self.scale])
+        pixels: NDArray[Any] = np.array(self.middle) + offset * np.array([self.scale, -self.scale])
         return pixels
 
     def to_model(self, pixel: Vector) -> Vector:
         """A pixel as a model point (m)."""
-        middle = self._middle
+        middle = self.middle
         return (
             float(self.centre[0] + (pixel[0] - middle[0]) / self.scale),
             float(self.centre[1] - (pixel[1] - middle[1]) / self.scale),

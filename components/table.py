@@ -30,7 +30,7 @@ class Table(Generic[H]):
     """
 
     def __init__(self, world: World, name: str, kind: type[H]) -> None:
-        self.world: World = weakref.proxy(world)  # no cycle: a world goes when its last owner lets go
+        self._world = weakref.ref(world)
         self.name = name
         self.kind = kind
         self.fields: dict[str, Field[Any]] = {}
@@ -44,6 +44,11 @@ class Table(Generic[H]):
         self._lowest_number = 1  # no "rod n" below it is free
         for field in fields_of(kind):
             self.add_column(field)
+
+    @property
+    def world(self) -> World:
+        """The world it is part of. Raises LookupError if that is gone."""
+        return living(self._world, f"these {self.name}")
 
     def add_column(self, field: Field[Any]) -> None:
         """Add a column that holds the field's default in every row."""
@@ -216,6 +221,14 @@ def _spread(column: Column, where: NDArray[np.bool_]) -> Column:
     spread = np.empty((len(where), *column.shape[1:]), dtype=column.dtype)
     spread[where] = column
     return spread
+
+
+def living(world: weakref.ref[World], elements: str) -> World:
+    """The world of some elements, which do not keep it alive. Raises LookupError if it is gone."""
+    found = world()
+    if found is None:
+        raise LookupError(f"The model of {elements} is gone; keep the model while you use its elements.")
+    return found
 
 
 def fields_of(kind: type) -> list[Field[Any]]:

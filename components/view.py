@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.camera import Camera
+from components.field import Vector
 from components.model import Model
 
 
@@ -31,7 +32,8 @@ class View:
     """How one model is shown in one viewport.
 
     heading: the word top left in red ("Pause"), or "". all_diagrams: force diagrams of all elements.
-    legend: show the meaning of colours. help: show what can be pressed (`keys`: (key, meaning)). pixel_ratio: device pixels per point (HiDPI).
+    legend: show the meaning of colours. help: show what can be pressed (`keys`: (key, meaning)).
+    pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -42,12 +44,11 @@ class View:
     pixel_ratio: float = 1.0
     status: Status = field(default_factory=Status)
     keys: list[tuple[str, str]] = field(default_factory=list)
+    pointer: Vector | None = None
 
 
 def drawn_positions(model: Model) -> NDArray[np.float64]:
     """Where particles are drawn (m), shape (n, 2): original position + displacement × scale."""
     particles = model.particles
-    drawn: NDArray[np.float64] = (
-        particles.position + particles.displacement * model.settings.displacement_scale
-    )
+    drawn: NDArray[np.float64] = particles.position + particles.displacement * model.settings.displacement_scale
     return drawn

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from components.commands import Assign, Command, Create, Delete, Group, Removed, Restore
 from components.field import Column, Field, FieldError, Role, same
-from components.table import Table
+from components.table import Table, living
 
 _world_numbers = itertools.count(1)
 
@@ -24,7 +24,7 @@ _world_numbers = itertools.count(1)
 class Handle:
     """The component of an entity: its identity, whose Fields read and write one row of a table.
 
-    It does not keep its world alive (esper keeps every component, and so would keep every world).
+    It does not keep its world alive: esper keeps every component, and so would keep every world for ever.
     """
 
     __slots__ = ("_world", "entity")
@@ -40,12 +40,7 @@ class Handle:
     @property
     def world(self) -> World:
         """The world it belongs to. Raises LookupError if that is gone."""
-        world = self._world()
-        if world is None:
-            raise LookupError(
-                f"The model of this {self.noun} is gone; keep the model while you use its elements."
-            )
-        return world
+        return living(self._world, f"this {self.noun}")
 
     @property
     def row(self) -> int:

@@ -191,3 +191,21 @@ def _toggle_legend(session: Session, pixel: Vector) -> None:
 @action("toggle help")
 def _toggle_help(session: Session, pixel: Vector) -> None:
     session.view.help = not session.view.help
+
+
+@action("pan")
+def _pan(session: Session, pixel: Vector) -> None:
+    """Here `pixel` is how far the pointer was dragged."""
+    session.view.camera.pan(pixel)
+
+
+@action("toggle full screen")
+def _toggle_full_screen(session: Session, pixel: Vector) -> None:
+    if session.window is not None:
+        session.window.toggle_full_screen()
+
+
+@action("screenshot")
+def _screenshot(session: Session, pixel: Vector) -> None:
+    if session.window is not None:
+        session.notice = f"Picture saved: {session.window.screenshot()}"

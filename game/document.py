@@ -64,7 +64,7 @@ def parse(document: Mapping[str, Any], source: str = "") -> Model:
         return _parsed(document)
     except RecursionError:
         raise ModelError(f"{source or 'The document'} is nested too deeply to be a model.") from None
-    except ModelError as error:
+    except (ModelError, FieldError) as error:
         raise ModelError(f"{source}: {error}" if source else str(error)) from None
 
 
@@ -163,7 +163,7 @@ def _refuse_unknown(
             continue
         if kind is not None and key in {field.key for field in fields_of(kind)}:
             _fail(where, f"'{key}' is computed from the rest and is no part of a model file; remove it.")
-        nearest = difflib.get_close_matches(str(key), keys, n=1, cutoff=0.4)
+        nearest = difflib.get_close_matches(str(key), keys, n=1)
         remedy = f"did you mean '{nearest[0]}'?" if nearest else f"the keys are {', '.join(keys)}."
         _fail(where, f"there is no key '{key}' here; {remedy}")
 
@@ -207,13 +207,10 @@ def _column(model: Model, section: _Section, field: Field[Any]) -> Column:
     def where(row: int) -> str:
         return section.where(row, field.key)
 
-    try:
-        for row, value in enumerate(values if field.shape else ()):
-            if not isinstance(value, list | tuple):  # or a column would take it for one vector for all
-                field.check(value, where(row))
-        return field.check_column(values, len(values), where)
-    except FieldError as error:
-        raise ModelError(str(error)) from None
+    for row, value in enumerate(values if field.shape else ()):
+        if not isinstance(value, list | tuple):  # or two of these could pass for one vector for all
+            field.check(value, where(row))
+    return field.check_column(values, len(values), where)
 
 
 def _names(section: _Section, field: Field[Any]) -> Column:
@@ -231,7 +228,7 @@ def _names(section: _Section, field: Field[Any]) -> Column:
             first = section.where(row_of[name])
             _fail(section.where(row, "name"), f"{first} has this name already; choose another.")
         row_of[name] = row
-        column[row] = name
+        column[row] = str(name)
     return column
 
 
@@ -260,18 +257,13 @@ def _are_names(names: Any, shape: tuple[int, ...]) -> bool:
 
 
 # --- what holds between several facts ------------------------------------------------------------------
-
-
-# The data layer sees to these rules too; here they are checked beforehand to tell the path.
+# The data layer sees to these rules too; here they are checked beforehand, to tell the path.
 
 
 def _check_particles(model: Model, section: _Section, columns: Columns) -> None:
     fixed, velocity = columns["fixed"], columns["velocity"]
     for row in np.flatnonzero((fixed & (velocity != 0.0)).any(axis=1))[:1].tolist():
-        try:
-            check_velocities(section.where(row, "velocity"), fixed[row].tolist(), velocity[row].tolist())
-        except FieldError as error:
-            raise ModelError(str(error)) from None
+        check_velocities(section.where(row, "velocity"), fixed[row].tolist(), velocity[row].tolist())
 
 
 def _check_rods(model: Model, section: _Section, columns: Columns) -> None:
@@ -385,14 +377,12 @@ def _differs_from_default(field: Field[Any], column: Column) -> NDArray[np.bool_
 
 def _json_values(model: Model, field: Field[Any], column: Column) -> list[Any]:
     if field.references is not None:
-        names = np.array(model.tables[field.references].names, dtype=object)
-        values: list[Any] = names[column].tolist()
-    elif column.dtype == np.dtype(object):
-        values = [_copied(value, field.title) for value in column]
-    elif field.nullable:
-        values = [None if value != value else value for value in column.tolist()]
-    else:
-        values = column.tolist()
+        column = model.tables[field.references].column("name")[column]
+    values: list[Any] = column.tolist()
+    if field.dtype is object:
+        return [_copied(value, field.title) for value in values]
+    if field.nullable and field.dtype is float:
+        return [None if value != value else value for value in values]
     return values
 
 
@@ -401,7 +391,8 @@ def _refuse_non_finite(model: Model, kind: type[Handle], field: Field[Any], colu
         return
     finite = np.isfinite(column) | (np.isnan(column) if field.nullable else False)
     for row in np.argwhere(~finite)[:1, 0].tolist():
+        element, value = model.tables[kind.table][row], field.loaded(column[row])
         raise ModelError(
-            f"{model.describe(model.tables[kind.table][row])}: {field.title} is {column[row]}, which no file"
-            " can hold; rewind or undo to a state before it."
+            f"{model.describe(element)}: {field.title} is {value}, which no file can hold;"
+            " rewind or undo to a state before it."
         )

@@ -52,7 +52,7 @@ def apply_override(model: Model, override: str) -> None:
 def _known(name: str, names: Iterable[str], what: str) -> str:
     if name in names:
         return name
-    nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.4)
+    nearest = difflib.get_close_matches(name, names, n=1)
     remedy = f"did you mean '{nearest[0]}'?" if nearest else f"choose one of {', '.join(names)}."
     raise OverrideError(f"there is no {what} '{name}'; {remedy}")
 
@@ -96,7 +96,7 @@ def _field(table: Table[Any], key: str) -> Field[Any]:
     if key not in fields and key in table.fields:
         made_by = "is computed" if table.fields[key].role is Role.DERIVED else "refers to other elements"
         raise OverrideError(f"'{key}' {made_by} and cannot be set here; choose one of {', '.join(fields)}.")
-    return fields[_known(key, fields, f"key of a {table.kind.noun}")]
+    return fields[_known(key, fields, "key")]
 
 
 def _values(field: Field[Any], axis: str, text: str, handles: list[Handle]) -> list[Any]:

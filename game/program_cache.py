@@ -29,7 +29,7 @@ def _sources_of(functions: Iterable[Callable[..., Any]]) -> str:
         path = inspect.getsourcefile(plain) or ""
         texts.setdefault(path, Path(path).read_text(encoding="utf-8"))
         called = (plain.__globals__.get(name) for name in plain.__code__.co_names)
-        pending += [other.py_func for other in called if hasattr(other, "py_func")]
+        pending += [plain_of for other in called if (plain_of := getattr(other, "py_func", None))]
     return "".join(texts[path] for path in sorted(texts))
 
 

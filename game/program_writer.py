@@ -194,7 +194,7 @@ class Writer:
             lines += _indent(1, ["lost = 0.0"])
         lines += _indent(1, self._rod_loop(self._rod_forces(commits=bool(commits))))
         if commits:
-            slot = ACCOUNTS.index(self.commits[0].system.account)
+            slot = ACCOUNTS.index(_account(self.commits[0]))
             lines += _indent(1, [f"account[{slot}] += 1000.0 * lost"])
         return "\n".join(lines)
 
@@ -416,4 +416,4 @@ def _indent(levels: int, lines: Iterable[str]) -> list[str]:
 def _judge() -> Callable[..., Any]:
     from systems.physics.kernels import judge  # numba is imported when a program is built, not before
 
-    return judge  # type: ignore[no-any-return]
+    return judge

@@ -6,7 +6,6 @@ import csv
 import io
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -85,10 +84,8 @@ def _elements(model: Model, name: str) -> dict[str, dict[str, Any]]:
     for field in REPORTED[name]:
         column = table.column(field.name)
         for row in np.argwhere(~np.isfinite(column))[:1, 0].tolist():
-            raise ResultError(
-                f"{model.describe(table[row])}: {field.title} is {column[row]}, not a finite number;"
-                " report a state before it."
-            )
+            element, value = model.describe(table[row]), field.loaded(column[row])
+            raise ResultError(f"{element}: {field.title} is {value}, not finite; report a state before it.")
         columns.append(column.tolist())
     keys = [field.name for field in REPORTED[name]]
     rows = zip(*columns, strict=True)
@@ -100,7 +97,7 @@ def _plain(value: Any, where: str) -> Any:
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, float) and not math.isfinite(value):
-        raise ResultError(f"{where} is {value}, not a finite number; report a state before it.")
+        raise ResultError(f"{where} is {value}, not finite; report a state before it.")
     if isinstance(value, Mapping):
         return {str(key): _plain(item, f"{where}.{key}") for key, item in value.items()}
     if isinstance(value, list | tuple):
@@ -133,20 +130,15 @@ def as_csv(run: Run) -> str:
 def _quantities(made: State) -> Iterator[tuple[Any, ...]]:
     """(element, name, quantity, value, unit) of every number in a state."""
     for group, fields in REPORTED.items():
+        noun = _NOUNS[group]
         for name, values in made[group].items():
             for field in fields:
                 value = values[field.name]
                 if field.shape:
-                    for axis, part in zip("xy", value, strict=True):
-                        yield _NOUNS[group], name, f"{field.name}_{axis}", part, field.unit
+                    yield noun, name, f"{field.name}_x", value[0], field.unit
+                    yield noun, name, f"{field.name}_y", value[1], field.unit
                 else:
-                    yield (
-                        _NOUNS[group],
-                        name,
-                        field.name,
-                        int(value) if value is True or value is False else value,
-                        field.unit,
-                    )
+                    yield noun, name, field.name, int(value) if field.dtype is bool else value, field.unit
     for name, value in made["energy"].items():
         yield "energy", "", name, value, "J"
     for name in ("residual", "collisions"):
@@ -183,18 +175,19 @@ def _state_lines(made: State) -> Iterator[str]:
 
 def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list[list[str]]:
     """Two rows of headings, then one row per element."""
-    titles, units, factors = [_NOUNS[group]], [""], []
-    for field in REPORTED[group]:
-        unit, factor = _IN_TABLES.get(field.name, (field.unit, 1.0))
-        for axis in (" x", " y") if field.shape else ("",):
-            titles.append(field.title + axis)
-            units.append(unit)
-            factors.append(factor)
-    rows = [titles, units]
+    columns = [
+        (field, axis, *_IN_TABLES.get(field.name, (field.unit, 1.0)))
+        for field in REPORTED[group]
+        for axis in (range(2) if field.shape else (None,))
+    ]
+    titles = [field.title + ("" if axis is None else " " + "xy"[axis]) for field, axis, _, _ in columns]
+    rows = [[_NOUNS[group], *titles], ["", *(unit for _, _, unit, _ in columns)]]
     for name, values in elements.items():
-        numbers = chain.from_iterable(v if isinstance(v, list) else [v] for v in values.values())
-        scaled = (v if isinstance(v, bool) else v * factor for v, factor in zip(numbers, factors, strict=True))
-        rows.append([name, *map(_shown, scaled)])
+        cells = [name]
+        for field, axis, _, factor in columns:
+            value = values[field.name] if axis is None else values[field.name][axis]
+            cells.append(_shown(value if isinstance(value, bool) else value * factor))
+        rows.append(cells)
     return rows
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from components.environment import Environment
 from components.field import Vector
@@ -31,6 +31,7 @@ from systems.base import Phase, StopReason, System
 from systems.input.bindings import action_for, help_lines
 from systems.physics.pace import natural_pace
 
+COMPILING = "Preparing the step program for this kind of model; a few seconds, only the first time."
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
 
 
@@ -38,12 +39,22 @@ DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come
 class Frame:
     """What frame systems are given: the session, the time since the last frame, and its actions.
 
-    actions: (name, pixel) in the order in which a person caused them.
+    pressed: (key or button, pixel) in the order in which a person pressed them; see input/bindings.py.
     """
 
     session: Session
     elapsed: float
-    actions: list[tuple[str, Vector]] = field(default_factory=list)
+    pressed: list[tuple[str, Vector]] = field(default_factory=list)
+
+
+class Window(Protocol):
+    """What a window does for actions that only make sense in one."""
+
+    def toggle_full_screen(self) -> None:
+        """Fill the screen, or stop doing so."""
+
+    def screenshot(self) -> str:
+        """Save a picture of the window; returns where."""
 
 
 class Session:
@@ -66,6 +77,7 @@ class Session:
         self.view = view or View()
         self.view.camera.fit(drawn_positions(model))
         self.notice = ""
+        self.window: Window | None = None
         self._beginning: Snapshot | None = None
         self._pace_revision = -1
 
@@ -206,27 +218,21 @@ class Session:
     def act(self, name: str, pixel: Vector | None = None) -> None:
         """Perform a named action with the pointer at a pixel (default: the middle of the view)."""
         if name not in ACTIONS:
-            raise ValueError(models.nearest_sentence("action", name, ACTIONS))
-        ACTIONS[name](self, pixel if pixel is not None else self._middle)
+            raise ValueError(self.model.missing("actions", name, ACTIONS))
+        ACTIONS[name](self, pixel if pixel is not None else self.view.camera.middle)
         self.scenes.apply(self)
 
-    @property
-    def _middle(self) -> Vector:
-        viewport = self.view.camera.viewport
-        return (viewport.left + viewport.width / 2.0, viewport.top + viewport.height / 2.0)
-
-    def press(self, key: str) -> None:
-        """Press a key, such as "k", "escape" or "ctrl+z"; a key that means nothing here does nothing."""
+    def press(self, key: str, pixel: Vector | None = None) -> None:
+        """Press a key, such as "k", "escape" or "ctrl+z"; one that means nothing in this scene does nothing."""
         name = action_for(self.scene, key)
         if name is not None:
-            self.act(name)
+            self.notice = ""
+            self.act(name, pixel)
 
-    def click(self, x: float, y: float, key: str = "click") -> None:
-        """Click at a point of the model (m)."""
-        name = action_for(self.scene, key)
-        if name is not None:
-            pixel = self.view.camera.to_pixels((x, y))
-            self.act(name, (float(pixel[0]), float(pixel[1])))
+    def click(self, x: float, y: float, button: str = "click") -> None:
+        """Click at a point of the model (m); `button` may be "ctrl+click"."""
+        pixel = self.view.camera.to_pixels((x, y))
+        self.press(button, (float(pixel[0]), float(pixel[1])))
 
     # --- frames --------------------------------------------------------------------------------------
 
@@ -234,14 +240,14 @@ class Session:
         """One frame: input → actions → transition → fixed steps → events → picture."""
         frame = Frame(self, elapsed)
         self._phase(Phase.INPUT, frame)
-        for name, pixel in frame.actions:
-            self.act(name, pixel)
+        for key, pixel in frame.pressed:
+            self.press(key, pixel)
         self.scenes.apply(self)
         self._phase(Phase.EDIT, frame)
         if self.scenes.active.runs:
             self._steps(elapsed)
         self._phase(Phase.EVENTS, frame)
-        self._update_view()
+        self.update_view()
         self._phase(Phase.RENDER, frame)
         return frame
 
@@ -250,7 +256,7 @@ class Session:
 
     def _steps(self, elapsed: float) -> None:
         self._note_beginning()
-        if self.simulation.halted:
+        if self.simulation.halted or self._announce_compiling():
             return
         self.simulation.advance(0)
         self._find_pace()
@@ -259,29 +265,43 @@ class Session:
         taken = self.simulation.advance(due)
         self.clock.took(taken, self.simulation.compute_seconds - before)
 
+    def _announce_compiling(self) -> bool:
+        """Let one frame be drawn that says what the person is about to wait for."""
+        if self.simulation.ready:
+            if self.notice == COMPILING:
+                self.notice = ""
+            return False
+        announced, self.notice = self.notice == COMPILING, COMPILING
+        return not announced
+
     def _find_pace(self) -> None:
         revision = self.simulation.armed_revision
         if revision != self._pace_revision:
             self._pace_revision = revision
             self.clock.natural = natural_pace(self.model)
 
-    def _update_view(self) -> None:
+    @property
+    def busy(self) -> bool:
+        """True while frames change something without a person's doing."""
+        return self.scenes.active.runs and not self.simulation.halted
+
+    def update_view(self) -> None:
+        """Bring what the view says about the run up to date."""
         view, scene = self.view, self.scenes.active
-        running = scene.runs and not self.simulation.halted
         view.heading = scene.heading
         view.keys = help_lines(scene.name) if view.help else []
         view.status = Status(
             time=self.time,
-            speed=self.clock.shown_pace if running else 0.0,
-            state=self._state_word(running),
+            speed=self.clock.shown_pace if self.busy else 0.0,
+            state=self._state_word(),
             hint=scene.hint(self),
             problem=self._problem(),
         )
 
-    def _state_word(self, running: bool) -> str:
+    def _state_word(self) -> str:
         if self.simulation.halted:
             return "at rest" if self.simulation.reason is StopReason.REST else "diverged"
-        if not running:
+        if not self.busy:
             return "paused"
         return "running, slower than asked" if self.clock.lagging else "running"
 

@@ -14,7 +14,7 @@ from game.catalogue import DRIVERS
 from game.program import Program
 from game.program_writer import REVIEW_INTERVAL
 from game.schedule import Schedule
-from systems.base import Driver, StopReason
+from systems.base import Driver, StepSystem, StopReason
 from systems.loads.system import loads_end
 from systems.physics.spectrum import spectrum
 
@@ -23,6 +23,7 @@ ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error â
 SMALL = 200  # rods up to which a model is small
 FREE_STEP = 1e-3  # s, where nothing limits the step
 DOUBTFUL_STEP = 1e-2  # times 1/Ï‰, for an integrator that is stable at no step
+MOST_RETRIES = 6  # times that an automatic step is halved before a run is given up
 DEFAULT_DRIVER = "velocity_verlet"
 
 OBSERVED = (
@@ -81,6 +82,7 @@ class Simulation:
         self._armed_revision = -1
         self._before_edit: Column | None = None
         self._safe: Snapshot | None = None
+        self._retries = 0
         model.before_change = self._before_change
         model.derive(Derivation(OBSERVED, self._sources(), lambda world: self.observe()))
         if self._started:  # a saved run: it goes on with the step size it had
@@ -120,6 +122,11 @@ class Simulation:
         return self._program
 
     @property
+    def ready(self) -> bool:
+        """False if the next step or observation needs a program that is not loaded yet."""
+        return self._program is not None or self._key(self.schedule.step_plan(self.model)) in self._programs
+
+    @property
     def armed_revision(self) -> int:
         """Changes whenever the document that is run changed."""
         return self._armed_revision
@@ -151,9 +158,12 @@ class Simulation:
             self._safe = Snapshot.take(self.model)
         return self.program
 
+    def _key(self, systems: list[StepSystem]) -> tuple[str, ...]:
+        return (*(system.name for system in systems), self.driver.name)
+
     def _bind(self) -> None:
         systems = self.schedule.step_plan(self.model)
-        key = (*(system.name for system in systems), self.driver.name)
+        key = self._key(systems)
         if key in self._programs:
             self._programs[key].bind()
         else:
@@ -222,35 +232,50 @@ class Simulation:
 
     def advance(self, steps: int) -> int:
         """Take up to `steps` fixed steps; returns how many. Stops at rest and before garbage."""
-        program = self._arm()
+        program, clock = self._arm(), self.model.clock
         started = time.perf_counter()
-        taken = 0
-        while taken < steps and not self.halted:
-            done, self.reason = program.advance(steps - taken)
-            taken += done
+        first = clock.steps
+        while clock.steps - first < steps and not self.halted:
+            _, self.reason = program.advance(steps - (clock.steps - first))
             if self.reason is StopReason.REST:
-                self.message = f"At rest since t = {self.model.clock.time:.6g} s."
-            elif self.reason is StopReason.DIVERGED:
+                self.message = f"At rest since t = {clock.time:.6g} s."
+            elif self.reason is StopReason.DIVERGED and not self._retry():
                 self._explain_divergence()
             elif self.reason is StopReason.REVIEW:
-                self._safe = Snapshot.take(self.model)
+                self._safe, self._retries = Snapshot.take(self.model), 0
                 self._review_step(edited=False)
         self.compute_seconds += time.perf_counter() - started
-        return taken
+        return clock.steps - first
+
+    def _retry(self) -> bool:
+        """An automatic step that proved too long (the geometry changed) is halved from the last safe state."""
+        if self.model.settings.time_step is not None or self._retries == MOST_RETRIES:
+            return False
+        assert self._safe is not None
+        size = self.model.clock.step_size
+        self._safe.restore(self.model)
+        self._take_step_size(0.5 * size)
+        self._retries += 1
+        self.reason = StopReason.DONE
+        return True
 
     def run_to(self, target: float) -> None:
         """Advance to exactly this time (s): full steps, then one short one."""
         self._arm()
         clock = self.model.clock
         while not self.halted:
-            left = target - clock.time
-            if left <= 4.0 * math.ulp(target):
-                return
-            full = int(left / clock.step_size * (1.0 + 1e-12))
-            if full == 0:
+            full = self.full_steps_to(target)
+            if full > 0:
+                self.advance(min(full, REVIEW_INTERVAL))
+            elif target - clock.time > 4.0 * math.ulp(target):
                 self._short_step(target)
             else:
-                self.advance(min(full, REVIEW_INTERVAL - clock.steps % REVIEW_INTERVAL))
+                return
+
+    def full_steps_to(self, target: float) -> int:
+        """How many full steps end at or before a time (s), rounding apart."""
+        clock = self.model.clock
+        return max(int((target - clock.time) / clock.step_size * (1.0 + 1e-12)), 0)
 
     def _short_step(self, target: float) -> None:
         size, start = self.model.clock.step_size, self.model.clock.time
@@ -266,7 +291,7 @@ class Simulation:
         self._arm()
         clock = self.model.clock
         while not self.halted and clock.time < limit:
-            left = int((limit - clock.time) / clock.step_size)
+            left = self.full_steps_to(limit)
             if left == 0:
                 self.run_to(limit)
             else:

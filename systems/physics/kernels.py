@@ -49,7 +49,7 @@ def judge(measures, account, dt, shadow, loads_are_over):
     residual, largest, round_off = measures[4], measures[5], measures[6]
     supplied = account[0] + potential - account[5]
     mechanical = kinetic + elastic - shadow * dt * dt / 8.0 * power_norm
-    created = mechanical - (account[4] + supplied)
+    created = mechanical + account[1] + account[2] + account[3] - (account[4] + supplied)
     account[6] = max(account[6], largest)
     account[7] = max(account[7], abs(account[4]), abs(account[0]), abs(supplied))
     if not created <= DIVERGENCE_SHARE * account[7] + 1e-24:

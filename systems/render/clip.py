@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from components.camera import Viewport
+
 Points = NDArray[np.float64]
+
+
+def bounds(viewport: Viewport) -> tuple[Points, Points]:
+    """Top left and bottom right corner in pixels, each (2,)."""
+    low = np.array([viewport.left, viewport.top], dtype=np.float64)
+    return low, low + np.array([viewport.width, viewport.height], dtype=np.float64)
 
 
 def clip_segments(

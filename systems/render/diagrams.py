@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.tags import DiagramShown
-from systems.render.labels import Label
+from systems.render.labels import Label, half_size
 from systems.render.marks import Fills, Points, Stamps, Strokes
 from systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
 from systems.render.supports import NO_SUPPORT
@@ -19,7 +19,7 @@ from systems.render.theme import Colour, faded
 SMALLEST_FORCE = 1e-4  # kN; less is drawn as none
 _MOST_VALUES = 400  # written at once; the largest forces first
 _FEW_VALUES = 24  # up to which each carries its unit
-_VALUE_SIZE = 12.0  # points
+_VALUE_SIZE, _DENSE_SIZE = 12.0, 11.0  # points, of few values and of many
 _BACKING = 0.86  # opacity behind a value
 
 
@@ -34,14 +34,14 @@ def written(force: float) -> str:
 
 
 def scale_step(largest: float, scale: float, room: float) -> float:
-    """The largest of 1, 0.5, 0.2, 0.1, 0.05, … by which `largest` × `scale` fits into `room`.
+    """The largest of 1, 0.9, … 0.2, 0.1, 0.09, … by which `largest` × `scale` fits into `room`.
 
     Shrinking all diagrams alike keeps them comparable; steps keep their scale steady while forces change.
     """
     if not largest * scale > room:
         return 1.0
     decade = 10.0 ** math.floor(math.log10(room / (largest * scale)))
-    return next(decade * step for step in (5.0, 2.0, 1.0) if largest * scale * decade * step <= room)
+    return decade * math.floor(room / (largest * scale) / decade + 1e-9)
 
 
 def draw_rod_diagrams(sheet: Sheet) -> None:
@@ -63,7 +63,7 @@ def draw_rod_diagrams(sheet: Sheet) -> None:
     ):
         if mask.any():
             _draw_rectangles(sheet, name, start[mask], end[mask], (normal * height[:, None])[mask])
-    _label_rods(sheet, values, rows, (start + end) / 2, normal, height)
+    _label_rods(sheet, values, (start + end) / 2, normal, height)
 
 
 def _shown_rods(sheet: Sheet) -> tuple[NDArray[np.float64], Rows, Points, Points]:
@@ -81,7 +81,7 @@ def _shown_rods(sheet: Sheet) -> tuple[NDArray[np.float64], Rows, Points, Points
 def _room(sheet: Sheet, start: Points, end: Points) -> float:
     """The greatest height (pixels) of a diagram that leaves the structure readable."""
     window = min(sheet.viewport.width, sheet.viewport.height)
-    return max(min(0.2 * window, 0.6 * typical_length(start, end)), 10.0 * sheet.unit)
+    return max(min(0.15 * window, 0.6 * typical_length(start, end)), 10.0 * sheet.unit)
 
 
 def _outward_normals(sheet: Sheet, rows: Rows, start: Points, end: Points) -> Points:
@@ -119,22 +119,24 @@ def _draw_rectangles(sheet: Sheet, name: str, start: Points, end: Points, rise: 
 def _label_rods(
     sheet: Sheet,
     values: NDArray[np.float64],
-    rows: Rows,
     middle: Points,
     normal: Points,
     height: NDArray[np.float64],
 ) -> None:
     theme, u = sheet.theme, sheet.unit
-    largest = np.argsort(-np.abs(values), kind="stable")[:_MOST_VALUES]
-    ending = " kN" if len(rows) <= _FEW_VALUES else ""
-    for index in largest.tolist():
+    few = len(values) <= _FEW_VALUES
+    size, ending = (sheet.font(_VALUE_SIZE), " kN") if few else (sheet.font(_DENSE_SIZE), "")
+    seen = np.flatnonzero(sheet.sees(middle))
+    for index in seen[np.argsort(-np.abs(values[seen]), kind="stable")][:_MOST_VALUES].tolist():
         value = float(values[index])
+        text = written(value) + ending
         name = "zero" if abs(value) <= SMALLEST_FORCE else "tension" if value > 0.0 else "compression"
+        half = half_size(text, size, "semibold", u)
         sheet.labels.append(
             Label(
-                written(value) + ending,
-                list(_places_by_rod(middle[index], normal[index], float(height[index]), u)),
-                sheet.font(_VALUE_SIZE),
+                text,
+                list(_places_by_rod(middle[index], normal[index], float(height[index]), half, few)),
+                size,
                 getattr(theme, name),
                 # Two digits only, so that tiny changes do not reorder the labels from frame to frame.
                 rank=-float(f"{abs(value):.1e}"),
@@ -144,16 +146,22 @@ def _label_rods(
         )
 
 
-def _places_by_rod(middle: Points, normal: Points, height: float, u: float) -> Iterator[tuple[float, float]]:
-    """Where the value of a rod may stand: in the middle of its diagram, along it, beyond it, behind the rod."""
+def _places_by_rod(
+    middle: Points, normal: Points, height: float, half: tuple[float, float], roomy: bool
+) -> Iterator[tuple[float, float]]:
+    """Where the value of a rod may stand: in its diagram if it fits, else beyond, else behind the rod.
+
+    Among many rods it stands on its own one first, since beside it, it might be taken for another's.
+    reach is how far a label extends from its middle along the normal, slide a step along the rod.
+    """
     along = np.array([-normal[1], normal[0]])
-    clear = (7.0 + 13.0 * abs(normal[0])) * u  # from a line to the middle of a label beside it
-    centre = height / 2 if height > 20.0 * u else height + clear
-    for offset in (0.0, 26.0 * u, -26.0 * u, 52.0 * u, -52.0 * u):
-        yield tuple(middle + normal * centre + along * offset)
-    for offset in (0.0, 30.0 * u, -30.0 * u):
-        yield tuple(middle + normal * (height + clear) + along * offset)
-        yield tuple(middle - normal * clear + along * offset)
+    reach = float(np.abs(normal) @ half)
+    slide = float(np.abs(along) @ half)
+    inside = [height / 2] if height > 1.2 * reach or not roomy else []
+    for distance in (*inside, height + reach, height / 2, -reach):
+        for step in (0.0, 1.0, -1.0, 2.0, -2.0):
+            x, y = middle + normal * distance + along * step * slide
+            yield float(x), float(y)
 
 
 def draw_particle_diagrams(sheet: Sheet, crowd: NDArray[np.float64], sides: NDArray[np.int64]) -> None:
@@ -181,7 +189,7 @@ def draw_particle_diagrams(sheet: Sheet, crowd: NDArray[np.float64], sides: NDAr
             sheet.marks.append(
                 Stamps("arrow", tail[mask], length, sheet.unit, sheet.theme.force, sheet.theme.force, turns)
             )
-    sheet.occupancy.block_squares(tail + DIRECTIONS[direction] * length / 2, np.full(len(rows), 0.3 * length))
+    sheet.occupancy.block_squares(tail + DIRECTIONS[direction] * length / 2, np.full(len(rows), 0.2 * length))
     _label_arrows(sheet, value, tail + DIRECTIONS[direction] * length / 2, outer)
 
 
@@ -212,25 +220,37 @@ def _arrow_places(
 
 def _label_arrows(sheet: Sheet, value: NDArray[np.float64], middle: Points, side: NDArray[np.int64]) -> None:
     theme, u = sheet.theme, sheet.unit
-    half = ARROW_LENGTH * u / 2
-    ending = " kN" if len(value) <= _FEW_VALUES else ""
-    for index in np.argsort(-np.abs(value), kind="stable")[:_MOST_VALUES].tolist():
-        (x, y), (dx, dy) = middle[index], DIRECTIONS[side[index]]
-        wide = 34.0 * u if ending else 24.0 * u
-        beyond = (x + dx * (half + wide), y + dy * (half + 9.0 * u))
-        beside = [(x + wide, y), (x - wide, y)] if dx == 0.0 else [(x, y - 12.0 * u), (x, y + 12.0 * u)]
-        corners = [
-            (x + dx * half + sx * wide, y + dy * half + sy * 12.0 * u) for sx in (1, -1) for sy in (-1, 1)
-        ]
+    few = len(value) <= _FEW_VALUES
+    size, ending = (sheet.font(_VALUE_SIZE), " kN") if few else (sheet.font(_DENSE_SIZE), "")
+    seen = np.flatnonzero(sheet.sees(middle))
+    for index in seen[np.argsort(-np.abs(value[seen]), kind="stable")][:_MOST_VALUES].tolist():
+        text = written(abs(float(value[index]))) + ending
+        half = half_size(text, size, "semibold", u)
         sheet.labels.append(
             Label(
-                written(abs(float(value[index]))) + ending,
-                [beyond, *beside, *corners],
-                sheet.font(_VALUE_SIZE),
+                text,
+                list(_places_by_arrow(middle[index], DIRECTIONS[side[index]], half, u)),
+                size,
                 theme.force,
-                # Arrows are few and cannot be read without their value: before the rods.
+                # Arrows are few and say little without their value: before the rods.
                 rank=-1e9 - float(f"{abs(value[index]):.1e}"),
                 weight="semibold",
                 backing=faded(theme.background, _BACKING),
             )
         )
+
+
+def _places_by_arrow(
+    middle: Points, outward: Points, half: tuple[float, float], u: float
+) -> Iterator[tuple[float, float]]:
+    """Where the value of an arrow may stand: beyond its outer end, beside it, beside that end."""
+    across = np.array([outward[1], outward[0]])
+    length, width = float(np.abs(outward) @ half), float(np.abs(across) @ half)
+    beyond, beside = ARROW_LENGTH * u / 2 + length, width + 7.5 * u
+    places = [(beyond, 0.0)]
+    for along in (0.0, length - ARROW_LENGTH * u / 2, ARROW_LENGTH * u / 2):
+        places += [(along, beside), (along, -beside)]
+    places += [(beyond, width), (beyond, -width), (0.0, beside + width), (0.0, -beside - width)]
+    for along, sideways in places:
+        x, y = middle + outward * along + across * sideways
+        yield float(x), float(y)

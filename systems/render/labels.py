@@ -17,7 +17,7 @@ _CELL = 3.0  # points: how finely the picture is divided into free and taken
 
 
 class Occupancy:
-    """Which parts of a viewport are taken: firmly (other labels, panels), or by lines one had better not cover."""
+    """Which parts of a viewport are taken (by labels, panels), and which are crossed by lines."""
 
     def __init__(self, viewport: Viewport, unit: float) -> None:
         self.viewport = viewport
@@ -48,12 +48,14 @@ class Occupancy:
         self.lined[rows[ok], columns[ok]] = True
 
     def is_free(self, left: float, top: float, width: float, height: float, *, off_lines: bool) -> bool:
-        """True if a rectangle lies in the viewport and nothing takes any of it."""
-        v = self.viewport
-        if left < v.left or top < v.top or left + width > v.left + v.width or top + height > v.top + v.height:
-            return False
+        """True if nothing takes any of a rectangle."""
         cells = self._cells(left, top, width, height)
         return not (self.taken[cells].any() or (off_lines and self.lined[cells].any()))
+
+    def crossed(self, left: float, top: float, width: float, height: float) -> int:
+        """How much of a rectangle is taken or crossed by lines, in cells."""
+        cells = self._cells(left, top, width, height)
+        return int((self.taken[cells] | self.lined[cells]).sum())
 
     def _cells(self, left: float, top: float, width: float, height: float) -> tuple[slice, slice]:
         x, y = left - self.viewport.left, top - self.viewport.top
@@ -66,7 +68,7 @@ class Label:
     """A text that is to be placed with its middle at one of `places`, the best first.
 
     rank: labels of lower rank come first. backing: colour behind the text, or None; a label without one
-    does not cover lines. pinned: it is drawn at its first place if nowhere is free.
+    does not cover lines.
     """
 
     text: str
@@ -76,29 +78,40 @@ class Label:
     rank: float
     weight: str = "regular"
     backing: Colour | None = None
-    pinned: bool = False
+
+
+def half_size(text: str, size: int, weight: str, unit: float) -> tuple[float, float]:
+    """Half the width and height in pixels of a label, its margins included."""
+    return text_width(text, size, weight) / 2 + 3.5 * unit, line_height(size) / 2 + 0.5 * unit
 
 
 def place_labels(labels: Iterable[Label], occupancy: Occupancy, unit: float) -> list[Mark]:
     """Marks of the labels that found a free place, in order of rank; the others are left out."""
     marks: list[Mark] = []
     for label in sorted(labels, key=lambda label: label.rank):
-        width = text_width(label.text, label.size, label.weight) + 7.0 * unit
-        height = line_height(label.size) + 1.0 * unit
-        place = _free_place(label, width, height, occupancy)
+        half = half_size(label.text, label.size, label.weight, unit)
+        place = _free_place(label, *half, occupancy)
         if place is None:
             continue
         x, y = place
-        occupancy.block(x - width / 2, y - height / 2, width, height)
+        box = x - half[0], y - half[1], 2 * half[0], 2 * half[1]
+        occupancy.block(*box)
         if label.backing is not None:
-            marks.append(Panel(x - width / 2, y - height / 2, width, height, 4.0 * unit, label.backing))
+            marks.append(Panel(*box, 4.0 * unit, label.backing))
         marks.append(Text(label.text, x, y, label.size, label.colour, label.weight, "centre"))
     return marks
 
 
-def _free_place(label: Label, width: float, height: float, occupancy: Occupancy) -> tuple[float, float] | None:
+def _free_place(
+    label: Label, half_width: float, half_height: float, occupancy: Occupancy
+) -> tuple[float, float] | None:
+    """The first free one of a label's places, each moved into the viewport where it sticks out."""
+    v = occupancy.viewport
     for off_lines in (True,) if label.backing is None else (True, False):
         for x, y in label.places:
-            if occupancy.is_free(x - width / 2, y - height / 2, width, height, off_lines=off_lines):
+            x = min(max(x, v.left + half_width), v.left + v.width - half_width)
+            y = min(max(y, v.top + half_height), v.top + v.height - half_height)
+            box = x - half_width, y - half_height, 2 * half_width, 2 * half_height
+            if occupancy.is_free(*box, off_lines=off_lines):
                 return x, y
-    return label.places[0] if label.pinned else None
+    return None

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from components.camera import Viewport
 from components.view import View
-from systems.render.clip import clip_segments
+from systems.render.clip import bounds, clip_segments
 from systems.render.deformed import drawn_positions
 from systems.render.labels import Label, Occupancy
 from systems.render.marks import Mark, Points
@@ -64,6 +64,13 @@ class Sheet:
         """A font size in whole pixels."""
         return max(round(points * self.unit), 7)
 
+    def sees(self, points: Points) -> NDArray[np.bool_]:
+        """For each of `points` (n, 2), whether it lies in the viewport."""
+        low, high = bounds(self.viewport)
+        beyond = np.maximum(low - points, points - high).max(axis=1, initial=-np.inf)
+        inside: NDArray[np.bool_] = beyond <= 0.0
+        return inside
+
     def tagged(self, tag: type, table: str) -> Rows:
         """Rows of the entities of one table that carry a tag."""
         return np.array([h.row for h in self.model.tagged(tag) if h.table == table], dtype=np.intp)
@@ -89,9 +96,8 @@ def measure(model: Model, view: View, theme: Theme) -> Sheet:
     camera, unit = view.camera, view.pixel_ratio
     centres = camera.to_pixels(drawn_positions(model))
     ends = model.rods.between.astype(np.intp)
-    low = np.array([camera.viewport.left, camera.viewport.top], dtype=np.float64)
-    high = low + [camera.viewport.width, camera.viewport.height]
-    margin = 150.0 * unit
+    low, high = bounds(camera.viewport)
+    margin = 150.0 * unit  # so that the ends of a rod that leaves the viewport, and their labels, are not seen
     start, end, rods = clip_segments(centres[ends[:, 0]], centres[ends[:, 1]], low - margin, high + margin)
     radii = np.maximum(model.particles.radius * camera.scale, _smallest_radius(start, end, unit))
     reach = radii[:, None] + 40.0 * unit
@@ -119,5 +125,5 @@ def typical_length(start: Points, end: Points) -> float:
 
 
 def _smallest_radius(start: Points, end: Points, unit: float) -> float:
-    """5 points, so that a particle can be seen and hit; less where rods are so short that it would hide them."""
+    """5 points, so that a particle can be seen and hit; less where it would hide short rods."""
     return float(np.clip(0.18 * typical_length(start, end), 1.25 * unit, 5.0 * unit))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.tags import Hovered, Selected
-from systems.render.clip import clip_segments
+from systems.render.clip import bounds, clip_segments
 from systems.render.labels import Label
 from systems.render.marks import Points, Rectangles, Stamps, Strokes
 from systems.render.sheet import FEW, MANY, Rows, Sheet, typical_length
@@ -38,7 +38,8 @@ def draw_grid(sheet: Sheet) -> None:
 def _grid_lines(low: float, high: float, spacing: float, sheet: Sheet) -> NDArray[np.float64]:
     pixels = spacing * sheet.view.camera.scale
     step = spacing * _coarsening(_CLOSEST_LINES * sheet.unit / pixels)
-    return step * np.arange(math.ceil(low / step), math.floor(high / step) + 1)
+    first, last = math.ceil(low / step), math.floor(high / step)
+    return step * np.arange(first, last + 1, dtype=np.float64)
 
 
 def _coarsening(least: float) -> float:
@@ -64,12 +65,8 @@ def draw_ghost(sheet: Sheet) -> None:
     original = sheet.view.camera.to_pixels(sheet.model.particles.position)
     moved = np.hypot(*(sheet.centres - original).T)
     far = (moved[sheet.ends] > _GHOST_FROM * sheet.unit).any(axis=1)
-    viewport = sheet.viewport
-    low = np.array([viewport.left, viewport.top], dtype=np.float64)
     ends = sheet.ends[far]
-    start, end, _ = clip_segments(
-        original[ends[:, 0]], original[ends[:, 1]], low, low + [viewport.width, viewport.height]
-    )
+    start, end, _ = clip_segments(original[ends[:, 0]], original[ends[:, 1]], *bounds(sheet.viewport))
     if len(start):
         dashes = _dashed(start, end, 5.0 * sheet.unit)
         sheet.marks.append(Strokes(*dashes, sheet.unit, sheet.theme.ghost))

@@ -15,9 +15,10 @@ Polygon = NDArray[np.float64]
 Parts = list[tuple[str, Polygon]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
 
 ARROW_LENGTH = 20.0  # points
-SUPPORT_DEPTH = 23.0  # points from the particle's rim to the far side of the ground
+SUPPORT_DEPTH = 25.0  # points from the particle's rim to the far side of the ground
 _RIM = 1.75  # points
-_HALF_WIDTH, _HEIGHT = 8.5, 14.0  # points, of a support's triangle
+_HALF_WIDTH, _HEIGHT = 9.5, 16.0  # points, of a support's triangle
+_GROUND = 13.0  # points, half the length of the ground under it
 
 
 def symbol_parts(symbol: str, size: float, unit: float) -> Parts:
@@ -65,18 +66,17 @@ def _triangle(unit: float) -> Parts:
 
 def _roller(size: float, unit: float) -> Parts:
     """Support in one direction: a triangle, a gap and the line that it slides along."""
-    line = _bar(_HEIGHT + 2.5, -11.0, _HEIGHT + 4.25, 11.0)
+    line = _bar(_HEIGHT + 3.0, -_GROUND, _HEIGHT + 4.75, _GROUND)
     return [*_triangle(unit), ("ink", line * unit)]
 
 
 def _pinned(size: float, unit: float) -> Parts:
     """Support in both directions: a triangle on a filled plate with hatched ground."""
-    plate = _bar(_HEIGHT - 0.5, -11.0, _HEIGHT + 3.5, 11.0)
+    plate = _bar(_HEIGHT - 0.5, -_GROUND, _HEIGHT + 3.0, _GROUND)
+    top, bottom, slant, thick = _HEIGHT + 2.5, _HEIGHT + 9.0, 5.0, 1.4
     hatch = [
-        np.array(
-            [[_HEIGHT + 3.0, y], [_HEIGHT + 8.0, y + 4.5], [_HEIGHT + 8.0, y + 5.7], [_HEIGHT + 3.0, y + 1.2]]
-        )
-        for y in np.arange(-10.5, 7.0, 4.1)
+        np.array([[top, y], [top, y + thick], [bottom, y + thick - slant], [bottom, y - slant]])
+        for y in np.arange(-_GROUND + slant, _GROUND - thick + 0.1, 5.15)
     ]
     return [*_triangle(unit), *(("ink", part * unit) for part in [plate, *hatch])]
 

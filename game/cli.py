@@ -1,0 +1,207 @@
+"""The command line: `pinjoint [MODEL]` opens the window; subcommands work without one."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NoReturn
+
+from components.field import FieldError
+from components.settings import INTEGRATORS
+from game import __version__, models
+from game.overrides import OverrideError, apply_override
+from game.report import FOUND, run_at, run_until_rest
+from game.results import as_csv, as_json, as_table
+from game.session import DEFAULT_LIMIT, Session
+
+ANSWERED, NOT_ANSWERED, BAD_INPUT, NO_DISPLAY = 0, 1, 2, 3
+
+_FORMATS = {"table": as_table, "json": as_json, "csv": as_csv}
+
+
+class Refusal(Exception):
+    """Bad usage or a bad model: one sentence for the person, and the exit status."""
+
+    def __init__(self, sentence: str, status: int = BAD_INPUT) -> None:
+        super().__init__(sentence)
+        self.status = status
+
+
+class Parser(argparse.ArgumentParser):
+    """Says what is wrong in one sentence, and where help is."""
+
+    def error(self, message: str) -> NoReturn:
+        raise Refusal(f"{message[:1].upper()}{message[1:]}. See: {self.prog} --help")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit status."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        command = words[0] if words and words[0] in _COMMANDS else "open"
+        return _COMMANDS[command](words[1:] if command in words[:1] else words)
+    except (Refusal, models.ModelError, OverrideError, FieldError) as error:
+        print(f"pinjoint: {error}", file=sys.stderr)
+        return getattr(error, "status", BAD_INPUT)
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:
+        sys.stderr.close()
+        return NOT_ANSWERED
+
+
+# --- opening the window ----------------------------------------------------------------------------------
+
+
+def _open(words: Sequence[str]) -> int:
+    parser = Parser(
+        prog="pinjoint",
+        description="A laboratory for particles and pin-jointed structures.",
+        epilog="commands: run, render, bench (each with --help). Bundled models: "
+        + ", ".join(models.bundled()),
+    )
+    parser.add_argument("model", nargs="?", help="a model file, or the name of a bundled model")
+    parser.add_argument("--version", action="version", version=f"pinjoint {__version__}")
+    options = parser.parse_args(words)
+    model = models.load(options.model) if options.model else models.load(_EMPTY)
+    try:
+        from game.app import NoDisplay, open_window
+    except ImportError as error:
+        raise Refusal(f"The window needs pygame-ce, which cannot be imported: {error}.", NO_DISPLAY) from None
+    try:
+        open_window(model, options.model or "")
+    except NoDisplay as error:
+        raise Refusal(
+            f"No window can be opened: {error}. Without a display, use: pinjoint run MODEL", NO_DISPLAY
+        ) from None
+    return ANSWERED
+
+
+_EMPTY = {"format": "pinjoint model", "version": 1}
+
+
+# --- running without a window ------------------------------------------------------------------------------
+
+
+def _run(words: Sequence[str]) -> int:
+    parser = Parser(
+        prog="pinjoint run", description="Compute a model without a window and print what came of it."
+    )
+    _add_model(parser)
+    how = parser.add_mutually_exclusive_group()
+    how.add_argument("--until-rest", action="store_true", help="run until nothing moves (the default)")
+    how.add_argument("--at", metavar="T1,T2,…", help="report the state at exactly these times (s)")
+    parser.add_argument(
+        "--limit",
+        type=_positive,
+        default=DEFAULT_LIMIT,
+        metavar="SECONDS",
+        help="simulated time to wait for rest",
+    )
+    parser.add_argument("--format", choices=tuple(_FORMATS), default="table")
+    parser.add_argument("--output", metavar="FILE", help="write to a file instead of standard output")
+    options = parser.parse_args(words)
+    session = _session(options)
+    if options.at is not None:
+        run = run_at(session, options.model, _times(options.at))
+    else:
+        run = run_until_rest(session, options.model, options.limit)
+    _write(_FORMATS[options.format](run), options.output)
+    return ANSWERED if run["status"] in FOUND else NOT_ANSWERED
+
+
+def _add_model(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("model", help="a model file, or the name of a bundled model")
+    parser.add_argument("--integrator", metavar="NAME", help=f"one of {', '.join(INTEGRATORS)}")
+    parser.add_argument("--time-step", type=_positive, metavar="S", help="fixed time step in seconds")
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="PATH=VALUE",
+        help="change the model first, such as particles.B.force=120,-160 or rods.*.damping=0",
+    )
+
+
+def _session(options: argparse.Namespace) -> Session:
+    session = Session.open(options.model)
+    for override in options.set:
+        apply_override(session.model, override)
+    if options.integrator is not None:
+        session.settings.integrator = options.integrator
+    if options.time_step is not None:
+        session.settings.time_step = options.time_step
+    return session
+
+
+def _positive(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is not a number of seconds above 0")
+    return value
+
+
+def _times(text: str) -> list[float]:
+    try:
+        times = [float(part) for part in text.split(",")]
+    except ValueError:
+        raise Refusal(f"--at {text}: write times in seconds separated by commas, such as 0.1,0.5.") from None
+    if any(not 0.0 <= time < float("inf") for time in times) or times != sorted(times):
+        raise Refusal(f"--at {text}: times must be at least 0 s and ascending.")
+    return times
+
+
+def _write(text: str, output: str | None) -> None:
+    if output is None:
+        sys.stdout.write(text)
+        return
+    try:
+        Path(output).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise Refusal(f"{output} cannot be written: {error.strerror}. Choose another --output.") from None
+
+
+# --- pictures ----------------------------------------------------------------------------------------------
+
+
+def _render(words: Sequence[str]) -> int:
+    parser = Parser(prog="pinjoint render", description="Draw a model to a PNG file, without a display.")
+    _add_model(parser)
+    parser.add_argument("--output", required=True, metavar="FILE.png")
+    parser.add_argument("--size", default="1280x800", metavar="WIDTHxHEIGHT", help="pixels")
+    parser.add_argument("--until-rest", action="store_true", help="run until at rest first")
+    parser.add_argument("--at", type=_positive, metavar="T", help="run to this time (s) first")
+    parser.add_argument("--diagrams", action="store_true", help="show all force diagrams")
+    parser.add_argument("--theme", default="light", help="light, dark, …")
+    parser.add_argument("--limit", type=_positive, default=DEFAULT_LIMIT, help=argparse.SUPPRESS)
+    options = parser.parse_args(words)
+    width, height = _size(options.size)
+    session = _session(options)
+    status = "time reached"
+    if options.until_rest:
+        status = session.run(until="rest", limit=options.limit)
+    elif options.at is not None:
+        status = session.run(time=options.at)
+    session.view.all_diagrams = options.diagrams
+    from game.app import render_png
+
+    try:
+        render_png(session, options.output, (width, height), options.theme)
+    except OSError as error:
+        raise Refusal(f"{options.output} cannot be written: {error}. Choose another --output.") from None
+    return ANSWERED if status in FOUND else NOT_ANSWERED
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, _, height = text.partition("x")
+    if not (width.isdigit() and height.isdigit() and 16 <= int(width) <= 16384 and 16 <= int(height) <= 16384):
+        raise Refusal(f"--size {text}: write it like 1280x800, each from 16 to 16384 pixels.")
+    return int(width), int(height)
+
+
+_COMMANDS = {"open": _open, "run": _run, "render": _render}

@@ -1,0 +1,301 @@
+"""Overlays: heading, status bar, problem banner, legend, scale bar, and what an empty model says."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from systems.render.marks import Mark, Panel, Rectangles, Stamps, Strokes, Text
+from systems.render.sheet import Sheet
+from systems.render.theme import Colour, faded
+from systems.render.typography import line_height, shortened, text_width, wrapped
+
+_EDGE = 14.0  # points between overlays and the edges of the viewport
+_BAR = 28.0  # points, height of the status bar
+_PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
+
+
+def draw_overlays(sheet: Sheet) -> list[Mark]:
+    """All overlays, in painter's order; each takes its place from what comes after it, and from the labels."""
+    marks, bottom = _status_bar(sheet)
+    heading, heading_end = _heading(sheet)
+    legend, top = _legend(sheet, heading_end)
+    if sheet.model.particles.count == 0:
+        return marks + heading + legend + _empty(sheet, bottom) + _problem(sheet, top, bottom)
+    return marks + heading + legend + _problem(sheet, top, bottom) + _scale_bar(sheet, bottom)
+
+
+# --- what numbers look like ------------------------------------------------------------------------
+
+
+def written_time(seconds: float, digits: int = 4) -> str:
+    """A time with an SI prefix, such as "1.234 ms"; above 1000 s plain seconds."""
+    if seconds == 0.0:
+        return "0 s"
+    factor, prefix = next((f, p) for f, p in _PREFIXES if abs(seconds) >= 0.0999995 * f or f == 1e-9)
+    value = seconds / factor
+    decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
+    return f"{value:.{decimals}f} {prefix}s".replace("-", "−")
+
+
+def written_length(metres: float) -> str:
+    """A round length in the unit that suits it, such as "20 cm"."""
+    for factor, unit in ((1000.0, "km"), (1.0, "m"), (0.01, "cm"), (0.001, "mm")):
+        if metres >= 0.999 * factor:
+            return f"{metres / factor:.4g} {unit}"
+    return f"{metres * 1e6:.4g} µm"
+
+
+def written_speed(speed: float) -> str:
+    """How fast the simulation is shown, such as "1 s shown = 0.35 ms simulated"; "" when halted."""
+    if speed == 0.0:
+        return ""
+    if abs(speed - 1.0) < 0.005:
+        return "real time"
+    return f"1 s shown = {_trimmed(written_time(speed, 3))} simulated"
+
+
+def _trimmed(text: str) -> str:
+    number, unit = text.split(" ")
+    return f"{number.rstrip('0').rstrip('.') if '.' in number else number} {unit}"
+
+
+# --- the status bar --------------------------------------------------------------------------------
+
+
+def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
+    """The bar at the bottom, if there is anything to say, and the height that is left above it."""
+    v, u, theme, status = sheet.viewport, sheet.unit, sheet.theme, sheet.view.status
+    bottom = float(v.top + v.height)
+    if not (status.state or (status.hint and sheet.model.particles.count)):
+        return [], bottom
+    top, thin = round(bottom - _BAR * u), max(round(u), 1)
+    bar = np.array([[v.left, top, v.width, v.top + v.height - top]], dtype=np.int64)
+    hairline = np.array([[v.left, top, v.width, thin]], dtype=np.int64)
+    sheet.occupancy.block(v.left, top, v.width, _BAR * u)
+    marks: list[Mark] = [Rectangles(bar, theme.panel), Rectangles(hairline, theme.line)]
+    middle = (top + thin + bottom) / 2
+    x = v.left + _EDGE * u
+    if status.state:
+        dot = np.array([[x + 3.5 * u, middle]])
+        marks.append(Stamps("disc", dot, 3.5 * u, u, _state_colour(sheet), _state_colour(sheet)))
+        x += 13.0 * u
+        state = status.state[0].upper() + status.state[1:]
+        x = _append(sheet, marks, state, x, middle, theme.text, "semibold")
+        for text in (f"t = {written_time(status.time)}", written_speed(status.speed)):
+            x = _append(sheet, marks, text, x, middle, theme.text)
+    _append_hint(sheet, marks, x, middle)
+    return marks, float(top)
+
+
+def _append(
+    sheet: Sheet, marks: list[Mark], text: str, x: float, y: float, colour: Colour, weight: str = "regular"
+) -> float:
+    """Write a part of the status bar if it fits; returns where the next one begins."""
+    size = sheet.font(12.0)
+    width = text_width(text, size, weight)
+    if not text or x + width > sheet.viewport.left + sheet.viewport.width - _EDGE * sheet.unit:
+        return x
+    marks.append(Text(text, x, y, size, colour, weight))
+    return x + width + 18.0 * sheet.unit
+
+
+def _append_hint(sheet: Sheet, marks: list[Mark], x: float, y: float) -> None:
+    """The next possible step at the right end, as much of it as there is room for."""
+    v, u, size = sheet.viewport, sheet.unit, sheet.font(12.0)
+    if sheet.model.particles.count == 0:
+        return
+    right = v.left + v.width - _EDGE * u
+    text = shortened(sheet.view.status.hint, right - x - 6.0 * u, size)
+    if text == sheet.view.status.hint or len(text) > 12:
+        marks.append(Text(text, right, y, size, sheet.theme.muted, anchor="right"))
+
+
+def _state_colour(sheet: Sheet) -> Colour:
+    theme, status = sheet.theme, sheet.view.status
+    if status.problem:
+        return theme.problem
+    return {"running": theme.running, "paused": theme.halted, "halted": theme.halted}.get(
+        status.state.lower(), theme.resting
+    )
+
+
+# --- heading and problem ---------------------------------------------------------------------------
+
+
+def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
+    """The mode's name, or what is expected, top left; and its right and lower end."""
+    v, u, size = sheet.viewport, sheet.unit, sheet.font(20.0)
+    left, top = v.left + _EDGE * u, v.top + _EDGE * u
+    if not sheet.view.heading:
+        return [], (v.left, v.top)
+    lines = wrapped(sheet.view.heading, v.width - 2 * _EDGE * u, size, "semibold")
+    marks: list[Mark] = []
+    for number, line in enumerate(lines):
+        y = top + 9.0 * u + number * line_height(size)
+        sheet.occupancy.block(left, y - size / 2, text_width(line, size, "semibold"), size)
+        marks.append(Text(line, left, y, size, sheet.theme.heading, "semibold"))
+    right = left + max(text_width(line, size, "semibold") for line in lines)
+    return marks, (right, top + len(lines) * line_height(size) - 4.0 * u)
+
+
+def _problem(sheet: Sheet, top: float, bottom: float) -> list[Mark]:
+    """Why something stopped, wrapped, on a panel above the status bar, or at the top where that is freer."""
+    problem = sheet.view.status.problem
+    if not problem:
+        return []
+    v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(13.0)
+    pad, icon = 12.0 * u, 18.0 * u
+    width = min(v.width - 2 * _EDGE * u, 640.0 * u)
+    room = width - 2 * pad - icon - 10.0 * u
+    lines = wrapped(problem, room, size)
+    most = max(int((bottom - top - 60.0 * u) / line_height(size)), 1)
+    if len(lines) > most:
+        lines = [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), room, size)]
+    height = len(lines) * line_height(size) + 2 * pad - 4.0 * u
+    left = v.left + (v.width - width) / 2
+    places = [bottom - height - 10.0 * u, top + 10.0 * u]
+    upper = min(places, key=lambda place: sheet.occupancy.crossed(left, place, width, height))
+    sheet.occupancy.block(left, upper, width, height)
+    first = upper + height / 2 - (len(lines) - 1) * line_height(size) / 2
+    at = np.array([[left + pad + icon / 2, first]])
+    return [
+        Panel(left, upper, width, height, 6.0 * u, theme.problem_panel, theme.problem),
+        Stamps("disc", at, icon / 2, u, theme.problem, theme.problem),
+        Text("!", float(at[0, 0]), first, size, theme.problem_panel, "semibold", "centre"),
+        *(
+            Text(line, left + pad + icon + 10.0 * u, first + number * line_height(size), size, theme.problem)
+            for number, line in enumerate(lines)
+        ),
+    ]
+
+
+# --- legend ----------------------------------------------------------------------------------------
+
+_MEANINGS = {
+    "tension": "tension (kN)",
+    "compression": "compression (kN)",
+    "yielding": "yielding",
+    "force": "external force (kN)",
+}
+
+
+def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark], float]:
+    """The colours that occur and what they mean, in a row top right; and the lower end of all at the top.
+
+    It stands beside the heading if there is room, else below it, in several rows if it must.
+    """
+    v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(11.0)
+    names = [name for name in _MEANINGS if name in sheet.legend] if sheet.view.legend else []
+    right = v.left + v.width - 10.0 * u
+    if not names or v.width < 240.0 * u:
+        return [], heading_end[1]
+    pad, swatch, gap, height = 9.0 * u, 16.0 * u, 14.0 * u, 24.0 * u
+    entries = [swatch + 6.0 * u + text_width(_MEANINGS[name], size) for name in names]
+    beside = sum(entries) + gap * (len(names) - 1) + 2 * pad <= right - heading_end[0] - gap
+    top = v.top + 10.0 * u if beside else heading_end[1] + 8.0 * u
+    marks: list[Mark] = []
+    for first, last in _rows(entries, gap, right - v.left - 10.0 * u - 2 * pad):
+        width = sum(entries[first:last]) + gap * (last - first - 1) + 2 * pad
+        left, x = right - width, right - width + pad
+        sheet.occupancy.block(left, top, width, height)
+        marks.append(Panel(left, top, width, height, 6.0 * u, faded(theme.panel, 0.94), theme.line))
+        for name, entry in zip(names[first:last], entries[first:last], strict=True):
+            marks += _swatch(sheet, name, x, top + height / 2, swatch)
+            marks.append(Text(_MEANINGS[name], x + swatch + 6.0 * u, top + height / 2, size, theme.text))
+            x += entry + gap
+        top += height + 4.0 * u
+    return marks, max(top - 4.0 * u, heading_end[1])
+
+
+def _rows(widths: list[float], gap: float, room: float) -> list[tuple[int, int]]:
+    """Ranges of entries that fit side by side into `room`, at least one each."""
+    rows, first, used = [], 0, 0.0
+    for index, width in enumerate(widths):
+        if index > first and used + width > room:
+            rows.append((first, index))
+            first, used = index, 0.0
+        used += width + gap
+    return [*rows, (first, len(widths))]
+
+
+def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:
+    """The thing itself, small: a diagram, a yielding rod, an arrow."""
+    u, colour = sheet.unit, getattr(sheet.theme, name)
+    ends = np.array([[x, y]]), np.array([[x + width, y]])
+    if name == "force":
+        return [Stamps("arrow", ends[0], width, u, colour, colour)]
+    if name == "yielding":
+        return [Strokes(*ends, 3.0 * u, colour)]
+    return [
+        Panel(x, y - 5.0 * u, width, 10.0 * u, 1.0 * u, faded(colour, 0.18), colour),
+    ]
+
+
+# --- scale -----------------------------------------------------------------------------------------
+
+
+def _scale_bar(sheet: Sheet, bottom: float) -> list[Mark]:
+    """A round length to scale, and by how much displacements and diagrams are scaled.
+
+    At the bottom, left or in the middle or right, wherever it hides least.
+    """
+    v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(11.0)
+    longest = min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale
+    decade = 10.0 ** math.floor(math.log10(longest))
+    metres = next(decade * step for step in (5.0, 2.0, 1.0) if decade * step <= longest * (1 + 1e-9))
+    length, thin, tick = metres * sheet.view.camera.scale, max(round(1.5 * u), 1), round(7.0 * u)
+    text = shortened(_scales(sheet, metres), v.width - length - 3 * _EDGE * u, size)
+    width, height = length + 8.0 * u + text_width(text, size) + 12.0 * u, tick + 12.0 * u
+    top = bottom - height - 6.0 * u
+    lefts = [v.left + 8.0 * u, v.left + (v.width - width) / 2, v.left + v.width - width - 8.0 * u]
+    left = min(lefts, key=lambda place: sheet.occupancy.crossed(place, top, width, height))
+    sheet.occupancy.block(left, top, width, height)
+    x, y, end = round(left + 6.0 * u), round(top + 6.0 * u), round(left + 6.0 * u + length)
+    boxes = [[x, y + tick, end - x, thin], [x, y, thin, tick], [end - thin, y, thin, tick]]
+    return [
+        Panel(left, top, width, height, 4.0 * u, faded(theme.background, 0.8)),
+        Rectangles(np.array(boxes, dtype=np.int64), theme.muted),
+        Text(text, end + 8.0 * u, y + (tick + thin) / 2, size, theme.muted),
+    ]
+
+
+def _scales(sheet: Sheet, metres: float) -> str:
+    scale = sheet.model.settings.displacement_scale
+    exaggeration = [f"displacements ×{scale:g}"] if scale != 1.0 else []
+    return "   ".join([written_length(metres), *exaggeration, *sheet.notes])
+
+
+# --- nothing to see --------------------------------------------------------------------------------
+
+
+def _empty(sheet: Sheet, bottom: float) -> list[Mark]:
+    """A card in the middle that says how to begin."""
+    v, u, theme = sheet.viewport, sheet.unit, sheet.theme
+    title, size = sheet.font(20.0), sheet.font(13.0)
+    width = min(v.width - 2 * _EDGE * u, 400.0 * u)
+    lines = wrapped(sheet.view.status.hint, width - 48.0 * u, size) if sheet.view.status.hint else []
+    height = 124.0 * u + len(lines) * 1.1 * line_height(size)
+    middle, top = v.left + v.width / 2, v.top + (bottom - v.top - height) / 2
+    marks: list[Mark] = [
+        Panel(middle - width / 2, top, width, height, 12.0 * u, theme.background, theme.line),
+        *_emblem(sheet, middle, top + 24.0 * u),
+        Text("An empty model", middle, top + 92.0 * u, title, theme.text, "semibold", "centre"),
+    ]
+    y = top + 122.0 * u
+    for number, line in enumerate(lines):
+        at = y + number * 1.1 * line_height(size)
+        marks.append(Text(line, middle, at, size, theme.muted, anchor="centre"))
+    return marks
+
+
+def _emblem(sheet: Sheet, middle: float, top: float) -> list[Mark]:
+    """Two small triangles of rods."""
+    u, theme = sheet.unit, sheet.theme
+    nodes = np.array([[-36.0, 42.0], [0.0, 42.0], [36.0, 42.0], [-18.0, 6.0], [18.0, 6.0]]) * u + [middle, top]
+    rods = np.array([[0, 1], [1, 2], [0, 3], [3, 1], [1, 4], [4, 2], [3, 4]])
+    return [
+        Strokes(nodes[rods[:, 0]], nodes[rods[:, 1]], 2.0 * u, theme.ghost),
+        Stamps("ring", nodes, 5.0 * u, u, theme.ghost, theme.background),
+    ]

@@ -1,0 +1,175 @@
+"""Canvas: puts pictures on a pygame surface."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from functools import partial
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+import pygame
+import pygame.gfxdraw
+from numpy.typing import NDArray
+
+from systems.render.coverage import stroke_coverage, stroke_pixels_estimate
+from systems.render.marks import Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
+from systems.render.symbols import symbol_parts
+from systems.render.theme import Colour
+from systems.render.typography import WEIGHTS, capital_height
+
+_FINE = 8  # symbols and corners are drawn this much larger, then reduced
+_PHASES = 4  # positions of a symbol within a pixel, each way
+_LARGEST_SYMBOL = 96.0  # pixels; beyond it, it is drawn afresh each time
+_MOST_CACHED = 4000  # rendered texts, symbols and panels
+_MOST_STROKED = 250_000  # pixels to be looked at; beyond it the faster, coarser lines do
+
+
+class Canvas:
+    """Draws pictures; keeps the texts, symbols and panels it has rendered."""
+
+    def __init__(self) -> None:
+        if not pygame.font.get_init():
+            pygame.font.init()
+        self._cache: dict[Any, Any] = {}
+        self._files = {
+            weight: (files("assets") / "fonts" / name).read_bytes() for weight, name in WEIGHTS.items()
+        }
+
+    def draw(self, surface: pygame.Surface, picture: Picture) -> None:
+        """Draw a picture into its viewport of a surface of 32 bits per pixel."""
+        v = picture.viewport
+        before = surface.get_clip()
+        surface.set_clip(pygame.Rect(v.left, v.top, v.width, v.height).clip(before))
+        surface.fill(picture.background)
+        for mark in picture.marks:
+            match mark:
+                case Strokes():
+                    self._strokes(surface, mark)
+                case Stamps():
+                    self._stamps(surface, mark)
+                case Text():
+                    self._text(surface, mark)
+                case Fills():
+                    self._fills(surface, mark)
+                case Rectangles():
+                    for box in mark.boxes.tolist():
+                        surface.fill(mark.colour, box)
+                case Panel():
+                    self._panel(surface, mark)
+        surface.set_clip(before)
+
+    def _kept(self, key: Any, make: Callable[[], Any]) -> Any:
+        found = self._cache.get(key)
+        if found is None:
+            if len(self._cache) >= _MOST_CACHED:
+                self._cache.clear()
+            found = self._cache[key] = make()
+        return found
+
+    # --- lines and areas -----------------------------------------------------------------------------
+
+    def _strokes(self, surface: pygame.Surface, mark: Strokes) -> None:
+        if stroke_pixels_estimate(mark.start, mark.end, mark.width) > _MOST_STROKED:
+            width = max(round(mark.width), 1)
+            colour = mark.colour
+            for start, end in zip(mark.start.tolist(), mark.end.tolist(), strict=True):
+                pygame.draw.aaline(surface, colour, start, end, width)
+        else:
+            x, y, amount = stroke_coverage(mark.start, mark.end, mark.width)
+            _blend(surface, x, y, amount, mark.colour)
+
+    def _fills(self, surface: pygame.Surface, mark: Fills) -> None:
+        for corners in np.round(mark.corners).astype(np.int64).tolist():
+            pygame.gfxdraw.filled_polygon(surface, corners, mark.colour)
+
+    def _panel(self, surface: pygame.Surface, mark: Panel) -> None:
+        left, top = round(mark.left), round(mark.top)
+        size = round(mark.left + mark.width) - left, round(mark.top + mark.height) - top
+        key = ("panel", size, mark.radius, mark.fill, mark.outline)
+        surface.blit(self._kept(key, partial(_rounded, size, mark)), (left, top))
+
+    # --- symbols and texts ---------------------------------------------------------------------------
+
+    def _stamps(self, surface: pygame.Surface, mark: Stamps) -> None:
+        fine = np.floor(mark.at * _PHASES + 0.5).astype(np.int64)
+        whole, phase = np.divmod(fine, _PHASES)
+        pairs = []
+        for (x, y), (px, py) in zip(whole.tolist(), phase.tolist(), strict=True):
+            key = (mark.symbol, mark.size, mark.unit, mark.ink, mark.hollow, mark.turns, px, py)
+            image, left, top = self._kept(key, partial(_rendered, mark, px / _PHASES, py / _PHASES))
+            pairs.append((image, (x + left, y + top)))
+        surface.fblits(pairs)
+
+    def _text(self, surface: pygame.Surface, mark: Text) -> None:
+        key = (mark.text, mark.size, mark.colour, mark.weight)
+        font = self._font(mark.size, mark.weight)
+        image = self._kept(key, lambda: font.render(mark.text, True, mark.colour[:3]))
+        shift = {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * image.get_width()
+        baseline = round(mark.y + capital_height(mark.size) / 2)
+        surface.blit(image, (round(mark.x - shift), baseline - font.get_ascent()))
+
+    def _font(self, size: int, weight: str) -> pygame.font.Font:
+        font: pygame.font.Font = self._kept(
+            ("font", size, weight), lambda: pygame.font.Font(io.BytesIO(self._files[weight]), size)
+        )
+        return font
+
+
+def _blend(
+    surface: pygame.Surface,
+    x: NDArray[np.int32],
+    y: NDArray[np.int32],
+    amount: NDArray[np.uint8],
+    colour: Colour,
+) -> None:
+    """Blend a colour into pixels by amounts of 1 to 255, inside the surface's clip."""
+    clip = surface.get_clip()
+    inside = (x >= clip.left) & (x < clip.right) & (y >= clip.top) & (y < clip.bottom)
+    if not inside.all():
+        x, y, amount = x[inside], y[inside], amount[inside]
+    pixels = pygame.surfarray.pixels2d(surface)
+    pitch = pixels.strides[1] // 4
+    flat = np.lib.stride_tricks.as_strided(pixels, (pitch * (pixels.shape[1] - 1) + pixels.shape[0],), (4,))
+    index = y.astype(np.intp) * pitch + x
+    old = flat[index].view(np.uint8).reshape(-1, 4).astype(np.uint16)
+    new = np.array([surface.map_rgb(colour[:3])], dtype=np.uint32).view(np.uint8).astype(np.uint16)
+    part = (amount.astype(np.uint16) * np.uint16(colour[3]) + np.uint16(127)) // np.uint16(255)
+    part = part[:, None]
+    mixed = (old * (np.uint16(255) - part) + new * part + np.uint16(127)) // np.uint16(255)
+    flat[index] = mixed.astype(np.uint8).view(np.uint32).ravel()
+
+
+def _rendered(mark: Stamps, phase_x: float, phase_y: float) -> tuple[pygame.Surface, int, int]:
+    """A symbol's image, and where its top left pixel lies relative to the pixel of its origin."""
+    turn = [(1, 0, 0, 1), (0, -1, 1, 0), (-1, 0, 0, -1), (0, 1, -1, 0)][mark.turns % 4]
+    rotation = np.array(turn, dtype=np.float64).reshape(2, 2)
+    parts = [(role, corners @ rotation.T) for role, corners in symbol_parts(mark.symbol, mark.size, mark.unit)]
+    phase = np.array([phase_x, phase_y])
+    everything = np.concatenate([corners for _, corners in parts])
+    low = np.floor(everything.min(axis=0)).astype(int) - 1
+    size = np.ceil(everything.max(axis=0)).astype(int) + 2 - low
+    fine = _FINE if mark.size <= _LARGEST_SYMBOL else 2
+    large = pygame.Surface((size * fine).tolist(), pygame.SRCALPHA)
+    large.fill((*mark.ink[:3], 0))
+    for role, corners in parts:
+        colour = mark.ink if role == "ink" else mark.hollow
+        pygame.draw.polygon(large, colour, ((corners + phase - low) * fine).round().tolist())
+    return pygame.transform.smoothscale(large, size.tolist()), int(low[0]), int(low[1])
+
+
+def _rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:
+    """A box with smooth corners."""
+    fine = 4
+    large = pygame.Surface((size[0] * fine, size[1] * fine), pygame.SRCALPHA)
+    edge = mark.outline or mark.fill
+    large.fill((*edge[:3], 0))
+    radius = round(mark.radius * fine)
+    box = large.get_rect()
+    if mark.outline is not None:
+        pygame.draw.rect(large, mark.outline, box, border_radius=radius)
+        box = box.inflate(-2 * fine, -2 * fine)
+        radius = max(radius - fine, 0)
+    pygame.draw.rect(large, mark.fill, box, border_radius=radius)
+    return pygame.transform.smoothscale(large, size)

@@ -1,0 +1,664 @@
+"""World: handles, commands, transactions, versions, derived columns, tags, and esper contexts."""
+
+from __future__ import annotations
+
+import gc
+import time
+from typing import Any
+
+import esper
+import numpy as np
+import pytest
+
+from components.commands import Assign, Command, Create, Delete, Group
+from components.derived import DERIVATIONS
+from components.environment import Environment
+from components.field import FieldError, Role
+from components.grid import Grid
+from components.load import Load
+from components.model import KINDS, Model
+from components.particle import DEFAULT_MASS, Particle
+from components.rod import Rod, spawn_rods
+from components.tags import DiagramShown, Selected
+from components.world import Derivation, World
+
+
+def triangle() -> Model:
+    """A(0,0), B(1,1), C(2,0) m with rods AB, BC, CA."""
+    model = Model()
+    model.create(Particle, 3, name=["A", "B", "C"], position=[(0, 0), (1, 1), (2, 0)])
+    spawn_rods(model, [(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"])
+    return model
+
+
+def logged(model: World) -> list[Command]:
+    log: list[Command] = []
+    model.on_command = log.append
+    return log
+
+
+def snapshot(model: World) -> dict[str, Any]:
+    """Everything in the tables, bit for bit."""
+    return {
+        f"{table.name}.{name}": column[: table.count].tolist()
+        if column.dtype == object
+        else column[: table.count].tobytes()
+        for table in model.tables.values()
+        for name, column in [("entity", table.entity), *((n, table.current(n)) for n in table.fields)]
+    } | {table.name: list(table) for table in model.tables.values()}
+
+
+# --- handles -----------------------------------------------------------------------------------------
+
+
+def test_a_handle_outlives_its_entity_and_says_so() -> None:
+    model = triangle()
+    log = logged(model)
+    rod = model.rods["AB"]
+    model.delete([rod])
+    assert not rod.exists
+    assert repr(rod) == "<deleted rod>"
+    for act in (lambda: rod.row, lambda: rod.stiffness, lambda: rod.ends):
+        with pytest.raises(LookupError, match=r"This rod was deleted; undo brings it back\."):
+            act()
+    with pytest.raises(LookupError, match="This rod was deleted"):
+        rod.stiffness = 1.0
+    model.delete([rod])
+    model.apply(log.pop())
+    assert log == []
+    assert rod.exists
+    assert model.rods["AB"] is rod
+    assert repr(rod) == "<rod AB>"
+
+
+def test_a_command_for_a_deleted_entity_changes_nothing() -> None:
+    model = triangle()
+    rod = model.rods["AB"]
+    model.delete([rod])
+    before = snapshot(model)
+    with pytest.raises(LookupError, match="was deleted"):
+        model.execute(Assign("rods", "stiffness", (rod.entity,), np.array([1.0])))
+    with pytest.raises(LookupError, match="was deleted"):
+        model.assign([model.rods["BC"], rod], "stiffness", [1.0, 2.0])
+    assert snapshot(model) == before
+
+
+def test_a_handle_finds_its_row_wherever_it_moves() -> None:
+    model = triangle()
+    b = model.particles["B"]
+    assert (b.row, b.world) == (1, model)
+    model.delete([model.particles["A"]])
+    assert b.row == 0
+    assert b.position == (1.0, 1.0)
+    assert [rod.name for rod in model.rods] == ["BC"]
+    assert model.handle(b.entity) is b
+    with pytest.raises(LookupError):
+        model.handle(10**6)
+
+
+def test_deleting_a_particle_deletes_its_rods_and_loads() -> None:
+    model = triangle()
+    model.create(Load, 2, on=[1, 2], force=[(0, -1), (0, -2)])
+    model.delete([model.particles["B"]])
+    assert (model.particles.names, model.rods.names, model.loads.names) == (["A", "C"], ["CA"], ["load 2"])
+    assert model.loads[0].particle is model.particles["C"]
+
+
+def test_what_there_is_one_of_is_neither_created_nor_deleted() -> None:
+    model = Model()
+    with pytest.raises(ValueError, match="There is exactly one environment; it cannot be deleted"):
+        model.delete([model.environment])
+    with pytest.raises(ValueError, match="There is exactly one environment; change the one there is"):
+        model.create(Environment)
+    assert len(model.tables["environment"]) == 1
+
+
+# --- what is refused -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("kind", "columns", "message"),
+    [
+        (Particle, {"name": ["A"]}, "There is a particle 'A' already; choose another name."),
+        (Particle, {"name": ["E", "E"]}, "There is a particle 'E' already; choose another name."),
+        (Particle, {"name": ["E", " "]}, "The name of a particle is empty; type at least one character."),
+        (Particle, {"name": "E", "position": [(0, np.nan)]}, "particle E: original position y is nan"),
+        (Particle, {"radius": [0.0]}, "particle 1: radius is 0 m; it must be greater than 0 m."),
+        (Particle, {"mass": [-2.0]}, "particle 1: mass is -2 kg; it must be greater than 0 kg."),
+        (Particle, {"mobility": [(1, 1)]}, "particle: mobility is computed and cannot be set."),
+        (
+            Particle,
+            {"raduis": [1.0]},
+            "There is no 'raduis' among the Fields of particles; did you mean 'radius'?",
+        ),
+        (Particle, {"position": [(5, 5)] * 3}, "original position: 3 values for 1 elements"),
+        (
+            Particle,
+            {"fixed": [(False, True)], "velocity": [(1.0, 2.0)]},
+            "particle 1: velocity y is 2 m/s but it is constrained in y; set it to 0 or free the direction.",
+        ),
+        (Rod, {"between": [(0, 0)]}, "A rod needs two different particles; both ends are A."),
+        (
+            Rod,
+            {"between": [(1, 0)]},
+            "There is a rod between A and B already; two particles share at most one.",
+        ),
+        (Rod, {"between": [(1, 3), (3, 1)]}, "There is a rod between B and D already"),
+        (Rod, {"between": [(0, 9)]}, "rod 1: ends is row 9 of the particles, but there are only 4"),
+        (Rod, {"between": [(0, -1)]}, "rod 1: ends y is -1; it must be at least 0."),
+        (Rod, {"between": [(0, 4)]}, "rod 1: ends is row 4 of the particles"),
+        (
+            Rod,
+            {"between": [(0, 3)]},
+            "rod 1: its ends are at the same place; place them apart or give it a rest",
+        ),
+        (Rod, {}, "A new rod needs 'between': rows of the particles."),
+        (Load, {"on": [9]}, "load 1: particle is row 9 of the particles, but there are only 4"),
+        (Load, {"force": [(1, 1)]}, "A new load needs 'on': rows of the particles."),
+        (
+            Load,
+            {"on": [0], "history": [{"kind": "x"}]},
+            "load 1: history kind is 'x'; choose one of constant, ramp.",
+        ),
+    ],
+)
+def test_a_creation_refused_leaves_nothing_behind(kind: Any, columns: dict[str, Any], message: str) -> None:
+    model = triangle()
+    model.create(Particle, name="D")  # at the same place as A
+    log = logged(model)
+    before = snapshot(model)
+    count = max((len(values) for values in columns.values() if len(values) == 2), default=1)
+    with pytest.raises(FieldError) as refusal:
+        model.create(kind, count, **columns)
+    assert message in str(refusal.value)
+    assert snapshot(model) == before
+    assert log == []
+    model.activate()
+    assert len(esper.get_component(kind)) == model.tables[kind.table].count
+
+
+@pytest.mark.parametrize(
+    ("element", "field", "value", "message"),
+    [
+        ("rods.AB", "name", "BC", "There is a rod 'BC' already; choose another name."),
+        ("rods.AB", "name", "  ", "The name of a rod is empty"),
+        ("rods.AB", "between", (0, 0), "A rod needs two different particles; both ends are A."),
+        ("rods.AB", "between", (2, 1), "There is a rod between B and C already"),
+        ("rods.AB", "between", (0, 3), "rod AB: ends is row 3 of the particles, but there are only 3"),
+        ("rods.AB", "between", ("A", "C"), "rod AB: ends x is 'A'; it must be a number."),
+        ("particles.A", "position", (1, 1), "particle A: at this position rod AB would have no length"),
+        ("particles.C", "position", (1, 1), "particle C: at this position rod BC would have no length"),
+        ("particles.A", "velocity", (0, 1), "particle A: velocity y is 1 m/s but it is constrained in y"),
+        ("particles.A", "radius", -1, "particle A: radius is -1 m; it must be greater than 0 m."),
+    ],
+)
+def test_an_assignment_refused_changes_nothing(element: str, field: str, value: Any, message: str) -> None:
+    model = triangle()
+    model.particles["A"].fixed = (False, True)
+    log = logged(model)
+    before = snapshot(model)
+    table, name = element.split(".")
+    with pytest.raises(FieldError) as refusal:
+        setattr(model.tables[table][name], field, value)
+    assert message in str(refusal.value)
+    assert snapshot(model) == before
+    assert log == []
+
+
+def test_a_rest_length_of_its_own_lets_a_rods_ends_meet_and_cannot_go_back() -> None:
+    model = triangle()
+    rod = model.rods["AB"]
+    rod.rest_length = 1.0
+    model.particles["A"].position = (1.0, 1.0)
+    assert (rod.original_length, rod.rest_length) == (0.0, 1.0)
+    with pytest.raises(FieldError, match="rod AB: its ends are at the same place"):
+        rod.rest_length = None  # type: ignore[assignment]
+    assert rod.rest_length == 1.0
+
+
+def test_constraining_a_direction_stops_it_in_one_undoable_step() -> None:
+    model = triangle()
+    particles = list(model.particles)
+    model.assign(particles, "velocity", [(1, 2), (3, 4), (0, 0)])
+    log = logged(model)
+    before = snapshot(model)
+    model.assign(particles, "fixed", (False, True))
+    assert model.particles.velocity.tolist() == [[1, 0], [3, 0], [0, 0]]
+    assert len(log) == 1
+    model.apply(log.pop())
+    assert snapshot(model) == before
+
+
+def test_at_most_one_grid_is_shown() -> None:
+    model = Model()
+    log = logged(model)
+    first, second = model.create(Grid, 2)
+    assert (first.shown, second.shown) == (False, True)
+    first.shown = True
+    assert (first.shown, second.shown) == (True, False)
+    [third] = model.create(Grid, spacing=(1.0, 2.0))
+    assert [grid.shown for grid in model.grids] == [False, False, True]
+    model.apply(log.pop())
+    assert (first.shown, second.shown, third.exists) == (True, False, False)
+    first.shown = False
+    assert not model.grids.shown.any()
+
+
+# --- creation --------------------------------------------------------------------------------------------
+
+
+def test_creation_takes_columns_overrides_and_defaults() -> None:
+    model = Model()
+    a, b = model.create(Particle, 2, position=[(0, 0), (1, 0)], mass=[None, 4.0], fixed=(True, False))
+    assert (a.name, b.name) == ("particle 1", "particle 2")
+    assert (a.mass, b.mass, b.prescribed_mass) == (DEFAULT_MASS, 4.0, 4.0)
+    assert a.fixed == b.fixed == (True, False)
+    [rod] = spawn_rods(model, [(0, 1)], rest_length=0.5, name="AB")
+    assert (rod.rest_length, rod.original_length, rod.name) == (0.5, 1.0, "AB")
+    assert model.create(Particle, 0) == spawn_rods(model, []) == []
+
+
+def test_a_hundred_thousand_rods_are_created_and_cut_at_once() -> None:
+    side = 231  # odd: every second particle is a colour of the chessboard
+    grid = np.arange(side * side).reshape(side, side)
+    pairs = [np.stack([grid[:, :-1], grid[:, 1:]], axis=-1), np.stack([grid[:-1], grid[1:]], axis=-1)]
+    between = np.concatenate([part.reshape(-1, 2) for part in pairs])
+    x, y = np.meshgrid(np.arange(side), np.arange(side))
+    model = Model()
+    started = time.perf_counter()
+    model.create(Particle, side * side, position=np.stack([x, y], axis=-1).reshape(-1, 2))
+    rods = spawn_rods(model, between)
+    seconds = time.perf_counter() - started
+    assert len(rods) == len(between) == 106_260
+    assert seconds < 10.0  # usually 0.5; a loop that is quadratic takes minutes
+    assert model.rods.original_length.tolist() == [1.0] * len(between)
+    inner = model.particles.mass.reshape(side, side)[1:-1, 1:-1]
+    np.testing.assert_allclose(inner, 4 * 0.5 * 6.15, rtol=1e-15)
+    log = logged(model)
+    half = [model.particles[row] for row in range(0, side * side, 2)]
+    model.delete(half)
+    assert (model.particles.count, model.rods.count) == ((side * side) // 2, 0)
+    model.apply(log.pop())
+    np.testing.assert_array_equal(model.rods.between, between)
+
+
+def test_one_at_a_time_is_not_slower_in_a_large_model_than_a_pass_over_it() -> None:
+    model = Model()
+    model.create(Particle, 5000, position=np.arange(10_000).reshape(-1, 2))
+    rows = np.arange(4999)
+    spawn_rods(model, np.stack([rows, rows + 1], axis=1))
+    started = time.perf_counter()
+    for row in range(300):
+        spawn_rods(model, [(row, row + 2)])
+    per_rod = (time.perf_counter() - started) / 300
+    assert per_rod < 2e-3  # usually 0.2 ms
+
+
+# --- commands and transactions ---------------------------------------------------------------------------
+
+
+def test_every_command_has_an_exact_inverse() -> None:
+    model = triangle()
+    model.create(Load, on=[1], force=[(0, -1)], history=[{"kind": "ramp", "duration": 2}])
+    a, ab = model.particles["A"], model.rods["AB"]
+    commands = [
+        Assign("particles", "force", (a.entity,), np.array([[1.0, 2.0]])),
+        Assign("rods", "name", (ab.entity,), np.array(["long"], dtype=object)),
+        Create(Particle, 2, {"name": np.array(["P", "Q"], dtype=object)}),
+        Delete((a.entity, ab.entity)),
+        Group((Delete((ab.entity,)), Create(Grid, 1, {})), "two"),
+    ]
+    for command in commands:
+        before = snapshot(model)
+        inverse = model.apply(command)
+        after = snapshot(model)
+        assert after != before
+        again = model.apply(inverse)
+        assert snapshot(model) == before
+        back = model.apply(again)
+        assert snapshot(model) == after
+        model.apply(back)
+        assert snapshot(model) == before
+
+
+def test_a_transaction_is_one_entry_of_the_log() -> None:
+    model = triangle()
+    log = logged(model)
+    before = snapshot(model)
+    with model.transaction("push and add"):
+        model.particles["A"].force = (1.0, 0.0)
+        model.create(Particle)
+    [entry] = log
+    assert isinstance(entry, Group)
+    assert entry.title == "push and add"
+    model.apply(entry)
+    assert snapshot(model) == before
+
+
+def test_a_transaction_that_fails_did_not_happen() -> None:
+    model = triangle()
+    log = logged(model)
+    before = snapshot(model)
+
+    def change_much() -> None:
+        with model.transaction("much"):
+            model.delete([model.particles["B"]])
+            model.create(Particle, 100)
+            model.particles["A"].name = "Z"
+            model.particles["Z"].radius = -1.0
+
+    with pytest.raises(FieldError):
+        change_much()
+    assert snapshot(model) == before
+    assert log == []
+    model.particles["A"].radius = 0.5
+    assert len(log) == 1
+
+
+def test_a_refusal_caught_inside_a_transaction_undoes_only_itself() -> None:
+    model = triangle()
+    log = logged(model)
+    before = snapshot(model)
+
+    def delete_in_vain() -> None:
+        with model.transaction("inner"):
+            model.delete([model.particles["C"]])
+            raise RuntimeError
+
+    with model.transaction("boxes"):
+        model.particles["B"].force = (1.0, 1.0)
+        with pytest.raises(FieldError):
+            model.particles["A"].position = (1.0, 1.0)
+        with pytest.raises(RuntimeError):
+            delete_in_vain()
+        model.particles["B"].radius = 0.5
+    assert model.particles["A"].position == (0.0, 0.0)
+    assert model.particles["B"].force == (1.0, 1.0)
+    assert len(model.particles) == 3
+    [entry] = log
+    model.apply(entry)
+    assert snapshot(model) == before
+
+
+def test_a_group_that_fails_did_not_happen() -> None:
+    model = triangle()
+    log = logged(model)
+    before = snapshot(model)
+    a, b = model.particles["A"].entity, model.particles["B"].entity
+    move = Assign("particles", "force", (b,), np.array([[1.0, 1.0]]))
+    with pytest.raises(LookupError):
+        model.execute(Group((move, Delete((a,)), Assign("particles", "force", (a,), np.zeros((1, 2))))))
+    assert snapshot(model) == before
+    assert log == []
+
+
+def test_assigning_what_is_there_already_is_no_step() -> None:
+    model = triangle()
+    log = logged(model)
+    revision = model.revision
+    a = model.particles["A"]
+    a.force, a.name, a.mass, a.fixed = a.force, a.name, None, a.fixed  # type: ignore[assignment]
+    model.environment.drag = 0
+    with model.transaction("nothing"):
+        pass
+    model.delete([])
+    assert (log, model.revision) == ([], revision)
+
+
+def test_before_change_comes_before_every_command() -> None:
+    model = triangle()
+    seen: list[float] = []
+    model.before_change = lambda: seen.append(model.particles["A"].force[0])
+    model.particles["A"].force = (1.0, 0.0)
+    model.particles["A"].force = (2.0, 0.0)
+    assert seen == [0.0, 1.0]
+
+
+# --- versions and derived columns --------------------------------------------------------------------------
+
+
+def versions(model: Model) -> dict[str, int]:
+    return {f"{t.name}.{f}": t.version(f) for t in model.tables.values() for f in t.fields}
+
+
+def changed(model: Model, before: dict[str, int]) -> set[str]:
+    return {name for name, version in versions(model).items() if version != before[name]}
+
+
+def test_versions_tell_exactly_what_changed() -> None:
+    model = triangle()
+    _ = model.particles.constant_force, model.rods.tension_limit
+    before = versions(model)
+    _ = model.particles.mass, model.particles["A"].position, model.rods.names
+    assert changed(model, before) == set()
+    model.particles["A"].force = (1.0, 0.0)
+    assert changed(model, before) == {"particles.force"}
+    _ = model.particles.constant_force
+    assert changed(model, before) == {"particles.force", "particles.constant_force"}
+    before = versions(model)
+    model.writable("particles.velocity")
+    assert changed(model, before) == {"particles.velocity"}
+    before = versions(model)
+    model.create(Grid)
+    assert changed(model, before) == {f"grids.{name}" for name in model.grids.fields}
+    before = versions(model)
+    model.delete([model.particles["A"]])
+    assert {name.split(".")[0] for name in changed(model, before)} == {"particles", "rods"}
+
+
+def test_the_version_of_a_derived_column_is_that_of_its_latest_value() -> None:
+    model = triangle()
+    before = model.version("particles.mass")
+    assert model.version("particles.mass") == before
+    model.rods["AB"].density = 1.0
+    assert model.version("particles.mass") > before
+    newest = model.newest(Role.DOCUMENT)
+    model.particles["A"].radius = 1.0
+    assert model.newest(Role.DOCUMENT) > newest
+    state = model.newest(Role.STATE)
+    model.particles["A"].radius = 2.0
+    assert model.newest(Role.STATE) == state
+
+
+def counted() -> tuple[World, dict[str, int]]:
+    """A model whose derivations count how often they are computed."""
+    calls: dict[str, int] = {}
+
+    def counting(derivation: Derivation) -> Derivation:
+        name = derivation.compute.__name__
+
+        def compute(world: World) -> None:
+            calls[name] = calls.get(name, 0) + 1
+            derivation.compute(world)
+
+        return Derivation(derivation.targets, derivation.sources, compute)
+
+    world = World(KINDS, [counting(derivation) for derivation in DERIVATIONS])
+    world.create(Particle, 3, position=[(0, 0), (1, 1), (2, 0)])
+    spawn_rods(world, [(0, 1), (1, 2)])
+    calls.clear()
+    return world, calls
+
+
+def test_derived_columns_are_computed_when_read_and_only_after_a_change() -> None:
+    world, calls = counted()
+    particle, rod = world.tables["particles"][0], world.tables["rods"][0]
+    assert calls == {}
+    for _ in range(3):
+        _ = particle.mass, rod.rest_length, world.column("particles.mobility")
+    assert calls == {"derive_lengths": 1, "derive_masses": 1}
+    particle.force = (1.0, 0.0)
+    _ = particle.mass, rod.rest_length
+    assert calls == {"derive_lengths": 1, "derive_masses": 1}
+    _ = particle.constant_force
+    rod.density = 3.0
+    _ = rod.rest_length, particle.constant_force
+    assert calls == {"derive_lengths": 1, "derive_masses": 2, "derive_constant_force": 2}
+    particle.position = (0.0, 0.5)
+    assert calls["derive_lengths"] == 1
+    _ = particle.constant_force
+    assert calls == {"derive_lengths": 2, "derive_masses": 3, "derive_constant_force": 3}
+
+
+def test_a_derivation_that_raised_is_tried_again() -> None:
+    world, _ = counted()
+    broken = True
+
+    def compute(world: World) -> None:
+        if broken:
+            raise ZeroDivisionError
+        world.writable("rods.strain")[...] = 0.25
+
+    world.derive(Derivation(("rods.strain",), ("rods.stiffness",), compute))
+    for _ in range(2):
+        with pytest.raises(ZeroDivisionError):
+            world.column("rods.strain")
+    broken = False
+    assert world.column("rods.strain").tolist() == [0.25, 0.25]
+
+
+def test_new_rows_are_derived_even_if_no_source_changed() -> None:
+    world, _ = counted()
+
+    def compute(world: World) -> None:
+        world.writable("rods.strain")[...] = world.column("settings.restitution")[0]
+
+    world.derive(Derivation(("rods.strain",), ("settings.restitution",), compute))
+    assert world.column("rods.strain").tolist() == [1.0, 1.0]
+    spawn_rods(world, [(0, 2)])
+    assert world.column("rods.strain").tolist() == [1.0, 1.0, 1.0]
+
+
+def test_a_derivation_is_replaced_as_a_whole() -> None:
+    world, _ = counted()
+
+    def compute(world: World) -> None:
+        for name in ("particles.mass", "particles.mobility"):
+            world.writable(name)[...] = 7.0
+
+    with pytest.raises(ValueError, match=r"derived together with particles\.mass, particles\.mobility"):
+        world.derive(Derivation(("particles.mass",), ("particles.fixed",), compute))
+    world.derive(Derivation(("particles.mass", "particles.mobility"), ("particles.fixed",), compute))
+    assert world.column("particles.mass").tolist() == [7.0] * 3
+
+
+@pytest.mark.parametrize("rods", [0, 1, 2, 3, 10, 1000])
+def test_masses_are_half_of_every_attached_rod(rods: int) -> None:
+    random = np.random.default_rng(rods)
+    model = Model()
+    count = max(rods, 4)
+    model.create(Particle, count, position=random.random((count, 2)))
+    every = np.stack(np.triu_indices(min(count, 60), 1), axis=1)
+    between = random.permutation(every)[:rods]
+    densities = random.uniform(0.0, 9.0, rods)
+    spawn_rods(model, between, density=densities)
+    expected = np.zeros(count)
+    for (a, b), density in zip(between.tolist(), densities, strict=True):
+        length = np.hypot(*(model.particles.position[b] - model.particles.position[a]))
+        expected[a] += density * length / 2
+        expected[b] += density * length / 2
+    expected[expected == 0.0] = DEFAULT_MASS
+    np.testing.assert_allclose(model.particles.mass, expected, rtol=1e-13)
+    np.testing.assert_allclose(model.particles.mobility, 1000.0 / expected[:, None] * [1, 1], rtol=1e-13)
+
+
+def test_the_constant_force_holds_all_that_time_does_not_change() -> None:
+    model = triangle()
+    a, b, _ = model.particles
+    a.mass, a.force, a.acceleration = 2.0, (1.0, 2.0), (0.0, 10.0)
+    model.environment.force, model.environment.acceleration = (0.5, 0.0), (0.0, -9.81)
+    model.create(Load, 3, on=[0, 0, 0], force=[(10, 0), (5, 5), (100, 100)])
+    model.loads[2].history = {"kind": "ramp"}
+    expected = (1.0 + 0.5 + 10 + 5, 2.0 + 2.0 * (10.0 - 9.81) / 1000.0 + 5)
+    assert a.constant_force == pytest.approx(expected, rel=1e-15)
+    assert b.constant_force == pytest.approx((0.5, -9.81 * b.mass / 1000.0), rel=1e-15)
+
+
+def test_unlimited_strengths_are_infinite() -> None:
+    model = triangle()
+    model.assign(list(model.rods), "tensile_strength", [None, 0.0, 5.0])
+    assert model.rods.tension_limit.tolist() == [np.inf, np.inf, 5.0]
+    assert model.rods.compression_limit.tolist() == [np.inf] * 3
+
+
+# --- tags --------------------------------------------------------------------------------------------------
+
+
+def test_tags_mark_existing_entities_in_order_of_creation() -> None:
+    model = triangle()
+    log = logged(model)
+    a, b, c = model.particles
+    rod = model.rods["AB"]
+    for handle in (rod, c, a, a):
+        model.tag(handle, Selected)
+    model.tag(b, DiagramShown)
+    assert model.tagged(Selected) == [a, c, rod]
+    assert model.tagged(DiagramShown) == [b]
+    model.delete([a])
+    assert model.tagged(Selected) == [c]
+    model.tag(a, DiagramShown)
+    assert model.tagged(DiagramShown) == [b]
+    model.apply(log.pop())
+    assert model.tagged(Selected) == [a, c, rod]
+    assert [entity for entity, _ in esper.get_components(Particle, Selected)] == [a.entity, c.entity]
+
+
+def test_the_revision_of_tags_tells_when_marks_changed() -> None:
+    model = triangle()
+    a = model.particles["A"]
+    model.tag(a, Selected)
+    revision = model.tags_revision
+    model.tag(a, Selected)
+    model.untag(model.particles["B"], Selected)
+    model.untag(a, DiagramShown)
+    assert model.tags_revision == revision
+    model.untag(a, Selected)
+    assert model.tags_revision > revision
+    assert model.tagged(Selected) == []
+
+
+# --- esper contexts ----------------------------------------------------------------------------------------
+
+
+def test_worlds_do_not_see_each_other() -> None:
+    first, second = triangle(), triangle()
+    first.particles["A"].force = (1.0, 0.0)
+    first.delete([first.particles["C"]])
+    second.tag(second.particles["B"], Selected)
+    first.create(Particle, name=["D"])
+    assert second.particles.names == ["A", "B", "C"]
+    assert second.particles["A"].force == (0.0, 0.0)
+    assert first.tagged(Selected) == []
+    for model in (first, second):
+        model.activate()
+        assert {handle for _, handle in esper.get_component(Particle)} == set(model.particles)
+        assert {handle for _, handle in esper.get_component(Rod)} == set(model.rods)
+
+
+def test_a_world_goes_with_its_last_owner() -> None:
+    gc.collect()
+    before = set(esper.list_worlds())
+    gc.disable()
+    try:
+        for _ in range(10):
+            model = triangle()
+            model.delete([model.particles["A"]])
+        del model
+        assert set(esper.list_worlds()) - before == set()
+        kept = triangle()
+        assert set(esper.list_worlds()) - before == {kept.context}
+    finally:
+        gc.enable()
+
+
+def test_an_element_without_its_world_says_so() -> None:
+    model = triangle()
+    rods, rod, other = model.rods, model.rods["AB"], triangle()
+    del model
+    assert not rod.exists
+    with pytest.raises(LookupError, match="The model of this rod is gone; keep the model"):
+        _ = rod.stiffness
+    with pytest.raises(LookupError, match="The model of these rods is gone; keep the model"):
+        _ = rods.rest_length
+    assert repr(rod) == "<deleted rod>"
+    assert other.rods["AB"].stiffness == 164640.0
