@@ -10,7 +10,7 @@ from typing import NoReturn
 
 from components.field import FieldError
 from components.settings import INTEGRATORS
-from game import __version__, models
+from game import __version__, bench, models
 from game.overrides import OverrideError, apply_override
 from game.report import FOUND, run_at, run_until_rest
 from game.results import as_csv, as_json, as_table
@@ -204,4 +204,30 @@ def _size(text: str) -> tuple[int, int]:
     return int(width), int(height)
 
 
-_COMMANDS = {"open": _open, "run": _run, "render": _render}
+# --- benchmarks --------------------------------------------------------------------------------------------
+
+
+def _bench(words: Sequence[str]) -> int:
+    parser = Parser(prog="pinjoint bench", description="Measure, against peers in the same run.")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(bench.NAMES)}; default all")
+    parser.add_argument("--quick", action="store_true", help="smaller sizes; ends within a minute")
+    parser.add_argument("--output", metavar="DIR", help="also write CSV files there")
+    options = parser.parse_args(words)
+    for name in options.names:
+        if name not in bench.NAMES:
+            raise Refusal(f"There is no benchmark '{name}'; choose from {', '.join(bench.NAMES)}.")
+    for name in options.names or bench.NAMES:
+        try:
+            tables = bench.run(name, quick=options.quick)
+        except bench.NoBenchmarks as error:
+            raise Refusal(str(error)) from None
+        print(f"== {name} ==\n{bench.as_text(tables)}")
+        if options.output:
+            try:
+                bench.write(name, tables, Path(options.output))
+            except OSError as error:
+                raise Refusal(f"{options.output} cannot be written: {error.strerror}.") from None
+    return ANSWERED
+
+
+_COMMANDS = {"open": _open, "run": _run, "render": _render, "bench": _bench}

@@ -110,7 +110,7 @@ def _plain(value: Any, where: str) -> Any:
 
 def as_json(run: Run) -> str:
     """A run as JSON in full double precision, one element a line. Raises ResultError."""
-    return laid_out(_plain(run, "run"), depth=5) + "\n"
+    return laid_out(_plain(run, "run"), depth=4) + "\n"
 
 
 def as_csv(run: Run) -> str:

@@ -3,45 +3,45 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from components.tags import DiagramShown
-from systems.render.labels import Label, half_size
+from components.tags import DiagramShown, Selected
+from systems.render.labels import FAINT, Label, half_size
 from systems.render.marks import Fills, Points, Stamps, Strokes
 from systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
 from systems.render.supports import NO_SUPPORT
 from systems.render.symbols import ARROW_LENGTH, SUPPORT_DEPTH
 from systems.render.theme import Colour, faded
 
+Pair = Sequence[float]
+Places = list[tuple[float, float]]
+
 SMALLEST_FORCE = 1e-4  # kN; less is drawn as none
-_MOST_VALUES = 400  # written at once; the largest forces first
-_FEW_VALUES = 24  # up to which each carries its unit
-_VALUE_SIZE, _DENSE_SIZE = 12.0, 11.0  # points, of few values and of many
+_FEW_VALUES = 24  # up to which each carries its unit and keeps clear of rods
+_STEPS = (8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0)
+_SHORTEST_WITH_VALUE = 24.0  # points; the values of shorter rods would only hide the structure
 _BACKING = 0.86  # opacity behind a value
 
 
-def written(force: float) -> str:
-    """A force (kN) as people read it: two decimals, more for a small one, the real minus sign."""
-    if 0.0 < abs(force) < 0.01:
-        decimals = 1 - math.floor(math.log10(abs(force)))
-        text = f"{force:.{min(decimals, 4)}f}"
-    else:
-        text = f"{force:.2f}"
+def written(force: float, decimals: int = 2) -> str:
+    """A force (kN) as people read it, with the real minus sign and no negative zero."""
+    text = f"{force:.{decimals}f}"
     return text.replace("-", "−") if float(text) else text.lstrip("-")
 
 
 def scale_step(largest: float, scale: float, room: float) -> float:
-    """The largest of 1, 0.9, … 0.2, 0.1, 0.09, … by which `largest` × `scale` fits into `room`.
+    """The largest of 1, 0.8, 0.6, 0.5, 0.4, 0.3, 0.2, 0.15, 0.1, … with `largest` × `scale` × it ≤ `room`.
 
     Shrinking all diagrams alike keeps them comparable; steps keep their scale steady while forces change.
     """
     if not largest * scale > room:
         return 1.0
     decade = 10.0 ** math.floor(math.log10(room / (largest * scale)))
-    return decade * math.floor(room / (largest * scale) / decade + 1e-9)
+    return next(decade * step for step in _STEPS if largest * scale * decade * step <= room)
 
 
 def draw_rod_diagrams(sheet: Sheet) -> None:
@@ -56,14 +56,12 @@ def draw_rod_diagrams(sheet: Sheet) -> None:
     height = np.abs(force[rows]) * scale * factor
     normal = _outward_normals(sheet, rows, start, end)
     values = force[rows]
-    for name, mask in (
-        ("tension", values > SMALLEST_FORCE),
-        ("compression", values < -SMALLEST_FORCE),
-        ("zero", np.abs(values) <= SMALLEST_FORCE),
-    ):
+    signs = np.where(np.abs(values) <= SMALLEST_FORCE, 0.0, np.sign(values))
+    for name, sign in (("tension", 1.0), ("compression", -1.0), ("zero", 0.0)):
+        mask = signs == sign
         if mask.any():
             _draw_rectangles(sheet, name, start[mask], end[mask], (normal * height[:, None])[mask])
-    _label_rods(sheet, values, (start + end) / 2, normal, height)
+    _label_rods(sheet, rows, values, (start + end) / 2, normal, height)
 
 
 def _shown_rods(sheet: Sheet) -> tuple[NDArray[np.float64], Rows, Points, Points]:
@@ -106,62 +104,90 @@ def _outward_normals(sheet: Sheet, rows: Rows, start: Points, end: Points) -> Po
 
 def _draw_rectangles(sheet: Sheet, name: str, start: Points, end: Points, rise: Points) -> None:
     colour: Colour = getattr(sheet.theme, name)
-    corners = np.stack([start, end, end + rise, start + rise], axis=1)
-    sheet.marks.append(Fills(corners, faded(colour, 0.16)))
-    following = np.roll(corners, -1, axis=1)
-    sheet.marks.append(
-        Strokes(corners.reshape(-1, 2), following.reshape(-1, 2), 1.25 * sheet.unit, faded(colour, 0.9))
-    )
+    outlined = typical_length(sheet.start, sheet.end) > 16.0 * sheet.unit
+    corners = np.stack([start, start + rise, end + rise, end], axis=1)
+    sheet.marks.append(Fills(corners, faded(colour, 0.16 if outlined else 0.5)))
+    if outlined:
+        first, last = corners[:, :-1].reshape(-1, 2), corners[:, 1:].reshape(-1, 2)
+        sheet.occupancy.line(first, last, FAINT)
+        sheet.marks.append(Strokes(first, last, 1.25 * sheet.unit, faded(colour, 0.9)))
     if name != "zero":
         sheet.legend.append(name)
 
 
 def _label_rods(
     sheet: Sheet,
+    rows: Rows,
     values: NDArray[np.float64],
     middle: Points,
     normal: Points,
     height: NDArray[np.float64],
 ) -> None:
-    theme, u = sheet.theme, sheet.unit
+    selected = sheet.chosen(sheet.tagged(Selected, "rods"), rows)
+    written_ones = _most_important(sheet, values, selected, middle)
+    if typical_length(sheet.start, sheet.end) < _SHORTEST_WITH_VALUE * sheet.unit:
+        written_ones = [index for index in written_ones if selected[index]]
+        sheet.notes.append("zoom in to read forces")
     few = len(values) <= _FEW_VALUES
-    size, ending = (sheet.font(_VALUE_SIZE), " kN") if few else (sheet.font(_DENSE_SIZE), "")
-    seen = np.flatnonzero(sheet.sees(middle))
-    for index in seen[np.argsort(-np.abs(values[seen]), kind="stable")][:_MOST_VALUES].tolist():
+    for index in written_ones:
         value = float(values[index])
-        text = written(value) + ending
-        name = "zero" if abs(value) <= SMALLEST_FORCE else "tension" if value > 0.0 else "compression"
-        half = half_size(text, size, "semibold", u)
-        sheet.labels.append(
-            Label(
-                text,
-                list(_places_by_rod(middle[index], normal[index], float(height[index]), half, few)),
-                size,
-                getattr(theme, name),
-                # Two digits only, so that tiny changes do not reorder the labels from frame to frame.
-                rank=-float(f"{abs(value):.1e}"),
-                weight="semibold",
-                backing=faded(theme.background, _BACKING),
-            )
-        )
+        text, size, half = _value_text(sheet, written(value), few)
+        places = _places_by_rod(middle[index].tolist(), normal[index].tolist(), height[index].item(), half, few)
+        rank = _rank(value) - 1e6 * bool(selected[index])
+        _add_value(sheet, text, places, size, getattr(sheet.theme, _sign_of(value)), rank, few)
 
 
-def _places_by_rod(
-    middle: Points, normal: Points, height: float, half: tuple[float, float], roomy: bool
-) -> Iterator[tuple[float, float]]:
+def _sign_of(force: float) -> str:
+    """Which colour of the theme means this axial force."""
+    return "zero" if abs(force) <= SMALLEST_FORCE else "tension" if force > 0.0 else "compression"
+
+
+def _rank(value: float) -> float:
+    """Large values first; two digits only, so that tiny changes do not reorder labels from frame to frame."""
+    return -float(f"{abs(value):.1e}")
+
+
+def _most_important(
+    sheet: Sheet, values: NDArray[np.float64], selected: NDArray[np.bool_], at: Points
+) -> list[int]:
+    """The selected and the largest values at visible points, as many as leave most of the picture free."""
+    area = sheet.viewport.width * sheet.viewport.height / sheet.unit**2
+    most = int(0.25 * area / (46.0 * 18.0))
+    seen = np.flatnonzero(sheet.sees(at))
+    order: list[int] = seen[np.lexsort((-np.abs(values[seen]), ~selected[seen]))][:most].tolist()
+    return order
+
+
+def _value_text(sheet: Sheet, number: str, few: bool) -> tuple[str, int, tuple[float, float]]:
+    """A value as it is written among few or many, its font size, and half the size of its label."""
+    text = number + (" kN" if few else "")
+    size = sheet.font(12.0 if few else 11.0)
+    return text, size, half_size(text, size, "semibold", sheet.unit)
+
+
+def _add_value(
+    sheet: Sheet, text: str, places: Places, size: int, colour: Colour, rank: float, few: bool
+) -> None:
+    backing = faded(sheet.theme.background, _BACKING)
+    lines: Literal["spare", "cover"] = "spare" if few else "cover"
+    sheet.labels.append(Label(text, places, size, colour, rank, "semibold", backing, lines))
+
+
+def _places_by_rod(middle: Pair, normal: Pair, height: float, half: tuple[float, float], few: bool) -> Places:
     """Where the value of a rod may stand: in its diagram if it fits, else beyond, else behind the rod.
 
     Among many rods it stands on its own one first, since beside it, it might be taken for another's.
     reach is how far a label extends from its middle along the normal, slide a step along the rod.
     """
-    along = np.array([-normal[1], normal[0]])
-    reach = float(np.abs(normal) @ half)
-    slide = float(np.abs(along) @ half)
-    inside = [height / 2] if height > 1.2 * reach or not roomy else []
-    for distance in (*inside, height + reach, height / 2, -reach):
-        for step in (0.0, 1.0, -1.0, 2.0, -2.0):
-            x, y = middle + normal * distance + along * step * slide
-            yield float(x), float(y)
+    (x, y), (nx, ny) = middle, normal
+    reach = abs(nx) * half[0] + abs(ny) * half[1]
+    slide = abs(ny) * half[0] + abs(nx) * half[1]
+    inside = [height / 2] if height > 2.0 * reach or not few else []
+    return [
+        (x + nx * distance - ny * step * slide, y + ny * distance + nx * step * slide)
+        for distance in (*inside, height + reach, height / 2, -reach)
+        for step in (0.0, 1.0, -1.0, 2.0, -2.0)
+    ]
 
 
 def draw_particle_diagrams(sheet: Sheet, crowd: NDArray[np.float64], sides: NDArray[np.int64]) -> None:
@@ -219,38 +245,25 @@ def _arrow_places(
 
 
 def _label_arrows(sheet: Sheet, value: NDArray[np.float64], middle: Points, side: NDArray[np.int64]) -> None:
-    theme, u = sheet.theme, sheet.unit
     few = len(value) <= _FEW_VALUES
-    size, ending = (sheet.font(_VALUE_SIZE), " kN") if few else (sheet.font(_DENSE_SIZE), "")
-    seen = np.flatnonzero(sheet.sees(middle))
-    for index in seen[np.argsort(-np.abs(value[seen]), kind="stable")][:_MOST_VALUES].tolist():
-        text = written(abs(float(value[index]))) + ending
-        half = half_size(text, size, "semibold", u)
-        sheet.labels.append(
-            Label(
-                text,
-                list(_places_by_arrow(middle[index], DIRECTIONS[side[index]], half, u)),
-                size,
-                theme.force,
-                # Arrows are few and say little without their value: before the rods.
-                rank=-1e9 - float(f"{abs(value[index]):.1e}"),
-                weight="semibold",
-                backing=faded(theme.background, _BACKING),
-            )
-        )
+    for index in _most_important(sheet, value, np.zeros(len(value), dtype=bool), middle):
+        size_of_force = abs(float(value[index]))
+        # The smallest that is drawn at all, 0.0001, must not read 0.00.
+        number = written(size_of_force, 2 if size_of_force >= 0.01 else 4)
+        text, size, half = _value_text(sheet, number, few)
+        outward = DIRECTIONS[side[index]].tolist()
+        places = _places_by_arrow(middle[index].tolist(), outward, half, sheet.unit)
+        # Arrows are few and say little without their value: before the rods.
+        _add_value(sheet, text, places, size, sheet.theme.force, _rank(size_of_force) - 1e9, few)
 
 
-def _places_by_arrow(
-    middle: Points, outward: Points, half: tuple[float, float], u: float
-) -> Iterator[tuple[float, float]]:
+def _places_by_arrow(middle: Pair, outward: Pair, half: tuple[float, float], u: float) -> Places:
     """Where the value of an arrow may stand: beyond its outer end, beside it, beside that end."""
-    across = np.array([outward[1], outward[0]])
-    length, width = float(np.abs(outward) @ half), float(np.abs(across) @ half)
+    (x, y), (dx, dy) = middle, outward
+    length, width = (half[0], half[1]) if dx else (half[1], half[0])
     beyond, beside = ARROW_LENGTH * u / 2 + length, width + 7.5 * u
     places = [(beyond, 0.0)]
-    for along in (0.0, length - ARROW_LENGTH * u / 2, ARROW_LENGTH * u / 2):
+    for along in (0.0, length - ARROW_LENGTH * u / 2, ARROW_LENGTH * u / 2, beyond):
         places += [(along, beside), (along, -beside)]
-    places += [(beyond, width), (beyond, -width), (0.0, beside + width), (0.0, -beside - width)]
-    for along, sideways in places:
-        x, y = middle + outward * along + across * sideways
-        yield float(x), float(y)
+    places += [(0.0, beside + width), (0.0, -beside - width)]
+    return [(x + dx * along + dy * across, y + dy * along + dx * across) for along, across in places]

@@ -12,18 +12,18 @@ from systems.render.theme import Colour, faded
 from systems.render.typography import line_height, shortened, text_width, wrapped
 
 _EDGE = 14.0  # points between overlays and the edges of the viewport
+_SMALL = 300.0  # points: in a viewport less high, what is not needed is left out
 _BAR = 28.0  # points, height of the status bar
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
-def draw_overlays(sheet: Sheet) -> list[Mark]:
-    """All overlays, in painter's order; each takes its place from what comes after it, and from the labels."""
+def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
+    """What stands in fixed places, in painter's order, kept free of labels; and the top and bottom left."""
     marks, bottom = _status_bar(sheet)
     heading, heading_end = _heading(sheet)
     legend, top = _legend(sheet, heading_end)
-    if sheet.model.particles.count == 0:
-        return marks + heading + legend + _empty(sheet, bottom) + _problem(sheet, top, bottom)
-    return marks + heading + legend + _problem(sheet, top, bottom) + _scale_bar(sheet, bottom)
+    empty = _empty(sheet, bottom) if sheet.model.particles.count == 0 else []
+    return marks + heading + legend + empty + _problem(sheet, top, bottom), (top, bottom)
 
 
 # --- what numbers look like ------------------------------------------------------------------------
@@ -194,6 +194,8 @@ def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark],
     pad, swatch, gap, height = 9.0 * u, 16.0 * u, 14.0 * u, 24.0 * u
     entries = [swatch + 6.0 * u + text_width(_MEANINGS[name], size) for name in names]
     beside = sum(entries) + gap * (len(names) - 1) + 2 * pad <= right - heading_end[0] - gap
+    if not beside and v.height < _SMALL * u:
+        return [], heading_end[1]
     top = v.top + 10.0 * u if beside else heading_end[1] + 8.0 * u
     marks: list[Mark] = []
     for first, last in _rows(entries, gap, right - v.left - 10.0 * u - 2 * pad):
@@ -236,35 +238,54 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
 # --- scale -----------------------------------------------------------------------------------------
 
 
-def _scale_bar(sheet: Sheet, bottom: float) -> list[Mark]:
+def draw_scale(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     """A round length to scale, and by how much displacements and diagrams are scaled.
 
-    At the bottom, left or in the middle or right, wherever it hides least.
+    At the bottom or at the top, wherever it hides nothing; where it would, only what a person must know.
     """
-    v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(11.0)
+    v, u, size = sheet.viewport, sheet.unit, sheet.font(11.0)
     longest = min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale
     decade = 10.0 ** math.floor(math.log10(longest))
     metres = next(decade * step for step in (5.0, 2.0, 1.0) if decade * step <= longest * (1 + 1e-9))
-    length, thin, tick = metres * sheet.view.camera.scale, max(round(1.5 * u), 1), round(7.0 * u)
-    text = shortened(_scales(sheet, metres), v.width - length - 3 * _EDGE * u, size)
-    width, height = length + 8.0 * u + text_width(text, size) + 12.0 * u, tick + 12.0 * u
-    top = bottom - height - 6.0 * u
-    lefts = [v.left + 8.0 * u, v.left + (v.width - width) / 2, v.left + v.width - width - 8.0 * u]
-    left = min(lefts, key=lambda place: sheet.occupancy.crossed(place, top, width, height))
-    sheet.occupancy.block(left, top, width, height)
-    x, y, end = round(left + 6.0 * u), round(top + 6.0 * u), round(left + 6.0 * u + length)
-    boxes = [[x, y + tick, end - x, thin], [x, y, thin, tick], [end - thin, y, thin, tick]]
+    notes = _notes(sheet)
+    for length, said in ((metres * sheet.view.camera.scale, [written_length(metres), *notes]), (0.0, notes)):
+        ruler = length + 8.0 * u if length else 0.0
+        text = shortened("   ".join(said), v.width - ruler - 2 * _EDGE * u, size)
+        width, height = ruler + text_width(text, size) + 12.0 * u, 19.0 * u
+        left, top, hidden = _freest(sheet, width, height, room)
+        if hidden == 0 or not length:
+            break
+    if not said:
+        return []
+    x, y = round(left + 6.0 * u), round(top + 6.0 * u)
     return [
-        Panel(left, top, width, height, 4.0 * u, faded(theme.background, 0.8)),
-        Rectangles(np.array(boxes, dtype=np.int64), theme.muted),
-        Text(text, end + 8.0 * u, y + (tick + thin) / 2, size, theme.muted),
+        Panel(left, top, width, height, 4.0 * u, faded(sheet.theme.background, 0.8)),
+        *(_ruler(sheet, x, y, round(length)) if length else []),
+        Text(text, x + ruler, y + 4.0 * u, size, sheet.theme.muted),
     ]
 
 
-def _scales(sheet: Sheet, metres: float) -> str:
+def _freest(sheet: Sheet, width: float, height: float, room: tuple[float, float]) -> tuple[float, float, int]:
+    """Left and top of the place along the edges where a box hides least, and how much that is."""
+    v, u, (top, bottom) = sheet.viewport, sheet.unit, room
+    low, high = bottom - height - 6.0 * u, top + 6.0 * u
+    first, last = v.left + 8.0 * u, v.left + v.width - width - 8.0 * u
+    places = [(first, low), ((first + last) / 2, low), (last, low), (first, high), (last, high)]
+    hidden = [sheet.occupancy.crossed(x, y, width, height) for x, y in places]
+    best = hidden.index(min(hidden))
+    return *places[best], hidden[best]
+
+
+def _ruler(sheet: Sheet, x: int, y: int, length: int) -> list[Mark]:
+    thin, tick = max(round(1.5 * sheet.unit), 1), round(7.0 * sheet.unit)
+    boxes = [[x, y + tick, length, thin], [x, y, thin, tick], [x + length - thin, y, thin, tick]]
+    return [Rectangles(np.array(boxes, dtype=np.int64), sheet.theme.muted)]
+
+
+def _notes(sheet: Sheet) -> list[str]:
     scale = sheet.model.settings.displacement_scale
     exaggeration = [f"displacements ×{scale:g}"] if scale != 1.0 else []
-    return "   ".join([written_length(metres), *exaggeration, *sheet.notes])
+    return exaggeration + sheet.notes
 
 
 # --- nothing to see --------------------------------------------------------------------------------
@@ -276,14 +297,15 @@ def _empty(sheet: Sheet, bottom: float) -> list[Mark]:
     title, size = sheet.font(20.0), sheet.font(13.0)
     width = min(v.width - 2 * _EDGE * u, 400.0 * u)
     lines = wrapped(sheet.view.status.hint, width - 48.0 * u, size) if sheet.view.status.hint else []
-    height = 124.0 * u + len(lines) * 1.1 * line_height(size)
+    emblem = 68.0 * u if v.height >= _SMALL * u else 0.0
+    height = emblem + 56.0 * u + len(lines) * 1.1 * line_height(size)
     middle, top = v.left + v.width / 2, v.top + (bottom - v.top - height) / 2
     marks: list[Mark] = [
         Panel(middle - width / 2, top, width, height, 12.0 * u, theme.background, theme.line),
-        *_emblem(sheet, middle, top + 24.0 * u),
-        Text("An empty model", middle, top + 92.0 * u, title, theme.text, "semibold", "centre"),
+        *(_emblem(sheet, middle, top + 24.0 * u) if emblem else []),
+        Text("An empty model", middle, top + emblem + 26.0 * u, title, theme.text, "semibold", "centre"),
     ]
-    y = top + 122.0 * u
+    y = top + emblem + 56.0 * u
     for number, line in enumerate(lines):
         at = y + number * 1.1 * line_height(size)
         marks.append(Text(line, middle, at, size, theme.muted, anchor="centre"))

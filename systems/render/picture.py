@@ -9,7 +9,7 @@ from systems.render.deformed import drawn_positions
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.labels import place_labels
 from systems.render.marks import Picture
-from systems.render.overlays import draw_overlays
+from systems.render.overlays import draw_overlays, draw_scale
 from systems.render.sheet import measure
 from systems.render.structure import draw_ghost, draw_grid, draw_halos, draw_particles, draw_rods, label_names
 from systems.render.supports import crowding, draw_supports, support_sides
@@ -38,7 +38,8 @@ def compose(model: Model, view: View, theme: Theme) -> Picture:
     draw_particles(sheet)
     draw_particle_diagrams(sheet, crowd, sides)
     label_names(sheet)
-    overlays = draw_overlays(sheet)
+    overlays, room = draw_overlays(sheet)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit)
+    scale = draw_scale(sheet, room) if model.particles.count else []
     viewport = view.camera.viewport
-    return Picture(viewport, theme.background, [*sheet.marks, *labels, *overlays])
+    return Picture(viewport, theme.background, [*sheet.marks, *labels, *scale, *overlays])

@@ -21,7 +21,6 @@ from systems.render.typography import WEIGHTS, capital_height
 
 _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 _PHASES = 4  # positions of a symbol within a pixel, each way
-_LARGEST_SYMBOL = 96.0  # pixels; beyond it, it is drawn afresh each time
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
 _MOST_STROKED = 250_000  # pixels to be looked at; beyond it the faster, coarser lines do
 
@@ -150,12 +149,11 @@ def _rendered(mark: Stamps, phase_x: float, phase_y: float) -> tuple[pygame.Surf
     everything = np.concatenate([corners for _, corners in parts])
     low = np.floor(everything.min(axis=0)).astype(int) - 1
     size = np.ceil(everything.max(axis=0)).astype(int) + 2 - low
-    fine = _FINE if mark.size <= _LARGEST_SYMBOL else 2
-    large = pygame.Surface((size * fine).tolist(), pygame.SRCALPHA)
+    large = pygame.Surface((size * _FINE).tolist(), pygame.SRCALPHA)
     large.fill((*mark.ink[:3], 0))
     for role, corners in parts:
         colour = mark.ink if role == "ink" else mark.hollow
-        pygame.draw.polygon(large, colour, ((corners + phase - low) * fine).round().tolist())
+        pygame.draw.polygon(large, colour, ((corners + phase - low) * _FINE).round().tolist())
     return pygame.transform.smoothscale(large, size.tolist()), int(low[0]), int(low[1])
 
 

@@ -9,13 +9,15 @@ from numpy.typing import NDArray
 
 from components.tags import Hovered, Selected
 from systems.render.clip import bounds, clip_segments
-from systems.render.labels import Label
-from systems.render.marks import Points, Rectangles, Stamps, Strokes
+from systems.render.labels import FAINT, STRONG, Label, half_size
+from systems.render.marks import Fills, Points, Rectangles, Stamps, Strokes
 from systems.render.sheet import FEW, MANY, Rows, Sheet, typical_length
+from systems.render.symbols import LARGEST_STAMP, RIM, circle
 from systems.render.theme import Colour, faded
 
 _CLOSEST_LINES = 8.0  # points between grid lines
 _GHOST_FROM = 4.0  # points of displacement
+_LARGEST_FILLED = 10_000.0  # pixels, well within 16 bits, which is what polygons are filled with
 
 
 def draw_grid(sheet: Sheet) -> None:
@@ -68,6 +70,7 @@ def draw_ghost(sheet: Sheet) -> None:
     ends = sheet.ends[far]
     start, end, _ = clip_segments(original[ends[:, 0]], original[ends[:, 1]], *bounds(sheet.viewport))
     if len(start):
+        sheet.occupancy.line(start, end, FAINT)
         dashes = _dashed(start, end, 5.0 * sheet.unit)
         sheet.marks.append(Strokes(*dashes, sheet.unit, sheet.theme.ghost))
 
@@ -109,7 +112,7 @@ def draw_rods(sheet: Sheet) -> None:
         sheet.marks.append(Strokes(sheet.start[mask], sheet.end[mask], width * wider, colour))
     if len(yielding):
         sheet.legend.append("yielding")
-    sheet.occupancy.line(sheet.start, sheet.end)
+    sheet.occupancy.line(sheet.start, sheet.end, STRONG)
 
 
 def draw_particles(sheet: Sheet) -> None:
@@ -126,11 +129,30 @@ def draw_particles(sheet: Sheet) -> None:
 
 
 def _draw_circles(sheet: Sheet, symbol: str, rows: Rows, ink: Colour, hollow: Colour, extra: float) -> None:
-    """Stamps of one kind, grouped by radius to a quarter of a pixel."""
+    """Stamps of one kind, grouped by radius to a quarter of a pixel; large ones as lines and areas."""
     radii = np.round(4.0 * (sheet.radii[rows] + extra)) / 4.0
     for radius in np.unique(radii).tolist():
         at = sheet.centres[rows[radii == radius]]
-        sheet.marks.append(Stamps(symbol, at, radius, sheet.unit, ink, hollow))
+        if radius <= LARGEST_STAMP * sheet.unit:
+            sheet.marks.append(Stamps(symbol, at, radius, sheet.unit, ink, hollow))
+        else:
+            _draw_large_circles(sheet, symbol, at, radius, ink, hollow)
+
+
+def _draw_large_circles(
+    sheet: Sheet, symbol: str, at: Points, radius: float, ink: Colour, hollow: Colour
+) -> None:
+    """Circles as polygons; filled up to the size at which the whole viewport may lie inside."""
+    rim = RIM * sheet.unit
+    corners = at[:, None] + circle(radius - rim / 2)
+    if radius < _LARGEST_FILLED:
+        sheet.marks.append(Fills(corners, hollow if symbol == "ring" else ink))
+    if symbol == "ring":
+        first, last = corners.reshape(-1, 2), np.roll(corners, -1, axis=1).reshape(-1, 2)
+        low, high = bounds(sheet.viewport)
+        overlap = 0.5 * (last - first) / np.hypot(*(last - first).T)[:, None]  # a pixel, so that joints close
+        start, end, _ = clip_segments(first - overlap, last + overlap, low - rim, high + rim)
+        sheet.marks.append(Strokes(start, end, rim, ink))
 
 
 def label_names(sheet: Sheet) -> None:
@@ -141,39 +163,50 @@ def label_names(sheet: Sheet) -> None:
         wanted = np.arange(len(rows)) if all_of_them else np.flatnonzero(sheet.chosen(marked, rows))
         for index in wanted[:FEW].tolist():
             row = int(rows[index])
-            places = _beside_particle(sheet, row) if table == "particles" else _beside_rod(sheet, index)
-            _add_name(sheet, sheet.model.tables[table].handles[row].name, places, row in marked)
+            name, is_marked = sheet.model.tables[table].handles[row].name, row in marked
+            half = half_size(name, *_name_font(sheet, is_marked), sheet.unit)
+            beside = (
+                _beside_particle(sheet, row, half) if table == "particles" else _beside_rod(sheet, index, half)
+            )
+            _add_name(sheet, name, beside, is_marked)
+
+
+def _name_font(sheet: Sheet, marked: bool) -> tuple[int, str]:
+    return (sheet.font(12.0), "semibold") if marked else (sheet.font(11.0), "regular")
 
 
 def _add_name(sheet: Sheet, name: str, places: list[tuple[float, float]], marked: bool) -> None:
-    theme = sheet.theme
-    sheet.labels.append(
-        Label(
-            name,
-            places,
-            sheet.font(12.0 if marked else 11.0),
-            theme.text if marked else theme.muted,
-            rank=-1e12 if marked else 1e12,
-            weight="semibold" if marked else "regular",
-            backing=faded(theme.background, 0.86) if marked else None,
-        )
-    )
+    size, weight = _name_font(sheet, marked)
+    if marked:
+        backing = faded(sheet.theme.background, 0.86)
+        sheet.labels.append(Label(name, places, size, sheet.theme.text, -1e12, weight, backing))
+    else:
+        sheet.labels.append(Label(name, places, size, sheet.theme.muted, 1e12, weight, lines="avoid"))
 
 
-def _beside_particle(sheet: Sheet, row: int) -> list[tuple[float, float]]:
+def _beside_particle(sheet: Sheet, row: int, half: tuple[float, float]) -> list[tuple[float, float]]:
+    """Around its rim: first the corners, then the sides, then further away."""
     x, y = sheet.centres[row].tolist()
-    reach = sheet.radii[row] + 11.0 * sheet.unit
-    around = [(-1, -1), (1, -1), (-1, 1), (1, 1), (0, -1), (-1.3, 0), (1.3, 0), (0, 1)]
-    return [(x + far * dx * reach, y + far * dy * reach) for far in (0.85, 1.3, 1.9) for dx, dy in around]
+    radius = float(sheet.radii[row])
+    places = []
+    for gap in (0.0, 6.0 * sheet.unit, 14.0 * sheet.unit):
+        near = 0.8 * radius + 3.0 * sheet.unit + gap
+        corner_x, corner_y = near + half[0], near + half[1]
+        side_x, side_y = radius + half[0] + gap, radius + half[1] + gap
+        places += [(x + sx * corner_x, y + sy * corner_y) for sy in (-1, 1) for sx in (-1, 1)]
+        places += [(x, y - side_y), (x - side_x, y), (x + side_x, y), (x, y + side_y)]
+    return places
 
 
-def _beside_rod(sheet: Sheet, index: int) -> list[tuple[float, float]]:
-    start, end = sheet.start[index], sheet.end[index]
-    step = end - start
-    normal = np.array([step[1], -step[0]]) / max(float(np.hypot(*step)), 1e-9)
-    away = normal * (10.0 + 6.0 * abs(normal[0])) * sheet.unit
+def _beside_rod(sheet: Sheet, index: int, half: tuple[float, float]) -> list[tuple[float, float]]:
+    """Beside its middle, on either side, then further along and further away."""
+    (x, y), (far_x, far_y) = sheet.start[index].tolist(), sheet.end[index].tolist()
+    dx, dy = far_x - x, far_y - y
+    length = max(math.hypot(dx, dy), 1e-9)
+    nx, ny = dy / length, -dx / length
+    reach = abs(nx) * half[0] + abs(ny) * half[1] + 1.0 * sheet.unit
     return [
-        tuple(start + share * step + side * away)
+        (x + share * dx + side * reach * nx, y + share * dy + side * reach * ny)
         for share in (0.5, 0.35, 0.65)
-        for side in (-1.0, 1.0, -1.7, 1.7)
+        for side in (-1.0, 1.0, -1.8, 1.8)
     ]

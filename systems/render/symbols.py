@@ -16,7 +16,8 @@ Parts = list[tuple[str, Polygon]]  # ("ink" or "hollow", corners (k, 2)), in pai
 
 ARROW_LENGTH = 20.0  # points
 SUPPORT_DEPTH = 25.0  # points from the particle's rim to the far side of the ground
-_RIM = 1.75  # points
+RIM = 1.75  # points
+LARGEST_STAMP = 64.0  # points, the greatest radius of a circle worth stamping
 _HALF_WIDTH, _HEIGHT = 9.5, 16.0  # points, of a support's triangle
 _GROUND = 13.0  # points, half the length of the ground under it
 
@@ -26,7 +27,8 @@ def symbol_parts(symbol: str, size: float, unit: float) -> Parts:
     return _SYMBOLS[symbol](size, unit)
 
 
-def _circle(radius: float) -> Polygon:
+def circle(radius: float) -> Polygon:
+    """Corners of a circle about the origin, so many that they are not seen."""
     corners = max(12, math.ceil(4.0 * math.sqrt(16.0 * radius)))
     angle = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
     return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -38,11 +40,11 @@ def _bar(left: float, top: float, right: float, bottom: float) -> Polygon:
 
 def _ring(radius: float, unit: float) -> Parts:
     """An open circle whose rim lies inside the radius."""
-    return [("ink", _circle(radius)), ("hollow", _circle(max(radius - _RIM * unit, 0.0)))]
+    return [("ink", circle(radius)), ("hollow", circle(max(radius - RIM * unit, 0.0)))]
 
 
 def _disc(radius: float, unit: float) -> Parts:
-    return [("ink", _circle(radius))]
+    return [("ink", circle(radius))]
 
 
 def _arrow(length: float, unit: float) -> Parts:
@@ -57,8 +59,8 @@ def _triangle(unit: float) -> Parts:
     """An open triangle that touches the origin with its apex."""
     outer = np.array([[0.0, 0.0], [_HEIGHT, _HALF_WIDTH], [_HEIGHT, -_HALF_WIDTH]])
     slant = math.hypot(_HEIGHT, _HALF_WIDTH)
-    apex = _RIM * slant / _HALF_WIDTH  # where the inner edges meet, a rim's width inside the outer ones
-    base = _HEIGHT - _RIM
+    apex = RIM * slant / _HALF_WIDTH  # where the inner edges meet, a rim's width inside the outer ones
+    base = _HEIGHT - RIM
     inner_half = (base - apex) * _HALF_WIDTH / _HEIGHT
     inner = np.array([[apex, 0.0], [base, inner_half], [base, -inner_half]])
     return [("ink", outer * unit), ("hollow", inner * unit)]

@@ -319,7 +319,7 @@ def test_assigning_to_a_derived_field_overrides_it_and_none_goes_back() -> None:
     assert (particle.prescribed_mass, particle.mass) == (5.0, 5.0)
     assert (rod.prescribed_rest_length, rod.rest_length) == (2.0, 2.0)
     assert model.particles["A"].mass == 0.5 * 6.15 * (2.0 + 2.0)
-    particle.mass = rod.rest_length = None  # type: ignore[assignment]
+    particle.mass = rod.rest_length = None
     assert (particle.prescribed_mass, particle.mass) == (None, lumped)
     assert rod.rest_length == distance
 

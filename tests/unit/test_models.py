@@ -315,6 +315,7 @@ def everything() -> Model:
                 particle("A", -0.0, 5e-324, fixed=[True, False], mass=3, radius=0.1),
                 particle("B", 1 / 3, 1e22, force=[-0.0, 1], acceleration=[0, -9.81], velocity=[1e-7, -0.0]),
                 particle('ü "q"\n.x', 2**53 + 1, 0.1, displacement=[0.1 + 0.2, -0.0]),
+                particle("zeros", 0, 0, velocity=[-0.0, 0.0], force=[0.0, -0.0]),
             ],
             [
                 rod(

@@ -172,6 +172,9 @@ def test_a_table_emptied_can_be_filled_again() -> None:
 
 def test_new_names_take_the_smallest_free_numbers() -> None:
     world, table = beads(0)
+    world.create(Bead, 9)
+    world.create(Bead, 9)
+    world.delete(list(table))
     world.create(Bead, 3, name=["bead 2", "bead 4", "pearl"])
     world.create(Bead, 3)
     assert table.names[3:] == ["bead 1", "bead 3", "bead 5"]

@@ -1,0 +1,1 @@
+"""Statics: equilibria, theories to compare with, and what makes a structure fail."""

@@ -1,0 +1,262 @@
+"""Equilibrium equations of pin-jointed rods in exact geometry, as functions of the displacements.
+
+The unknowns are the displacements of the free directions of all particles that rods hold; a vector of
+unknowns has shape (N,), a field over all particles (n, 2). Lengths in m, forces in kN.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
+from scipy.sparse.csgraph import connected_components
+
+from components.model import Model
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Rows = NDArray[np.intp]
+
+AT_LIMIT = 1e-10  # share of its strength within which a rod counts as yielding
+ROUND_OFF = float(np.finfo(np.float64).eps)
+
+
+@dataclass(frozen=True)
+class Response:
+    """What the rods do at some displacements, having yielded from a given plastic strain; shape (rods,).
+
+    elastic_force: what the axial force would be without yielding from there. plastic_strain: after it.
+    axis: unit vectors from first to second end, (rods, 2). flowing: in the course of yielding.
+    """
+
+    elongation: Array
+    strain: Array
+    length: Array
+    axis: Array
+    elastic_force: Array
+    axial_force: Array
+    plastic_strain: Array
+    flowing: Flags
+
+
+@dataclass(frozen=True)
+class Structure:
+    """The rods of a model and the directions in which its particles are free, as arrays.
+
+    ends: rows of the particles at both ends, (rods, 2). difference: between their original positions.
+    unknown: the free directions that are solved for, (n, 2): those of particles with rods, less one of
+        every body that nothing holds along an axis (its translation is arbitrary).
+    body: number of the connected body that each particle belongs to, (n,).
+    """
+
+    position: Array
+    ends: Rows
+    difference: Array
+    original_length: Array
+    rest_length: Array
+    stiffness: Array
+    tension_limit: Array
+    compression_limit: Array
+    fixed: Flags
+    unknown: Flags
+    body: Rows
+
+    @classmethod
+    def of(cls, model: Model) -> Structure:
+        """The structure of a model; rods never yield if the settings have plasticity off."""
+        particles, rods = model.particles, model.rods
+        yields = bool(model.settings.plasticity)
+        ends = rods.between.astype(np.intp)
+        body = _bodies(particles.count, ends)
+        has_rods = np.zeros(particles.count, dtype=bool)
+        has_rods[ends] = True
+        fixed = particles.fixed.copy()
+        return cls(
+            position=particles.position.copy(),
+            ends=ends,
+            difference=rods.difference.copy(),
+            original_length=rods.original_length.copy(),
+            rest_length=rods.rest_length.copy(),
+            stiffness=rods.stiffness.copy(),
+            tension_limit=rods.tension_limit.copy() if yields else np.full(rods.count, np.inf),
+            compression_limit=rods.compression_limit.copy() if yields else np.full(rods.count, np.inf),
+            fixed=fixed,
+            unknown=has_rods[:, None] & ~fixed & ~_arbitrary(fixed, body),
+            body=body,
+        )
+
+    # --- unknowns ----------------------------------------------------------------------------------
+
+    @cached_property
+    def index(self) -> Rows:
+        """Where the unknowns are in a flattened field, (N,)."""
+        return np.flatnonzero(self.unknown.ravel())
+
+    @property
+    def size(self) -> int:
+        """The number of unknowns N."""
+        return len(self.index)
+
+    def gather(self, field: Array) -> Array:
+        """The unknowns' part of a field."""
+        part: Array = field.ravel()[self.index]
+        return part
+
+    def spread(self, vector: Array) -> Array:
+        """A vector of unknowns as a field, zero elsewhere."""
+        field = np.zeros(self.unknown.shape)
+        field.ravel()[self.index] = vector
+        return field
+
+    def relative(self, field: Array) -> Array:
+        """Second end minus first end of every rod, (rods, 2)."""
+        difference: Array = field[self.ends[:, 1]] - field[self.ends[:, 0]]
+        return difference
+
+    def move(self, vector: Array, length: Array) -> float:
+        """The largest change of a rod, in length or direction, relative to its length."""
+        change = self.relative(self.spread(vector))
+        return float((np.hypot(change[:, 0], change[:, 1]) / length).max(initial=0.0))
+
+    def elongation_rate(self, vector: Array, response: Response) -> Array:
+        """Rate of elongation of every rod when the unknowns change at this rate."""
+        rate: Array = (self.relative(self.spread(vector)) * response.axis).sum(axis=1)
+        return rate
+
+    @cached_property
+    def extent(self) -> float:
+        """The larger side of the box around the original positions (m), at least the longest rod."""
+        box = float(np.ptp(self.position, axis=0).max()) if len(self.position) else 0.0
+        return max(box, float(self.rest_length.max(initial=0.0)))
+
+    @cached_property
+    def weight(self) -> Array:
+        """Sum of EA/L₀ of the rods at each unknown's particle (kN/m), the scale of its stiffness, (N,)."""
+        per_rod = self.stiffness / self.rest_length
+        total = np.bincount(self.ends.ravel(), np.repeat(per_rod, 2), len(self.position))
+        return self.gather(np.repeat(total, 2).reshape(-1, 2))
+
+    # --- forces --------------------------------------------------------------------------------------
+
+    def respond(self, displacement: Array, plastic_strain: Array) -> Response:
+        """Axial forces N = EA (ε − ε_p), ε = (L − L₀)/L₀, limited by yielding; both limits move with ε_p.
+
+        The change of length is (2D + Δu)·Δu / (L + |D|), in which nothing cancels at small displacements.
+        """
+        change = self.relative(displacement)
+        present = self.difference + change
+        length = np.hypot(present[:, 0], present[:, 1])
+        stretch = ((self.difference + present) * change).sum(axis=1) / (length + self.original_length)
+        elongation = stretch + (self.original_length - self.rest_length)
+        strain = elongation / self.rest_length
+        elastic = self.stiffness * (strain - plastic_strain)
+        force = np.clip(elastic, -self.compression_limit, self.tension_limit)
+        flowing = force != elastic
+        return Response(
+            elongation=elongation,
+            strain=strain,
+            length=length,
+            axis=present / np.where(length > 0.0, length, 1.0)[:, None],
+            elastic_force=elastic,
+            axial_force=force,
+            plastic_strain=np.where(flowing, strain - force / self.stiffness, plastic_strain),
+            flowing=flowing,
+        )
+
+    def internal(self, response: Response) -> Array:
+        """Forces (n, 2) that hold the particles against the rods' pull."""
+        return self.scatter(response.axial_force[:, None] * response.axis)
+
+    def scatter(self, pull: Array) -> Array:
+        """Forces (n, 2): each rod's vector on its second end, its opposite on the first."""
+        count = len(self.position)
+        first, second = self.ends[:, 0], self.ends[:, 1]
+        field = np.empty((count, 2))
+        for axis in range(2):
+            field[:, axis] = np.bincount(second, pull[:, axis], count)
+            field[:, axis] -= np.bincount(first, pull[:, axis], count)
+        return field
+
+    def at_limit(self, response: Response) -> Flags:
+        """Rods whose axial force is at a strength."""
+        slack = ROUND_OFF * 4.0 * self.stiffness * np.abs(response.strain)
+        force, tension, compression = response.axial_force, self.tension_limit, self.compression_limit
+        pulled = np.isfinite(tension) & (force >= tension * (1.0 - AT_LIMIT) - slack)
+        pressed = np.isfinite(compression) & (force <= slack - compression * (1.0 - AT_LIMIT))
+        return pulled | pressed
+
+    def round_off(self, displacement: Array) -> float:
+        """Force (kN) below which a residual is rounding of the displacements."""
+        size = np.abs(self.gather(displacement))
+        return 2.0 * ROUND_OFF * float((self.weight * size).max(initial=0.0))
+
+    # --- tangent -------------------------------------------------------------------------------------
+
+    def tangent(self, response: Response, flowing: Flags, *, geometric: bool = True) -> csc_matrix:
+        """dF/du over the unknowns: Σ EA/L₀ a aᵀ (not of flowing rods) + Σ N/L (1 − a aᵀ)."""
+        along = np.where(flowing, 0.0, self.stiffness / self.rest_length)
+        across = np.zeros_like(along)
+        if geometric:
+            length = response.length
+            across = np.where(length > 0.0, response.axial_force / np.where(length > 0.0, length, 1.0), 0.0)
+        a = response.axis
+        block = (along - across)[:, None, None] * (a[:, :, None] * a[:, None, :])
+        block[:, 0, 0] += across
+        block[:, 1, 1] += across
+        return self._assembled(block)
+
+    def _assembled(self, block: Array) -> csc_matrix:
+        """Sum of the rods' 2 × 2 blocks: + at its ends, − between them."""
+        kept, slot, rows, starts = self._pattern
+        signs = np.array([[1.0, -1.0], [-1.0, 1.0]])
+        parts = signs[None, :, None, :, None] * block[:, None, :, None, :]
+        values = np.bincount(slot, parts.ravel()[kept], len(rows))
+        return csc_matrix((values, rows, starts), shape=(self.size, self.size))
+
+    @cached_property
+    def _pattern(self) -> tuple[Rows, Rows, NDArray[np.int32], NDArray[np.int32]]:
+        """Which of the rods' 16 entries count, where each goes, and the compressed columns' rows and starts."""
+        number = np.full(self.unknown.size, -1, dtype=np.int64)
+        number[self.index] = np.arange(self.size)
+        own = number.reshape(-1, 2)[self.ends].reshape(-1, 4)
+        row = np.repeat(own, 4, axis=1).ravel()
+        column = np.tile(own, (1, 4)).ravel()
+        kept = np.flatnonzero((row >= 0) & (column >= 0))
+        code, slot = np.unique(column[kept] * self.size + row[kept], return_inverse=True)
+        counts = np.bincount(code // max(self.size, 1), minlength=self.size)
+        starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
+        return kept, slot, (code % max(self.size, 1)).astype(np.int32), starts
+
+    def compatibility(self, response: Response) -> csc_matrix:
+        """Elongations of the rods from the unknowns, (rods, N); its transpose is the equilibrium matrix."""
+        a = response.axis
+        return csc_matrix(_compatibility(self.ends, a, len(self.position))[:, self.index])
+
+
+def _compatibility(ends: Rows, axis: Array, particles: int) -> csc_matrix:
+    """Elongations from the displacements of all particles, (rods, 2n)."""
+    columns = 2 * ends[:, [0, 0, 1, 1]] + np.array([0, 1, 0, 1])
+    entries = np.concatenate([-axis, axis], axis=1)
+    rows = np.repeat(np.arange(len(ends)), 4)
+    return csc_matrix((entries.ravel(), (rows, columns.ravel())), (len(ends), 2 * particles))
+
+
+def _bodies(particles: int, ends: Rows) -> Rows:
+    graph = csc_matrix((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), (particles, particles))
+    labels: Rows = connected_components(graph, directed=False)[1].astype(np.intp)
+    return labels
+
+
+def _arbitrary(fixed: Flags, body: Rows) -> Flags:
+    """One direction (n, 2) for each axis along which nothing holds a body: that of its first particle."""
+    count = int(body.max(initial=-1)) + 1
+    first = np.full(count, len(body))
+    np.minimum.at(first, body, np.arange(len(body)))
+    arbitrary = np.zeros_like(fixed)
+    for axis in range(2):
+        held = np.bincount(body, fixed[:, axis], count) > 0
+        arbitrary[first[~held], axis] = True
+    return arbitrary

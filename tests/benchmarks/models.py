@@ -1,0 +1,52 @@
+"""Models that benchmarks share: made by size, without a file."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from components.model import Model
+from components.particle import Particle
+from components.rod import spawn_rods
+
+
+def truss(**rods: Any) -> Model:
+    """The thesis' isostatic triangle: three rods."""
+    model = Model()
+    model.create(
+        Particle,
+        3,
+        name=["A", "B", "C"],
+        position=[(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)],
+        fixed=[(False, True), (False, False), (True, True)],
+        force=[(0.0, 0.0), (120.0, -160.0), (0.0, 0.0)],
+    )
+    spawn_rods(model, [(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"], **rods)
+    return model
+
+
+def lattice(rods: int, **columns: Any) -> Model:
+    """A square lattice with both diagonals and about so many rods, its left edge held, pulled to the right."""
+    side = max(int(round((rods / 4.0) ** 0.5)), 2)
+    x, y = np.meshgrid(np.arange(side, dtype=float), np.arange(side, dtype=float))
+    position = np.stack([x.ravel(), y.ravel()], axis=1)
+    left, right = position[:, 0] == 0.0, position[:, 0] == side - 1.0
+    force = np.zeros_like(position)
+    force[right, 0] = 100.0
+    model = Model()
+    model.create(
+        Particle, len(position), position=position, fixed=np.stack([left, left], axis=1), force=force
+    )
+    spawn_rods(model, _neighbours(side), **columns)
+    return model
+
+
+def _neighbours(side: int) -> np.ndarray:
+    index = np.arange(side * side).reshape(side, side)
+    across = np.stack([index[:, :-1].ravel(), index[:, 1:].ravel()], axis=1)
+    up = np.stack([index[:-1].ravel(), index[1:].ravel()], axis=1)
+    rising = np.stack([index[:-1, :-1].ravel(), index[1:, 1:].ravel()], axis=1)
+    falling = np.stack([index[:-1, 1:].ravel(), index[1:, :-1].ravel()], axis=1)
+    pairs = np.concatenate([across, up, rising, falling])
+    return pairs[np.argsort(pairs.min(axis=1), kind="stable")]
