@@ -68,14 +68,15 @@ class Camera:
         """Move the picture by so many pixels (right, down)."""
         self.centre = (self.centre[0] - pixels[0] / self.scale, self.centre[1] + pixels[1] / self.scale)
 
-    def fit(self, points: NDArray[np.float64], margin: float = 90.0) -> None:
-        """Show all points, shape (n, 2), at most at the default zoom for small models; `margin` in pixels."""
+    def fit(self, points: NDArray[np.float64], margin: float = 110.0) -> None:
+        """Show all points, shape (n, 2), with a margin in pixels (less where the viewport is small)."""
         points = points[np.isfinite(points).all(axis=1)]
         if len(points) == 0:
             self.centre, self.scale = (0.0, 0.0), DEFAULT_SCALE
             return
         low, high = points.min(axis=0), points.max(axis=0)
-        room = np.maximum([self.viewport.width - 2 * margin, self.viewport.height - 2 * margin], 50.0)
+        size = np.array([self.viewport.width, self.viewport.height], dtype=np.float64)
+        room = np.maximum(size - 2.0 * np.minimum(margin, 0.2 * size), 1.0)
         extent = np.maximum(high - low, 1e-9)
         scale = float((room / extent).min())
         self.centre = (float((low[0] + high[0]) / 2), float((low[1] + high[1]) / 2))

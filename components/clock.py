@@ -59,6 +59,12 @@ class Clock(Handle):
     energy_scale: Field[float] = Field(
         "J", role=Role.STATE, title="energy scale", doc="Largest energy of the run, the scale for divergence."
     )
+    guard_energy: Field[float] = Field(
+        "J",
+        role=Role.STATE,
+        title="guard energy",
+        doc="What the integrator conserves, less the work, when the present step size began.",
+    )
     collisions: Field[int] = Field(
         dtype=int, default=0, role=Role.STATE, title="collisions", doc="Impacts so far."
     )

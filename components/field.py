@@ -264,7 +264,7 @@ class Field(Generic[T]):
         return column
 
     def _plain(self, values: Any) -> Column | None:
-        """`values` as an array, if they are of the right type already; None as NaN."""
+        """`values` as an array, if they are of the right type already; NaN is None."""
         if self.dtype not in _PLAIN or self.checker is not None:
             return None
         kinds, types = _PLAIN[self.dtype]
@@ -272,12 +272,13 @@ class Field(Generic[T]):
             return values if values.dtype.kind in kinds else None
         try:
             objects = np.array(values, dtype=object)
-            given = set(map(type, objects.ravel().tolist()))
-            if given <= (types | {type(None)} if self.nullable else types):
-                return objects.astype(np.int64 if self.dtype == "reference" else self.storage)
+            given = objects.ravel().tolist()
+            if not set(map(type, given)) <= (types | {type(None)} if self.nullable else types):
+                return None
+            plain = objects.astype(np.int64 if self.dtype == "reference" else self.storage)
         except (ValueError, OverflowError):  # lists of unequal lengths; numbers out of range
-            pass
-        return None
+            return None
+        return plain if np.isnan(plain).sum() == given.count(None) else None
 
     def _allowed(self, values: Column) -> NDArray[np.bool_]:
         """Which rows of an array hold numbers that the Field can take, shape (rows,)."""

@@ -9,9 +9,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from components.field import Field, FieldError, Vector
 from components.particle import Particle
-from components.world import Handle
+from components.world import Handle, World
 
 History = Mapping[str, Any]
 
@@ -75,7 +77,8 @@ def _check_parameter(value: Any, default: Any, name: str, where: str) -> Any:
         if not isinstance(value, list | tuple):
             raise FieldError(f"{where}: history {name} is {value!r}; it must be a list of numbers.")
         return tuple(_check_parameter(item, 0.0, name, where) for item in value)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
+    is_number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+    if not is_number or not abs(value) <= sys.float_info.max:
         raise FieldError(f"{where}: history {name} is {value!r}; it must be a finite number.")
     return float(value)
 
@@ -126,3 +129,9 @@ class Load(Handle):
         """The particle it acts on."""
         found: Particle = self.world.tables["particles"][self.on]
         return found
+
+
+def loads_end(world: World) -> float:
+    """The time (s) after which no load changes any more; −∞ without varying loads."""
+    ends = [HISTORIES[history["kind"]].ends(history) for history in world.tables["loads"].history]
+    return max(ends, default=-math.inf)

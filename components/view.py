@@ -12,12 +12,16 @@ from components.field import Vector
 from components.model import Model
 
 
+MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
+
+
 @dataclass(frozen=True)
 class Status:
     """What the status line says.
 
     time: simulated seconds. speed: simulated seconds per second shown (0: halted). state: such as
     "running", "at rest", "diverged". hint: the next possible step. problem: why it stopped, or "".
+    notice: what the last action did, or what is being waited for, or "".
     """
 
     time: float = 0.0
@@ -25,6 +29,21 @@ class Status:
     state: str = ""
     hint: str = ""
     problem: str = ""
+    notice: str = ""
+
+
+@dataclass(frozen=True)
+class Preview:
+    """What a tool is about to make or a drag is doing, drawn over the model.
+
+    kind: "rod", "force", "velocity", "pull" or "box". start, end: points of the picture (m); of a box, two
+    opposite corners. label: its value with its unit, or "".
+    """
+
+    kind: str
+    start: Vector
+    end: Vector
+    label: str = ""
 
 
 @dataclass
@@ -34,6 +53,7 @@ class View:
     heading: the word top left in red ("Pause"), or "". all_diagrams: force diagrams of all elements.
     legend: show the meaning of colours. help: show what can be pressed (`keys`: (key, meaning)).
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
+    tool: "rod", "force" or "velocity" while clicks and drags make one, or "". preview: what is being drawn.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -45,6 +65,8 @@ class View:
     status: Status = field(default_factory=Status)
     keys: list[tuple[str, str]] = field(default_factory=list)
     pointer: Vector | None = None
+    tool: str = ""
+    preview: Preview | None = None
 
 
 def drawn_positions(model: Model) -> NDArray[np.float64]:

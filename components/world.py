@@ -94,8 +94,7 @@ class World:
         self.tags_revision = 0
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}
-        self._derived_at: dict[Derivation, int] = {}  # revision of the sources it was computed from
-        self._looked_at: dict[Derivation, int] = {}  # revision at which it was last known to be up to date
+        self._derived_at: dict[Derivation, int] = {}  # revision at which it was last up to date
         weakref.finalize(self, _delete_context, self.context)
         for kind in kinds:
             self.tables[kind.table] = Table(self, kind.table, kind)
@@ -232,28 +231,28 @@ class World:
 
     def derive(self, derivation: Derivation) -> None:
         """Register how columns are derived; the newest registration of a target counts."""
-        for target in derivation.targets:
-            replaced = self._derivations.get(target)
-            if replaced is not None and not set(replaced.targets) <= set(derivation.targets):
+        replaced = {self._derivations[target] for target in derivation.targets if target in self._derivations}
+        for other in replaced:
+            if not set(other.targets) <= set(derivation.targets):
                 raise ValueError(
-                    f"{target} is derived together with {', '.join(replaced.targets)}; derive all of them."
+                    f"Columns {', '.join(other.targets)} are derived together; derive all of them."
                 )
+        for other in replaced:
+            del self._derived_at[other]
         for target in derivation.targets:
             self._derivations[target] = derivation
-        self._derived_at[derivation] = self._looked_at[derivation] = -1
+        self._derived_at[derivation] = -1
 
     def refresh(self, name: str) -> None:
         """Bring a derived column, named "table.field", up to date."""
         derivation = self._derivations.get(name)
-        if derivation is None or self._looked_at[derivation] == self.revision:
+        if derivation is None or self._derived_at[derivation] == self.revision:
             return
         newest = max(self.version(source) for source in derivation.sources)
         new_rows = max(self.tables[target.split(".")[0]].structure for target in derivation.targets)
         if max(newest, new_rows) > self._derived_at[derivation]:
-            now = self.revision
             derivation.compute(self)
-            self._derived_at[derivation] = now
-        self._looked_at[derivation] = self.revision
+        self._derived_at[derivation] = self.revision
 
     # --- commands ------------------------------------------------------------------------------------
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import time
 from pathlib import Path
+from typing import Any
 
 import pygame
 
 from components.camera import Viewport
 from components.model import Model
-from components.view import drawn_positions
+from game.script import Recorder
 from game.session import Session
 from systems.base import System
 from systems.edit.hover import Hover
@@ -29,9 +30,19 @@ class NoDisplay(RuntimeError):
     """There is nowhere to open a window; the message is the reason."""
 
 
-def open_window(model: Model, title: str) -> None:
-    """Show a model until the person closes the window. Raises NoDisplay."""
-    App(model, title).run()
+def open_window(model: Model, title: str, record: tuple[str | None, Any] = (None, None)) -> None:
+    """Show a model until the person closes the window. Raises NoDisplay.
+
+    record: the file to write what the person does to, if any, and the model as the script names it.
+    """
+    app = App(model, title)
+    path, source = record
+    if path is None:
+        app.run()
+        return
+    with open(path, "w", encoding="utf-8") as file:
+        Recorder(app.session, file, source)
+        app.run()
 
 
 class App:
@@ -54,7 +65,7 @@ class App:
         self.session = Session(model, systems)
         self.session.window = self
         self._follow_size()
-        self.session.view.camera.fit(drawn_positions(model))
+        self.session.view.fit(model)
         self._full_screen = False
 
     def run(self) -> None:
@@ -114,7 +125,7 @@ def render_png(session: Session, path: str, size: tuple[int, int], theme: str = 
     surface = pygame.Surface(size, depth=32)
     view = session.view
     view.camera.viewport = Viewport(0, 0, *size)
-    view.camera.fit(drawn_positions(session.model))
+    view.fit(session.model)
     session.update_view()
     Canvas().draw(surface, compose(session.model, view, load_theme(theme)))
     with open(path, "wb") as file:

@@ -10,7 +10,7 @@ from typing import NoReturn
 
 from components.field import FieldError
 from components.settings import INTEGRATORS
-from game import __version__, bench, models
+from game import __version__, bench, models, script
 from game.overrides import OverrideError, apply_override
 from game.report import FOUND, run_at, run_until_rest
 from game.results import as_csv, as_json, as_table
@@ -42,7 +42,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         command = words[0] if words and words[0] in _COMMANDS else "open"
         return _COMMANDS[command](words[1:] if command in words[:1] else words)
-    except (Refusal, models.ModelError, OverrideError, FieldError) as error:
+    except (Refusal, models.ModelError, OverrideError, FieldError, script.ScriptError) as error:
         print(f"pinjoint: {error}", file=sys.stderr)
         return getattr(error, "status", BAD_INPUT)
     except KeyboardInterrupt:
@@ -59,27 +59,30 @@ def _open(words: Sequence[str]) -> int:
     parser = Parser(
         prog="pinjoint",
         description="A laboratory for particles and pin-jointed structures.",
-        epilog="commands: run, render, bench (each with --help). Bundled models: "
+        epilog="commands: run, render, play, bench (each with --help). Bundled models: "
         + ", ".join(models.bundled()),
     )
     parser.add_argument("model", nargs="?", help="a model file, or the name of a bundled model")
+    parser.add_argument("--record", metavar="FILE", help="write what you do to a script for: pinjoint play")
     parser.add_argument("--version", action="version", version=f"pinjoint {__version__}")
     options = parser.parse_args(words)
-    model = models.load(options.model) if options.model else models.load(_EMPTY)
+    source = options.model or script.EMPTY
+    model = models.load(source)
     try:
         from game.app import NoDisplay, open_window
     except ImportError as error:
         raise Refusal(f"The window needs pygame-ce, which cannot be imported: {error}.", NO_DISPLAY) from None
     try:
-        open_window(model, options.model or "")
+        open_window(model, options.model or "", record=(options.record, source))
+    except OSError as error:
+        raise Refusal(
+            f"{options.record} cannot be written: {error.strerror}. Choose another --record."
+        ) from None
     except NoDisplay as error:
         raise Refusal(
             f"No window can be opened: {error}. Without a display, use: pinjoint run MODEL", NO_DISPLAY
         ) from None
     return ANSWERED
-
-
-_EMPTY = {"format": "pinjoint model", "version": 1}
 
 
 # --- running without a window ------------------------------------------------------------------------------
@@ -166,6 +169,39 @@ def _write(text: str, output: str | None) -> None:
         raise Refusal(f"{output} cannot be written: {error.strerror}. Choose another --output.") from None
 
 
+# --- scripted sessions -------------------------------------------------------------------------------------
+
+
+def _play(words: Sequence[str]) -> int:
+    parser = Parser(prog="pinjoint play", description="Play a recorded or written session in the real program.")
+    parser.add_argument("script", metavar="SCRIPT")
+    parser.add_argument("--window", action="store_true", help="show it in a window while it plays")
+    options = parser.parse_args(words)
+    loaded = script.Script(options.script)
+    session = _shown(loaded) if options.window else loaded.open()
+    failures = loaded.play(session)
+    for failure in failures:
+        print(f"{options.script} {failure}", file=sys.stderr)
+    played = f"{len(loaded.lines) - 1} lines"
+    print(
+        f"{options.script}: {played}, {len(failures)} expectations failed"
+        if failures
+        else f"{options.script}: {played}, all as expected"
+    )
+    return NOT_ANSWERED if failures else ANSWERED
+
+
+def _shown(loaded: script.Script) -> Session:
+    from game.app import App, NoDisplay
+
+    try:
+        app = App(loaded.open().model, loaded.path.stem)
+    except NoDisplay as error:
+        raise Refusal(f"No window can be opened: {error}. Leave --window out.", NO_DISPLAY) from None
+    app.session.on_press = lambda key, pixel: app.frame(1.0 / 60.0)
+    return app.session
+
+
 # --- pictures ----------------------------------------------------------------------------------------------
 
 
@@ -209,7 +245,9 @@ def _size(text: str) -> tuple[int, int]:
 
 def _bench(words: Sequence[str]) -> int:
     parser = Parser(prog="pinjoint bench", description="Measure, against peers in the same run.")
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(bench.NAMES)}; default all")
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help=f"any of {', '.join(bench.NAMES)}; default all"
+    )
     parser.add_argument("--quick", action="store_true", help="smaller sizes; ends within a minute")
     parser.add_argument("--output", metavar="DIR", help="also write CSV files there")
     options = parser.parse_args(words)
@@ -230,4 +268,4 @@ def _bench(words: Sequence[str]) -> int:
     return ANSWERED
 
 
-_COMMANDS = {"open": _open, "run": _run, "render": _render, "bench": _bench}
+_COMMANDS = {"open": _open, "run": _run, "render": _render, "bench": _bench, "play": _play}

@@ -9,14 +9,22 @@ from typing import Any
 import numpy as np
 
 from components.field import Column, Role
+from components.load import loads_end
 from components.model import Model
+from game.program_binding import bind, explain
 from game.program_cache import compile_module
 from game.program_writer import Writer
 from systems.base import ACCOUNTS, Driver, StepSystem, StopReason
-from systems.loads.system import loads_end
 
 _AT_STRENGTH = 1e-9  # relative distance from its strength at which a rod is said to yield
-_ACCOUNT = (*ACCOUNTS, "initial_energy", "potential_reference", "force_scale", "energy_scale")
+_ACCOUNT = (
+    *ACCOUNTS,
+    "initial_energy",
+    "potential_reference",
+    "force_scale",
+    "energy_scale",
+    "guard_energy",
+)
 
 
 class Program:
@@ -32,14 +40,23 @@ class Program:
         self.model = model
         self.systems = tuple(systems)
         self.driver = driver
-        self._writer = Writer(systems, driver)
+        self._writer = Writer(model, systems, driver)
         self._module = compile_module(self._writer.source(), self._writer.kernels)
         self.measures = np.zeros(7)
         self._state_revision = -1
         self.bind()
-        self.advance(0)
-        self.observe()
+        self._compile()
         self.compile_seconds = time.perf_counter() - started
+
+    def _compile(self) -> None:
+        """Call everything once, which makes numba compile it, or load it from the cache."""
+        from numba.core.errors import NumbaError
+
+        try:
+            self.advance(0)
+            self.observe()
+        except NumbaError as error:
+            raise explain(self._writer.bound, self.model, error) from error
 
     @property
     def resists_motion(self) -> bool:
@@ -50,8 +67,8 @@ class Program:
         """Take hold of the model's columns; needed after every change of its document."""
         particles, rods = self.model.particles.count, self.model.rods.count
         extra: dict[str, Any] = {}
-        for b in self._writer.bound:
-            extra.update(b.system.arrays(self.model))
+        for system in self.systems:
+            extra.update(bind(system, self.model).arrays)
         written = {w.replace(".", "_", 1) for b in self._writer.commits for w in b.system.writes}
         self._columns = [
             extra[name] if name in extra else self._column(name, name in written)
@@ -89,10 +106,11 @@ class Program:
             account,
             self.measures,
         )
-        for name, value in zip(_ACCOUNT, account, strict=True):
-            self.model.writable(f"clock.{name}")[0] = value
-        self.model.writable("clock.steps")[0] = total + taken
-        self.model.writable("clock.time")[0] = clock.origin + (first + taken) * clock.step_size
+        if taken:
+            for name, value in zip(_ACCOUNT, account, strict=True):
+                self.model.writable(f"clock.{name}")[0] = value
+            self.model.writable("clock.steps")[0] = total + taken
+            self.model.writable("clock.time")[0] = clock.origin + (first + taken) * clock.step_size
         self._state_revision = self.model.newest(Role.STATE)
         return taken, StopReason(reason)
 

@@ -10,27 +10,55 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, ModuleType
 from typing import Any
 
+import numpy as np
 from platformdirs import user_cache_path
 
 
-def _sources_of(functions: Iterable[Callable[..., Any]]) -> str:
-    """The text of every module in which these compiled functions, or others they call, are written."""
-    texts: dict[str, str] = {}
-    pending = [getattr(function, "py_func", function) for function in functions]
-    seen = set()
+def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
+    """All that decides what these compiled functions compute: code, options, what they refer to or call.
+
+    Taken from the functions as they are in memory, for their files may have changed since, or be none.
+    """
+    parts: list[str] = []
+    pending, seen = list(functions), set[Callable[..., Any]]()
     while pending:
-        plain = pending.pop()
-        if plain in seen:
+        function = pending.pop()
+        if function in seen:
             continue
-        seen.add(plain)
-        path = inspect.getsourcefile(plain) or ""
-        texts.setdefault(path, Path(path).read_text(encoding="utf-8"))
-        called = (plain.__globals__.get(name) for name in plain.__code__.co_names)
-        pending += [plain_of for other in called if (plain_of := getattr(other, "py_func", None))]
-    return "".join(texts[path] for path in sorted(texts))
+        seen.add(function)
+        plain = getattr(function, "py_func", function)
+        parts += [plain.__qualname__, repr(getattr(function, "targetoptions", {})), _described(plain.__code__)]
+        for name, value in sorted(_used_by(plain).items()):
+            parts.append(f"{name} = {_constant(value)}")
+            if hasattr(value, "py_func"):
+                pending.append(value)
+    return "\n".join(parts)
+
+
+def _used_by(plain: Callable[..., Any]) -> dict[str, Any]:
+    """What a function takes from around it: closure, globals, and attributes of modules among these."""
+    outside = inspect.getclosurevars(plain)
+    used: dict[str, Any] = {**outside.globals, **outside.nonlocals}
+    for name, value in list(used.items()):
+        if isinstance(value, ModuleType):
+            names = plain.__code__.co_names
+            used |= {f"{name}.{n}": getattr(value, n) for n in names if hasattr(value, n)}
+    return used
+
+
+def _described(code: CodeType) -> str:
+    constants = [_described(c) if isinstance(c, CodeType) else repr(c) for c in code.co_consts]
+    return repr((code.co_code, code.co_names, code.co_varnames, constants))
+
+
+def _constant(value: Any) -> str:
+    if isinstance(value, np.ndarray):
+        return repr((value.dtype.str, value.shape, value.tobytes()))
+    plain = isinstance(value, bool | int | float | complex | str | tuple | None | np.generic)
+    return repr(value) if plain else type(value).__name__
 
 
 def _cache_folder() -> Path:
@@ -56,7 +84,9 @@ def compile_module(source: str, kernels: Mapping[str, Callable[..., Any]]) -> Mo
     """
     import numba
 
-    everything = "\n".join([source, _sources_of(kernels.values()), numba.__version__, sys.version])
+    everything = "\n".join(
+        [source, _meaning_of(kernels[name] for name in sorted(kernels)), numba.__version__, sys.version]
+    )
     name = "pinjoint_program_" + hashlib.sha256(everything.encode()).hexdigest()[:24]
     if name not in _modules:
         path = _cache_folder() / f"{name}.py"

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-import importlib
 import inspect
 import textwrap
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
-from components.model import KINDS, Model
-from components.table import fields_of
+from components.model import Model
+from game.program_binding import PROVIDED, TRIAL, Bound, bind, check_names
 from systems.base import ACCOUNTS, Commit, Driver, Law, StepSystem
 from systems.physics.integrators import advance
 
 CHECK_INTERVAL = 128  # steps between checks for rest and divergence; larger: notices later
 REVIEW_INTERVAL = 8192  # steps between reviews of the step size, and between safe states
 
-_TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
-_SINGLE = ("environment", "settings", "clock")
-_PROVIDED = ("elongation", "rate", "axial_force", "time", "dt")
 _ALWAYS = (
     "particles_mobility",
     "particles_mass",
@@ -32,76 +27,27 @@ _ALWAYS = (
 )
 
 
-class ProgramError(ValueError):
-    """A step system that cannot join the program; the message names it, the reason and the remedy."""
-
-
-@dataclass(frozen=True)
-class Bound:
-    """A step system with its kernel and the names of the kernel's parameters."""
-
-    system: StepSystem
-    function: Callable[..., Any]
-    parameters: tuple[str, ...]
-
-    @property
-    def call(self) -> str:
-        """The name of the kernel in the program."""
-        return "kernel_" + self.prefix
-
-    @property
-    def prefix(self) -> str:
-        """The system's name as a Python name."""
-        return self.system.name.replace(".", "_")
-
-
-def bind(system: StepSystem) -> Bound:
-    """Find a step system's kernel and its parameters. Raises ProgramError."""
-    function = system.kernel
-    if isinstance(function, str):
-        module, _, attribute = function.partition(":")
-        function = getattr(importlib.import_module(module), attribute)
-    plain = getattr(function, "py_func", function)
-    bound = Bound(system, function, tuple(inspect.signature(plain).parameters))
-    _check_declared(bound)
-    return bound
-
-
-def _check_declared(b: Bound) -> None:
-    """A kernel is given the columns that its system declares, and no others."""
-    if isinstance(b.system, Driver) or _is_load_law(b):
-        return
-    declared = {column.replace(".", "_", 1) for column in (*b.system.reads, *b.system.writes)}
-    for parameter in b.parameters:
-        if parameter not in _PROVIDED and parameter not in declared:
-            column = parameter.replace("_", ".", 1)
-            raise ProgramError(
-                f"The kernel of {b.system.name} takes {parameter}, but the system does not declare that it"
-                f" reads '{column}'; add it to `reads`."
-            )
-
-
 class Writer:
     """Writes the source of one step program from the bound systems of a plan."""
 
-    def __init__(self, systems: Sequence[StepSystem], driver: Driver) -> None:
-        bound = [bind(system) for system in systems]
-        laws = [b for b in bound if isinstance(b.system, Law)]
+    def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver) -> None:
+        self.model = model
+        self.bound = bound = [bind(system, model) for system in systems]
+        check_names(bound)
+        laws = sorted((b for b in bound if isinstance(b.system, Law)), key=lambda b: b.system.name)
         self.commits = [b for b in bound if isinstance(b.system, Commit)]
-        self.rod_laws = [b for b in laws if _each(b) == "rods" and "rate" not in b.parameters]
-        self.rod_rates = [b for b in laws if _each(b) == "rods" and "rate" in b.parameters]
-        self.particle_laws = [
-            b for b in laws if _each(b) == "particles" and "particles_velocity" not in b.parameters
-        ]
-        self.particle_rates = [
-            b for b in laws if _each(b) == "particles" and "particles_velocity" in b.parameters
-        ]
-        self.loads = [b for b in laws if _each(b) == "loads"]
-        self.driver = bind(driver)
-        self.bound = bound
+        of_rods = [b for b in laws if b.each == "rods"]
+        of_particles = [b for b in laws if b.each == "particles"]
+        self.rod_laws = [b for b in of_rods if not {"rate", "axial_force"} & set(b.parameters)]
+        self.rod_laws += [b for b in bound if b.each == "rods" and b.replaces]
+        self.rod_rates = [b for b in of_rods if "rate" in b.parameters]
+        self.particle_laws = [b for b in of_particles if "particles_velocity" not in b.parameters]
+        self.particle_rates = [b for b in of_particles if "particles_velocity" in b.parameters]
+        self.loads = [b for b in laws if b.each == "loads"]
+        self.driver = bind(driver, model)
         self.kernels = {b.call: b.function for b in bound} | {"judge": _judge()}
         self.rates = bool(self.rod_rates or self.particle_rates)
-        self.powers = self.rates or bool(self.loads or self.particle_laws)
+        self.powers = self.rates or bool(self.particle_laws)
         self.columns = self._columns()
 
     def _columns(self) -> list[str]:
@@ -109,9 +55,9 @@ class Writer:
         names = dict.fromkeys(_ALWAYS)
         for b in self.bound:
             for parameter in b.parameters:
-                if parameter not in _PROVIDED and parameter not in _TRIAL and not _is_load_law(b):
+                if parameter not in PROVIDED and parameter not in TRIAL and b.each != "loads":
                     names[parameter] = None
-            if _is_load_law(b):
+            if b.each == "loads":
                 names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in ("on", "force", "values", "first")))
         return list(names)
 
@@ -119,26 +65,16 @@ class Writer:
 
     def _argument(self, b: Bound, parameter: str, index: str) -> str:
         """How a kernel's parameter is written inside the loop over its rows."""
-        if parameter in _PROVIDED:
+        if parameter in PROVIDED:
             return parameter
-        if parameter in _TRIAL:
-            name = _TRIAL[parameter]
-            return f"({name}[{index}, 0], {name}[{index}, 1])"
-        table, _, column = parameter.partition("_")
-        index = "0" if table in _SINGLE else index
-        shape = self._shape(b, table, column)
-        return f"({parameter}[{index}, 0], {parameter}[{index}, 1])" if shape else f"{parameter}[{index}]"
-
-    def _shape(self, b: Bound, table: str, column: str) -> tuple[int, ...]:
-        for kind in KINDS:
-            if kind.table == table:
-                for field in fields_of(kind):
-                    if field.name == column:
-                        return field.shape
-        raise ProgramError(
-            f"The kernel of {b.system.name} has a parameter '{table}_{column}', but there is no column"
-            f" {table}.{column}; name parameters <table>_<column>, elongation, rate, axial_force or time."
-        )
+        name = TRIAL.get(parameter, parameter)
+        if parameter in b.arrays:
+            shape = b.arrays[parameter].shape[1:]
+        else:
+            table, _, column = parameter.partition("_")
+            index = "0" if self.model.tables[table].kind.single else index
+            shape = self.model.tables[table].fields[column].shape
+        return f"({name}[{index}, 0], {name}[{index}, 1])" if shape else f"{name}[{index}]"
 
     def _apply(self, b: Bound, index: str) -> str:
         return f"{b.call}({', '.join(self._argument(b, p, index) for p in b.parameters)})"
@@ -153,6 +89,7 @@ class Writer:
             self._forces("forces", accepted=False),
             self._forces("accept", accepted=True),
             self._resist(),
+            self._load_power(),
             self._measure(),
             self._observe(),
             self._pasted(self.driver.function, "integrate", "compiled"),
@@ -173,6 +110,7 @@ class Writer:
             entry = njit(error_model="numpy", cache=True)
             RATES = {self.rates}
             POWERS = {self.powers}
+            LOADS = {bool(self.loads)}
             SHADOW = {int(getattr(self.driver.system, "conserved_energy", "") != "")}
             CHECK_INTERVAL = {CHECK_INTERVAL}
             REVIEW_INTERVAL = {REVIEW_INTERVAL}
@@ -189,13 +127,11 @@ class Writer:
             f"def {name}(time, dt, displacement, velocity, force, resisting, direction, {account}{self._columns_text()}):",
             "    external(time, dt, displacement, velocity, force, resisting, " + self._columns_text() + ")",
         ]
-        commits = accepted and self.commits
-        if commits:
-            lines += _indent(1, ["lost = 0.0"])
-        lines += _indent(1, self._rod_loop(self._rod_forces(commits=bool(commits))))
-        if commits:
-            slot = ACCOUNTS.index(_account(self.commits[0]))
-            lines += _indent(1, [f"account[{slot}] += 1000.0 * lost"])
+        commits = self.commits if accepted else []
+        slots = sorted({b.slot for b in commits})
+        lines += _indent(1, [f"lost_{slot} = 0.0" for slot in slots])
+        lines += _indent(1, self._rod_loop(self._rod_forces(commits)))
+        lines += _indent(1, [f"account[{slot}] += 1000.0 * lost_{slot}" for slot in slots])
         return "\n".join(lines)
 
     def _external(self) -> str:
@@ -239,7 +175,10 @@ class Writer:
 
     @staticmethod
     def _geometry() -> list[str]:
-        """Elongation (2D + Δu)·Δu / (L + L_original) + (L_original − L₀): no digits cancel."""
+        """Elongation (2D + Δu)·Δu / (L + L_original) + (L_original − L₀): no digits cancel.
+
+        A rod whose ends meet has no direction and pulls nowhere, until something else parts them.
+        """
         return [
             "sx = displacement[b, 0] - displacement[a, 0]",
             "sy = displacement[b, 1] - displacement[a, 1]",
@@ -252,22 +191,22 @@ class Writer:
             "inverse = 1.0 / length if length > 0.0 else 0.0",
             "nx = x * inverse",
             "ny = y * inverse",
-            "elongation = ((dx + x) * sx + (dy + y) * sy) / (length + original)"
-            " + (original - rods_rest_length[r])",
+            "both = length + original",
+            "stretch = ((dx + x) * sx + (dy + y) * sy) / both if both > 0.0 else 0.0",
+            "elongation = stretch + (original - rods_rest_length[r])",
         ]
 
     def _axial_force(self) -> list[str]:
         lines = ["axial_force = 0.0"]
         for b in self.rod_laws:
-            lines.append(f"axial_force {'=' if 'axial_force' in b.parameters else '+='} {self._apply(b, 'r')}")
+            lines.append(f"axial_force {'=' if b.replaces else '+='} {self._apply(b, 'r')}")
         return lines
 
-    def _rod_forces(self, *, commits: bool) -> list[str]:
+    def _rod_forces(self, commits: Sequence[Bound]) -> list[str]:
         lines = self._geometry()
-        if commits:
-            for b in self.commits:
-                column = b.system.writes[0].replace(".", "_")
-                lines += [f"{column}[r], gone = {self._apply(b, 'r')}", "lost += gone"]
+        for b in commits:
+            column = b.system.writes[0].replace(".", "_", 1)
+            lines += [f"{column}[r], gone = {self._apply(b, 'r')}", f"lost_{b.slot} += gone"]
         lines += self._axial_force()
         lines += _scatter("force", "axial_force")
         if self.rod_rates:
@@ -280,17 +219,17 @@ class Writer:
             "damping_force = 0.0",
         ]
         for b in self.rod_rates:
-            lines.append(f"damping_force += {self._apply(b, 'r')}")
-        if powers:
-            slot = ACCOUNTS.index(_account(self.rod_rates[0]))
-            lines.append(f"power_{slot} += damping_force * rate")
+            lines += [f"part = {self._apply(b, 'r')}", "damping_force += part"]
+            if powers:
+                lines.append(f"power_{b.slot} {'-' if b.account == 'work' else '+'}= part * rate")
         return lines + _scatter("resisting", "damping_force")
 
     def _resist(self) -> str:
         """Dampers and drag at a velocity, and what each account gains per second."""
         lines = [
             "@compiled",
-            f"def resist(time, dt, velocity, resisting, direction, power, {self._columns_text()}):",
+            "def resist(time, dt, displacement, velocity, resisting, direction, power,"
+            f" {self._columns_text()}):",
         ]
         body = [f"power_{slot} = 0.0" for slot in range(len(ACCOUNTS))]
         particles = self._particle_rate_forces(powers=True)
@@ -298,19 +237,28 @@ class Writer:
             particles += [f"fx, fy = {self._apply(b, 'i')}", _particle_power(b)]
         if particles:
             body += ["for i in range(velocity.shape[0]):", *_indent(1, particles)]
+        if self.rod_rates:
+            needed = {parameter for b in self.rod_rates for parameter in b.parameters}
+            rods = ["nx = direction[r, 0]", "ny = direction[r, 1]"]
+            if needed & {"elongation", "axial_force"}:
+                rods = [*self._geometry(), *self._axial_force()]
+            body += self._rod_loop([*rods, *self._rate_forces(powers=True)])
+        body += [f"power[{slot}] = power_{slot}" for slot in range(len(ACCOUNTS))]
+        return "\n".join([*lines, *_indent(1, body)])
+
+    def _load_power(self) -> str:
+        """What the varying loads do per second at a velocity."""
+        body = ["power = 0.0"]
         for b in self.loads:
             body += [
                 f"for k in range({b.prefix}_on.shape[0]):",
                 f"    i = {b.prefix}_on[k]",
                 f"    factor = {b.call}(time, {b.prefix}_values, {b.prefix}_first[k])",
-                f"    power_0 += factor * ({b.prefix}_force[k, 0] * velocity[i, 0]"
+                f"    power += factor * ({b.prefix}_force[k, 0] * velocity[i, 0]"
                 f" + {b.prefix}_force[k, 1] * velocity[i, 1])",
             ]
-        if self.rod_rates:
-            rods = ["nx = direction[r, 0]", "ny = direction[r, 1]", *self._rate_forces(powers=True)]
-            body += self._rod_loop(rods)
-        body += [f"power[{slot}] = power_{slot}" for slot in range(len(ACCOUNTS))]
-        return "\n".join([*lines, *_indent(1, body)])
+        head = f"def load_power(time, velocity, {self._columns_text()}):"
+        return "\n".join(["@compiled", head, *_indent(1, [*body, "return power"])])
 
     def _measure(self) -> str:
         """Energies, residual and scales of an accepted state, for judge()."""
@@ -383,21 +331,9 @@ class Writer:
         return f"@{decorator}\n" + source.replace(f"def {function.__name__}(", f"def {name}(", 1)
 
 
-def _each(b: Bound) -> str:
-    return b.system.each if isinstance(b.system, Law) else ""
-
-
-def _is_load_law(b: Bound) -> bool:
-    return _each(b) == "loads"
-
-
-def _account(b: Bound) -> str:
-    return b.system.account if isinstance(b.system, Law | Commit) else ACCOUNTS[0]
-
-
 def _particle_power(b: Bound) -> str:
-    sign = "+" if _account(b) == "work" else "-"
-    return f"power_{ACCOUNTS.index(_account(b))} {sign}= fx * velocity[i, 0] + fy * velocity[i, 1]"
+    sign = "+" if b.account == "work" else "-"
+    return f"power_{b.slot} {sign}= fx * velocity[i, 0] + fy * velocity[i, 1]"
 
 
 def _scatter(target: str, amount: str) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -17,7 +17,7 @@ from components.settings import Settings
 from components.snapshot import Snapshot
 from components.table import Table
 from components.tags import Selected
-from components.view import Status, View, drawn_positions
+from components.view import Status, View
 from components.world import Handle
 from game import models
 from game.actions import ACTIONS
@@ -75,9 +75,10 @@ class Session:
         self.scenes = Scenes(all_scenes())
         self.clock = FrameClock()
         self.view = view or View()
-        self.view.camera.fit(drawn_positions(model))
+        self.view.fit(model)
         self.notice = ""
         self.window: Window | None = None
+        self.on_press: Callable[[str, Vector | None], None] | None = None  # a recorder listens here
         self._beginning: Snapshot | None = None
         self._pace_revision = -1
 
@@ -226,6 +227,8 @@ class Session:
         """Press a key, such as "k", "escape" or "ctrl+z"; one that means nothing in this scene does nothing."""
         name = action_for(self.scene, key)
         if name is not None:
+            if self.on_press is not None:
+                self.on_press(key, pixel)
             self.notice = ""
             self.act(name, pixel)
 
@@ -281,6 +284,11 @@ class Session:
             self.clock.natural = natural_pace(self.model)
 
     @property
+    def stages(self) -> list[tuple[Model, View]]:
+        """What the active scene shows: models, each in its view."""
+        return self.scenes.active.stages(self)
+
+    @property
     def busy(self) -> bool:
         """True while frames change something without a person's doing."""
         return self.scenes.active.runs and not self.simulation.halted
@@ -296,6 +304,7 @@ class Session:
             state=self._state_word(),
             hint=scene.hint(self),
             problem=self._problem(),
+            notice=self.notice,
         )
 
     def _state_word(self) -> str:
@@ -308,4 +317,4 @@ class Session:
     def _problem(self) -> str:
         if self.simulation.reason is StopReason.DIVERGED and self.simulation.halted:
             return self.simulation.message
-        return self.simulation.warning or self.notice
+        return self.simulation.warning

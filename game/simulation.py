@@ -7,6 +7,7 @@ import time
 from dataclasses import asdict, dataclass
 
 from components.field import Column, Role
+from components.load import loads_end
 from components.model import Model
 from components.snapshot import Snapshot
 from components.world import Derivation
@@ -15,7 +16,6 @@ from game.program import Program
 from game.program_writer import REVIEW_INTERVAL
 from game.schedule import Schedule
 from systems.base import Driver, StepSystem, StopReason
-from systems.loads.system import loads_end
 from systems.physics.spectrum import spectrum
 
 SAFETY = 0.9  # share of the stable step that the automatic step takes in large models

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from components.model import Model
 
-__all__ = ["ACCOUNTS", "Driver", "Law", "Phase", "Commit", "StepSystem", "StopReason", "System"]
+__all__ = ["ACCOUNTS", "Commit", "Driver", "Law", "Phase", "StepSystem", "StopReason", "System"]
 
 
 class Phase(Enum):
@@ -114,13 +114,13 @@ class Commit(StepSystem):
 class Driver(StepSystem):
     """Advances time: an integrator. Its kernel is *source*: see systems/physics/integrators.py.
 
-    stable_step: the largest stable step (s) for the highest angular frequency ω (rad/s) and damping
-        ratio ζ there; infinite if unconditionally stable.
+    stable_step: the largest stable step (s) for the highest angular frequency ω (rad/s) and decay ζω
+        (1/s) of a model, not both 0; infinite if unconditionally stable, 0 if stable at none.
     """
 
     order: ClassVar[int] = 0
 
     @staticmethod
-    def stable_step(frequency: float, damping_ratio: float) -> float:
-        """Largest stable step (s) for the highest angular frequency and the damping ratio there."""
+    def stable_step(frequency: float, decay: float) -> float:
+        """Largest stable step (s) for the highest angular frequency and the highest decay."""
         raise NotImplementedError

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 if TYPE_CHECKING:
+    from components.model import Model
+    from components.view import View
     from game.session import Session
 
 
@@ -29,6 +31,10 @@ class Scene:
 
     def exit(self, session: Session) -> None:
         """Called once when it stops being the active one."""
+
+    def stages(self, session: Session) -> list[tuple[Model, View]]:
+        """What is shown: models, each in its view."""
+        return [(session.model, session.view)]
 
     def hint(self, session: Session) -> str:
         """The next possible step, for the status line."""

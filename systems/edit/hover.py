@@ -25,7 +25,7 @@ class Hover(System):
     def process(self, frame: Any) -> None:
         """Move the mark if the pointer is over something else now."""
         model, view = frame.session.model, frame.session.view
-        hit = pick(model, view.camera, view.pointer) if view.pointer is not None else None
+        hit = pick(model, view, view.pointer) if view.pointer is not None else None
         before = model.tagged(Hovered)
         if before == [hit] or (hit is None and not before):
             return

@@ -56,9 +56,3 @@ class VaryingLoads(Law):
 def varying_loads() -> list[VaryingLoads]:
     """One law for every registered history that changes in time."""
     return [VaryingLoads(kind) for kind in HISTORIES.values() if kind.name != CONSTANT["kind"]]
-
-
-def loads_end(model: Model) -> float:
-    """The time (s) after which no load changes any more; −∞ without varying loads."""
-    ends = [HISTORIES[history["kind"]].ends(history) for history in model.loads.history]
-    return max(ends, default=-np.inf)

@@ -9,11 +9,14 @@ twice as much per step in small models. Provided by the program are
         direction ← unit vectors of the rods
     accept(time, dt, displacement, velocity, force, resisting, direction, account, *columns)
         the same at an accepted state: commits history first
-    resist(time, dt, velocity, resisting, direction, power, *columns)
+    resist(time, dt, displacement, velocity, resisting, direction, power, *columns)
         resisting ← dampers and drag at another velocity; power ← what each account gains (kN·m/s)
+    load_power(time, velocity, *columns)
+        what the varying loads of that time do per second at a velocity (kN·m/s)
 
-and the constants RATES (something depends on velocity) and POWERS (some account gains by the step).
-`account` holds the accounts of systems.base.ACCOUNTS first, in J.
+and the constants RATES (something depends on velocity), POWERS (some account gains by the step) and LOADS
+(some load varies). `account` holds the accounts of systems.base.ACCOUNTS first, in J. The work of loads is
+their mean force times the displacement of the step: with it the energy that Verlet conserves is exact.
 """
 
 # ruff: noqa: F821
@@ -59,6 +62,9 @@ def velocity_verlet(
             if RATES:
                 predicted[i, 0] = vx + dt * ax
                 predicted[i, 1] = vy + dt * ay
+        if LOADS:
+            before = load_power(origin + (first + step - 1) * dt, velocity, *columns)
+            account[0] += 500.0 * dt * (before + load_power(time, velocity, *columns))
         accept(time, dt, displacement, predicted, force, resisting, direction, account, *columns)
         for i in range(displacement.shape[0]):
             ax = force[i, 0]
@@ -68,9 +74,8 @@ def velocity_verlet(
                 ay += resisting[i, 1]
             velocity[i, 0] += half * (ax * particles_mobility[i, 0])
             velocity[i, 1] += half * (ay * particles_mobility[i, 1])
-        if RATES or POWERS:
-            resist(time, dt, velocity, resisting, direction, gained, *columns)
         if POWERS:
+            resist(time, dt, displacement, velocity, resisting, direction, gained, *columns)
             for k in range(power.shape[0]):
                 account[k] += 500.0 * dt * (power[k] + gained[k])
                 power[k] = gained[k]
@@ -104,13 +109,24 @@ def taylor2(
                 ay += resisting[i, 1]
             ax *= particles_mobility[i, 0]
             ay *= particles_mobility[i, 1]
-            displacement[i, 0] += dt * (velocity[i, 0] + half * ax)
-            displacement[i, 1] += dt * (velocity[i, 1] + half * ay)
-            velocity[i, 0] += dt * ax
-            velocity[i, 1] += dt * ay
+            velocity[i, 0] += half * ax
+            velocity[i, 1] += half * ay
+            displacement[i, 0] += dt * velocity[i, 0]
+            displacement[i, 1] += dt * velocity[i, 1]
+        if LOADS:
+            before = load_power(origin + (first + step - 1) * dt, velocity, *columns)
+            account[0] += 500.0 * dt * (before + load_power(time, velocity, *columns))
+        for i in range(displacement.shape[0]):
+            ax = force[i, 0]
+            ay = force[i, 1]
+            if RATES:
+                ax += resisting[i, 0]
+                ay += resisting[i, 1]
+            velocity[i, 0] += half * (ax * particles_mobility[i, 0])
+            velocity[i, 1] += half * (ay * particles_mobility[i, 1])
         accept(time, dt, displacement, velocity, force, resisting, direction, account, *columns)
         if POWERS:
-            resist(time, dt, velocity, resisting, direction, gained, *columns)
+            resist(time, dt, displacement, velocity, resisting, direction, gained, *columns)
             for k in range(power.shape[0]):
                 account[k] += 500.0 * dt * (power[k] + gained[k])
                 power[k] = gained[k]
@@ -139,20 +155,28 @@ def advance(
     """Take up to `steps` steps; returns (steps taken, StopReason).
 
     fresh: the forces are still those of the present state. total: all steps so far. first: steps since
-    the time origin. Checks happen whenever the total is a multiple of CHECK_INTERVAL, so that what comes
-    out does not depend on how the steps are divided into calls.
+    the time origin. Checks happen 1, 2, 4, … steps after it, for a step that is much too long makes
+    garbage at once, and whenever the total is a multiple of CHECK_INTERVAL: at counts that do not depend on
+    how the steps are divided into calls.
     """
     if not fresh:
         time = origin + first * dt
         forces(time, dt, displacement, velocity, force, resisting, direction, *columns)
         if POWERS:
-            resist(time, dt, velocity, resisting, direction, power, *columns)
+            resist(time, dt, displacement, velocity, resisting, direction, power, *columns)
     taken = 0
     while taken < steps:
-        now = min(steps - taken, CHECK_INTERVAL - (total + taken) % CHECK_INTERVAL)
+        now = CHECK_INTERVAL - (total + taken) % CHECK_INTERVAL
+        age = first + taken
+        if age < CHECK_INTERVAL:
+            doubled = 1
+            while doubled <= age:
+                doubled *= 2
+            now = min(now, doubled - age)
+        now = min(now, steps - taken)
         integrate(
             now,
-            first + taken,
+            age,
             origin,
             dt,
             displacement,
@@ -167,7 +191,8 @@ def advance(
             *columns,
         )
         taken += now
-        if (total + taken) % CHECK_INTERVAL == 0:
+        age += now
+        if (total + taken) % CHECK_INTERVAL == 0 or (age < CHECK_INTERVAL and age & (age - 1) == 0):
             measure(
                 displacement,
                 velocity,
@@ -176,7 +201,7 @@ def advance(
                 measures,
                 *columns,
             )
-            time = origin + (first + taken) * dt
+            time = origin + age * dt
             reason = judge(measures, account, dt, SHADOW, time >= loads_end)
             if reason != 0:
                 return taken, reason

@@ -5,6 +5,8 @@ from systems.kernels import compiled
 REST_RESIDUAL = 1e-8  # of the largest force; larger: rests sooner, less exactly
 SMALL_SHARE = 1e-3  # of the largest force ever, taken as scale where all forces die out
 DIVERGENCE_SHARE = 0.2  # of all energy ever supplied; smaller: may stop good runs at large steps
+INSTABILITY_SHARE = 2.0  # of all energy ever supplied; at stable steps at most 1 is possible
+SMALLEST_ENERGY = 1e-24  # J, below which nothing is told from round-off
 
 
 @compiled
@@ -38,21 +40,25 @@ def judge(measures, account, dt, shadow, loads_are_over):
 
     measures: kinetic energy, Σ fᵀM⁻¹f, elastic energy, potential of constant forces (all J), residual,
         largest force and round-off of the forces (kN).
-    account: the accounts, then initial energy, potential reference, force scale, energy scale.
+    account: the accounts, then initial energy, potential reference, force scale, energy scale, guard energy.
     shadow: 1 if the integrator conserves kinetic − (h²/8) fᵀM⁻¹f + elastic, else 0.
 
-    Diverged: energy came from nowhere. Rest: REQUIREMENTS' residual and a kinetic energy to match it,
+    Diverged: energy came from nowhere. Beyond the stable step Verlet conserves its energy too, while the
+    second term grows past the elastic energy, and both past all that was supplied. Rest: REQUIREMENTS' residual and a kinetic energy to match it,
     relative to the present forces or, in a model that swings out to nothing, to a small part of the
     largest ever.
     """
     kinetic, power_norm, elastic, potential = measures[0], measures[1], measures[2], measures[3]
     residual, largest, round_off = measures[4], measures[5], measures[6]
     supplied = account[0] + potential - account[5]
-    mechanical = kinetic + elastic - shadow * dt * dt / 8.0 * power_norm
-    created = mechanical + account[1] + account[2] + account[3] - (account[4] + supplied)
+    deficit = shadow * dt * dt / 8.0 * power_norm
+    spent = account[1] + account[2] + account[3]
+    created = kinetic + elastic - deficit + spent - supplied - account[8]
     account[6] = max(account[6], largest)
     account[7] = max(account[7], abs(account[4]), abs(account[0]), abs(supplied))
-    if not created <= DIVERGENCE_SHARE * account[7] + 1e-24:
+    if not created <= DIVERGENCE_SHARE * account[7] + SMALLEST_ENERGY:
+        return 3
+    if min(elastic, deficit - elastic) > INSTABILITY_SHARE * account[7] + SMALLEST_ENERGY:
         return 3
     still_force = max(REST_RESIDUAL * max(largest, SMALL_SHARE * account[6]), 8.0 * round_off)
     still_energy = REST_RESIDUAL**2 * max(elastic, SMALL_SHARE**2 * account[7])

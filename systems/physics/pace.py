@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from components.load import loads_end
 from components.model import Model
-from systems.loads.system import loads_end
 
 PERIOD_SHOWN = 2.0  # s in which one oscillation is shown
 CREEP_SHOWN = 0.7  # s in which an overdamped model creeps by 1 − 1/e of the way

@@ -18,10 +18,10 @@ LANCZOS_STEPS = 24  # more: closer bounds; the bound is safe at any number
 
 @dataclass(frozen=True)
 class Spectrum:
-    """frequency: highest angular frequency (rad/s); damping_ratio: λ_max(M⁻¹C) / 2ω; 0 without rods."""
+    """Bounds over all modes. frequency: highest ω (rad/s); decay: λ_max(M⁻¹C)/2 ≥ every ζω (1/s)."""
 
     frequency: float
-    damping_ratio: float
+    decay: float
 
 
 class RodOperator:
@@ -94,15 +94,13 @@ def largest_eigenvalue(operator: Callable[[Array], Array], rows: int, bound: flo
 def spectrum(model: Model, axial_force: Array) -> Spectrum:
     """The highest frequency in the present state under these axial forces (kN, shape (rods,))."""
     rods = model.rods
+    decay = 0.5 * model.environment.drag
     if rods.count == 0 or not (model.particles.mobility > 0.0).any():
-        return Spectrum(0.0, 0.5 * model.environment.drag)
+        return Spectrum(0.0, decay)
     across = np.maximum(axial_force, 0.0) / rods.rest_length
     stiffness = RodOperator(model, rods.stiffness / rods.rest_length, across)
     frequency = math.sqrt(largest_eigenvalue(stiffness, stiffness.rows, stiffness.gershgorin()))
-    if frequency == 0.0:
-        return Spectrum(0.0, 0.0)
-    damping = model.environment.drag
     if (rods.damping > 0.0).any():
         dampers = RodOperator(model, rods.damping)
-        damping += largest_eigenvalue(dampers, dampers.rows, dampers.gershgorin())
-    return Spectrum(frequency, damping / (2.0 * frequency))
+        decay += 0.5 * largest_eigenvalue(dampers, dampers.rows, dampers.gershgorin())
+    return Spectrum(frequency, decay)

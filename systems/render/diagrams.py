@@ -41,7 +41,8 @@ def scale_step(largest: float, scale: float, room: float) -> float:
     if not largest * scale > room:
         return 1.0
     decade = 10.0 ** math.floor(math.log10(room / (largest * scale)))
-    return next(decade * step for step in _STEPS if largest * scale * decade * step <= room)
+    enough = room * (1.0 + 1e-9)  # lest round-off in the logarithm leave no step
+    return next(decade * step for step in _STEPS if largest * scale * decade * step <= enough)
 
 
 def draw_rod_diagrams(sheet: Sheet) -> None:

@@ -33,10 +33,10 @@ def written_time(seconds: float, digits: int = 4) -> str:
     """A time with an SI prefix, such as "1.234 ms"; above 1000 s plain seconds."""
     if seconds == 0.0:
         return "0 s"
-    factor, prefix = next((f, p) for f, p in _PREFIXES if abs(seconds) >= 0.0999995 * f or f == 1e-9)
-    value = seconds / factor
-    decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
-    return f"{value:.{decimals}f} {prefix}s".replace("-", "−")
+    rounded = float(f"{seconds:.{digits - 1}e}")
+    factor, prefix = next((f, p) for f, p in _PREFIXES if abs(rounded) >= 0.1 * f or f == 1e-9)
+    decimals = max(digits - 1 - math.floor(math.log10(abs(rounded) / factor) + 1e-9), 0)
+    return f"{seconds / factor:.{decimals}f} {prefix}s".replace("-", "−")
 
 
 def written_length(metres: float) -> str:
@@ -141,15 +141,17 @@ def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
 
 
 def _problem(sheet: Sheet, top: float, bottom: float) -> list[Mark]:
-    """Why something stopped, wrapped, on a panel above the status bar, or at the top where that is freer."""
-    problem = sheet.view.status.problem
-    if not problem:
+    """Why it stopped or what an action did, wrapped, above the status bar or at the top if that is freer."""
+    status = sheet.view.status
+    said = status.problem or status.notice
+    if not said:
         return []
     v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(13.0)
     pad, icon = 12.0 * u, 18.0 * u
     width = min(v.width - 2 * _EDGE * u, 640.0 * u)
     room = width - 2 * pad - icon - 10.0 * u
-    lines = wrapped(problem, room, size)
+    lines = wrapped(said, room, size)
+    width -= room - max(text_width(line, size) for line in lines)
     most = max(int((bottom - top - 60.0 * u) / line_height(size)), 1)
     if len(lines) > most:
         lines = [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), room, size)]
@@ -160,12 +162,13 @@ def _problem(sheet: Sheet, top: float, bottom: float) -> list[Mark]:
     sheet.occupancy.block(left, upper, width, height)
     first = upper + height / 2 - (len(lines) - 1) * line_height(size) / 2
     at = np.array([[left + pad + icon / 2, first]])
+    ink, paper = (theme.problem, theme.problem_panel) if status.problem else (theme.text, theme.panel)
     return [
-        Panel(left, upper, width, height, 6.0 * u, theme.problem_panel, theme.problem),
-        Stamps("disc", at, icon / 2, u, theme.problem, theme.problem),
-        Text("!", float(at[0, 0]), first, size, theme.problem_panel, "semibold", "centre"),
+        Panel(left, upper, width, height, 6.0 * u, paper, ink if status.problem else theme.line),
+        Stamps("disc", at, icon / 2, u, ink, ink),
+        Text("!" if status.problem else "i", float(at[0, 0]), first, size, paper, "semibold", "centre"),
         *(
-            Text(line, left + pad + icon + 10.0 * u, first + number * line_height(size), size, theme.problem)
+            Text(line, left + pad + icon + 10.0 * u, first + number * line_height(size), size, ink)
             for number, line in enumerate(lines)
         ),
     ]
@@ -241,7 +244,8 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
 def draw_scale(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     """A round length to scale, and by how much displacements and diagrams are scaled.
 
-    At the bottom or at the top, wherever it hides nothing; where it would, only what a person must know.
+    At the bottom or at the top, wherever it hides nothing; where it would, only what a person must know,
+    or nothing at all.
     """
     v, u, size = sheet.viewport, sheet.unit, sheet.font(11.0)
     longest = min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale
@@ -255,7 +259,7 @@ def draw_scale(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
         left, top, hidden = _freest(sheet, width, height, room)
         if hidden == 0 or not length:
             break
-    if not said:
+    if not said or hidden:
         return []
     x, y = round(left + 6.0 * u), round(top + 6.0 * u)
     return [

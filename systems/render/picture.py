@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from components.view import View
-from systems.render.deformed import drawn_positions
+from components.view import View, drawn_positions
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
+from systems.render.help import draw_help
 from systems.render.labels import place_labels
 from systems.render.marks import Picture
 from systems.render.overlays import draw_overlays, draw_scale
@@ -42,4 +42,4 @@ def compose(model: Model, view: View, theme: Theme) -> Picture:
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit)
     scale = draw_scale(sheet, room) if model.particles.count else []
     viewport = view.camera.viewport
-    return Picture(viewport, theme.background, [*sheet.marks, *labels, *scale, *overlays])
+    return Picture(viewport, theme.background, [*sheet.marks, *labels, *scale, *overlays, *draw_help(sheet)])

@@ -73,7 +73,8 @@ class Canvas:
         if stroke_pixels_estimate(mark.start, mark.end, mark.width) > _MOST_STROKED:
             width = max(round(mark.width), 1)
             colour = mark.colour
-            for start, end in zip(mark.start.tolist(), mark.end.tolist(), strict=True):
+            # Whole numbers are the middle of a pixel to pygame, its upper left corner to us.
+            for start, end in zip((mark.start - 0.5).tolist(), (mark.end - 0.5).tolist(), strict=True):
                 pygame.draw.aaline(surface, colour, start, end, width)
         else:
             x, y, amount = stroke_coverage(mark.start, mark.end, mark.width)

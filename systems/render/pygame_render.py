@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import pygame
 
+from components.model import Model
+from components.view import View
 from systems.base import Phase, System
 from systems.render.picture import compose
 from systems.render.pygame_canvas import Canvas
@@ -26,10 +29,16 @@ class PygameRender(System):
         self._shown: Any = None
 
     def process(self, frame: Any) -> None:
-        """Draw, unless the picture would be the same as the last."""
-        session = frame.session
-        shown = (session.model.revision, repr(session.view), id(self.surface), self.theme)
+        """Draw every stage of the scene, unless the picture would be the same as the last."""
+        stages = frame.session.stages
+        looks = tuple(repr(view) for _, view in stages)
+        shown = (id(self.surface), self.theme, looks, _revisions(stages))
         self.drawn = shown != self._shown
         if self.drawn:
-            self._canvas.draw(self.surface, compose(session.model, session.view, self.theme))
-            self._shown = (session.model.revision, *shown[1:])
+            for model, view in stages:
+                self._canvas.draw(self.surface, compose(model, view, self.theme))
+            self._shown = (id(self.surface), self.theme, looks, _revisions(stages))
+
+
+def _revisions(stages: Sequence[tuple[Model, View]]) -> tuple[int, ...]:
+    return tuple(model.revision for model, _ in stages)

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.camera import Viewport
-from components.view import View
+from components.view import View, drawn_positions
 from systems.render.clip import bounds, clip_segments
-from systems.render.deformed import drawn_positions
 from systems.render.labels import Label, Occupancy
 from systems.render.marks import Mark, Points
 from systems.render.theme import Colour, Theme
@@ -55,6 +54,7 @@ class Sheet:
     labels: list[Label] = field(default_factory=list)
     legend: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    _tagged: dict[type, dict[str, Rows]] = field(default_factory=dict)
 
     @property
     def viewport(self) -> Viewport:
@@ -72,8 +72,13 @@ class Sheet:
         return inside
 
     def tagged(self, tag: type, table: str) -> Rows:
-        """Rows of the entities of one table that carry a tag."""
-        return np.array([h.row for h in self.model.tagged(tag) if h.table == table], dtype=np.intp)
+        """Rows of the entities of one table that carry a tag; asked of the model once."""
+        if tag not in self._tagged:
+            rows: dict[str, list[int]] = {}
+            for handle in self.model.tagged(tag):
+                rows.setdefault(handle.table, []).append(handle.row)
+            self._tagged[tag] = {name: np.array(found, dtype=np.intp) for name, found in rows.items()}
+        return self._tagged[tag].get(table, np.empty(0, dtype=np.intp))
 
     def chosen(self, wanted: Rows, rows: Rows) -> NDArray[np.bool_]:
         """For each of `rows`, whether it is among `wanted`."""

@@ -10,7 +10,7 @@ from scipy.sparse.linalg import splu
 Array = NDArray[np.float64]
 
 NO_STIFFNESS = 1e-13  # of the rods' at the same particle: what is softer than that is round-off
-SOFT = 1e-10  # of the rods' at the same particle: such a motion counts as not resisted
+SOFT = 1e-12  # of the rods' at the same particle: such a motion counts as not resisted
 INVERSE_ITERATIONS = 30
 BLOCK = 8  # soft modes that are looked for at once
 
@@ -25,7 +25,6 @@ class Factor:
     def __init__(self, matrix: csc_matrix) -> None:
         self.size = matrix.shape[0]
         self.exists, self.negative = True, 0
-        self.least = np.inf
         if self.size == 0:
             return
         try:
@@ -41,8 +40,6 @@ class Factor:
         pivots = self._lu.U.diagonal()
         moved = not np.array_equal(self._lu.perm_r, self._lu.perm_c)
         self.negative = int((pivots <= 0.0).sum()) if not moved else max(1, int((pivots <= 0.0).sum()))
-        scale = matrix.diagonal()[np.argsort(self._lu.perm_c)]
-        self.least = float((pivots / np.where(scale > 0.0, scale, 1.0)).min())
 
     @property
     def definite(self) -> bool:

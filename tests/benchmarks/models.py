@@ -35,9 +35,7 @@ def lattice(rods: int, **columns: Any) -> Model:
     force = np.zeros_like(position)
     force[right, 0] = 100.0
     model = Model()
-    model.create(
-        Particle, len(position), position=position, fixed=np.stack([left, left], axis=1), force=force
-    )
+    model.create(Particle, len(position), position=position, fixed=np.stack([left, left], axis=1), force=force)
     spawn_rods(model, _neighbours(side), **columns)
     return model
 

@@ -134,7 +134,7 @@ def test_checkers_refuse_in_sentences(owner: Field[Any], value: Any, fragment: s
 
 
 def test_a_history_is_complete_and_cannot_be_changed() -> None:
-    given_history = {"kind": "ramp", "duration": np.float64(2)}
+    given_history: dict[str, Any] = {"kind": "ramp", "duration": np.int64(2)}
     history = Load.history.check(given_history, "load 1")
     given_history["duration"] = -5
     assert history == {"kind": "ramp", "start": 0.0, "duration": 2.0}
@@ -210,7 +210,9 @@ def test_the_first_bad_row_is_named(
     assert str(refusal.value).startswith(f"rod {first}: push ")
 
 
-def test_booleans_and_texts_do_not_pass_as_numbers_in_a_column() -> None:
+def test_what_only_looks_like_a_number_does_not_pass_in_a_column() -> None:
+    with pytest.raises(FieldError, match="rod 19: push is nan"):
+        number(nullable=True).check_column([None] * 19 + [math.nan], 20, rod_in_row)
     for values in ([1.0, True] * 10, ["1"] * 20, np.ones(20, dtype=bool), [1.0, None] * 10, [[1.0]] * 20):
         with pytest.raises(FieldError):
             number().check_column(values, 20, rod_in_row)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import time
+import weakref
 from typing import Any
 
 import esper
@@ -288,11 +289,13 @@ def test_one_at_a_time_is_not_slower_in_a_large_model_than_a_pass_over_it() -> N
     model.create(Particle, 5000, position=np.arange(10_000).reshape(-1, 2))
     rows = np.arange(4999)
     spawn_rods(model, np.stack([rows, rows + 1], axis=1))
-    started = time.perf_counter()
-    for row in range(300):
-        spawn_rods(model, [(row, row + 2)])
-    per_rod = (time.perf_counter() - started) / 300
-    assert per_rod < 2e-3  # usually 0.2 ms
+    fastest = np.inf
+    for row in range(0, 300, 50):
+        started = time.perf_counter()
+        for other in range(row, row + 50):
+            spawn_rods(model, [(other, other + 2)])
+        fastest = min(fastest, (time.perf_counter() - started) / 50)
+    assert fastest < 1e-3  # s a rod, usually 0.2 ms; with a search through all names it was 1.7 ms
 
 
 # --- commands and transactions ---------------------------------------------------------------------------
@@ -540,10 +543,14 @@ def test_a_derivation_is_replaced_as_a_whole() -> None:
         for name in ("particles.mass", "particles.mobility"):
             world.writable(name)[...] = 7.0
 
-    with pytest.raises(ValueError, match=r"derived together with particles\.mass, particles\.mobility"):
+    with pytest.raises(ValueError, match=r"Columns particles\.mass, particles\.mobility are derived together"):
         world.derive(Derivation(("particles.mass",), ("particles.fixed",), compute))
     world.derive(Derivation(("particles.mass", "particles.mobility"), ("particles.fixed",), compute))
     assert world.column("particles.mass").tolist() == [7.0] * 3
+    forgotten = weakref.ref(compute)
+    world.derive(Derivation(("particles.mass", "particles.mobility"), ("particles.fixed",), lambda world: None))
+    del compute
+    assert forgotten() is None
 
 
 @pytest.mark.parametrize("rods", [0, 1, 2, 3, 10, 1000])

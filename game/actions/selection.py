@@ -1,0 +1,45 @@
+"""Actions on what is selected and whose forces are shown."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from components.field import Vector
+from components.particle import Particle
+from components.rod import Rod
+from components.tags import DiagramShown
+from game.actions.registry import action
+from systems.edit.picking import pick
+
+if TYPE_CHECKING:
+    from game.session import Session
+
+
+@action("select")
+def _select(session: Session, pixel: Vector) -> None:
+    hit = pick(session.model, session.view, pixel)
+    session.select(*([hit] if hit is not None else []))
+
+
+@action("add to selection")
+def _add_to_selection(session: Session, pixel: Vector) -> None:
+    hit = pick(session.model, session.view, pixel)
+    if hit is not None:
+        chosen = session.selected
+        session.select(*([h for h in chosen if h is not hit] if hit in chosen else [*chosen, hit]))
+
+
+@action("toggle diagrams")
+def _toggle_diagrams(session: Session, pixel: Vector) -> None:
+    """Of the selected particles and rods; of all when nothing is selected."""
+    model, view = session.model, session.view
+    chosen = [handle for handle in session.selected if isinstance(handle, Particle | Rod)]
+    if not session.selected:
+        view.all_diagrams = not view.all_diagrams
+        for handle in model.tagged(DiagramShown):
+            model.untag(handle, DiagramShown)
+        return
+    shown = set(map(id, model.tagged(DiagramShown)))
+    hide = all(id(handle) in shown for handle in chosen)
+    for handle in chosen:
+        (model.untag if hide else model.tag)(handle, DiagramShown)

@@ -1,0 +1,57 @@
+"""Actions on the view and the window."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from components.field import Vector
+from game.actions.registry import action
+
+if TYPE_CHECKING:
+    from game.session import Session
+
+
+ZOOM_STEP = 1.2
+
+
+@action("fit")
+def _fit(session: Session, pixel: Vector) -> None:
+    session.view.fit(session.model)
+
+
+@action("zoom in")
+def _zoom_in(session: Session, pixel: Vector) -> None:
+    session.view.camera.zoom(ZOOM_STEP, pixel)
+
+
+@action("zoom out")
+def _zoom_out(session: Session, pixel: Vector) -> None:
+    session.view.camera.zoom(1.0 / ZOOM_STEP, pixel)
+
+
+@action("toggle legend")
+def _toggle_legend(session: Session, pixel: Vector) -> None:
+    session.view.legend = not session.view.legend
+
+
+@action("toggle help")
+def _toggle_help(session: Session, pixel: Vector) -> None:
+    session.view.help = not session.view.help
+
+
+@action("pan")
+def _pan(session: Session, pixel: Vector) -> None:
+    """Here `pixel` is how far the pointer was dragged."""
+    session.view.camera.pan(pixel)
+
+
+@action("toggle full screen")
+def _toggle_full_screen(session: Session, pixel: Vector) -> None:
+    if session.window is not None:
+        session.window.toggle_full_screen()
+
+
+@action("screenshot")
+def _screenshot(session: Session, pixel: Vector) -> None:
+    if session.window is not None:
+        session.notice = f"Picture saved: {session.window.screenshot()}"

@@ -1,0 +1,210 @@
+"""What may join a step program: step systems with their kernels, checked before anything is compiled."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
+
+from components.field import Role
+from components.model import Model
+from systems.base import ACCOUNTS, Commit, Driver, Law, StepSystem
+
+PROVIDED = ("elongation", "rate", "axial_force", "time", "dt")
+TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
+
+_KINDS = ("rods", "particles", "loads")
+_RESULTS = {
+    "rods": "one number, the axial force (kN)",
+    "particles": "a pair, the force (fx, fy) in kN",
+    "loads": "one number, the factor of the load",
+    "commit": "a pair, the new value of the column and the energy dissipated (kN·m)",
+}
+
+
+class ProgramError(ValueError):
+    """A step system that cannot join the program; the message names it, the reason and the remedy."""
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A step system with its kernel, the names of the kernel's parameters, and its own arrays by name."""
+
+    system: StepSystem
+    function: Callable[..., Any]
+    parameters: tuple[str, ...]
+    arrays: Mapping[str, NDArray[Any]]
+
+    @property
+    def call(self) -> str:
+        """The name of the kernel in the program."""
+        return "kernel_" + self.prefix
+
+    @property
+    def prefix(self) -> str:
+        """The system's name as a Python name."""
+        return self.system.name.replace(".", "_")
+
+    @property
+    def each(self) -> str:
+        """The table that a law's kernel is called for each row of; "" for other roles."""
+        return self.system.each if isinstance(self.system, Law) else ""
+
+    @property
+    def account(self) -> str:
+        """The account that its energy belongs to."""
+        return self.system.account if isinstance(self.system, Law | Commit) else ACCOUNTS[0]
+
+    @property
+    def slot(self) -> int:
+        """The place of its account among all."""
+        return ACCOUNTS.index(self.account)
+
+    @property
+    def replaces(self) -> bool:
+        """Whether a law of rods is given the sum of the others, and its result replaces it."""
+        return "axial_force" in self.parameters and "rate" not in self.parameters
+
+
+def bind(system: StepSystem, model: Model) -> Bound:
+    """Find a step system's kernel and its parameters. Raises ProgramError."""
+    _check_role(system, model)
+    function = _kernel(system)
+    if isinstance(system, Driver):
+        return Bound(system, function, (), {})
+    plain = getattr(function, "py_func", None)
+    if plain is None:
+        raise ProgramError(
+            f"The kernel of {system.name} is not compiled; put `@compiled` of systems.kernels above it."
+        )
+    bound = Bound(system, function, tuple(inspect.signature(plain).parameters), system.arrays(model))
+    for name in bound.arrays:
+        if _is_column(name, model):
+            raise ProgramError(f"The array '{name}' of {system.name} has the name of a column; rename it.")
+    if bound.each != "loads":
+        for parameter in bound.parameters:
+            _check_parameter(bound, parameter, model)
+    return bound
+
+
+def check_names(bound: Iterable[Bound]) -> None:
+    """Raise ProgramError if two systems would go by one name in the program, or two arrays."""
+    owner: dict[str, str] = {}
+    for b in bound:
+        for name in (b.call, *b.arrays):
+            if name in owner:
+                raise ProgramError(
+                    f"{owner[name]} and {b.system.name} are both '{name}' in the step program; rename one."
+                )
+            owner[name] = b.system.name
+
+
+def _check_role(system: StepSystem, model: Model) -> None:
+    name = system.name
+    if not all(part.isidentifier() for part in name.split(".")):
+        raise ProgramError(f"The name '{name}' of a step system cannot be used; name it like 'mymod.wind'.")
+    if isinstance(system, Law) and system.each not in _KINDS:
+        raise ProgramError(f"{name} is a law for each of '{system.each}'; choose one of {', '.join(_KINDS)}.")
+    if isinstance(system, Law | Commit) and system.account not in ACCOUNTS:
+        raise ProgramError(f"{name} has the account '{system.account}'; choose one of {', '.join(ACCOUNTS)}.")
+    if isinstance(system, Commit):
+        table, _, column = (system.writes[0] if len(system.writes) == 1 else "").partition(".")
+        field = model.tables["rods"].fields.get(column) if table == "rods" else None
+        if field is None or field.role is Role.DOCUMENT or field.shape:
+            raise ProgramError(
+                f"{name} writes {', '.join(system.writes) or 'nothing'}; a commit writes exactly one column of"
+                " the rods that is no part of the document and has one number in each row."
+            )
+
+
+def _kernel(system: StepSystem) -> Callable[..., Any]:
+    if not isinstance(system.kernel, str):
+        return system.kernel
+    module, _, attribute = system.kernel.partition(":")
+    try:
+        found: Callable[..., Any] = getattr(importlib.import_module(module), attribute)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise ProgramError(
+            f"The kernel '{system.kernel}' of {system.name} cannot be found: {error}; write it like"
+            " 'package.module:function'."
+        ) from None
+    return found
+
+
+def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
+    """A kernel is given what its role provides, its own arrays and the columns that its system declares."""
+    rows, name = b.each or "rods", b.system.name
+    if parameter in PROVIDED:
+        return
+    if parameter in b.arrays:
+        if len(b.arrays[parameter]) != model.tables[rows].count:
+            raise ProgramError(
+                f"The array '{parameter}' of {name} has {len(b.arrays[parameter])} rows for"
+                f" {model.tables[rows].count} {rows}; give it one row for each."
+            )
+        return
+    table, _, column = parameter.partition("_")
+    if not _is_column(parameter, model):
+        raise ProgramError(
+            f"The kernel of {name} has a parameter '{parameter}', but there is no column {table}.{column};"
+            " name parameters <table>_<column>, elongation, rate, axial_force, time, dt or like an entry of"
+            " `arrays`."
+        )
+    if f"{table}.{column}" not in (*b.system.reads, *b.system.writes):
+        raise ProgramError(
+            f"The kernel of {name} takes {parameter}, but the system does not declare that it reads"
+            f" '{table}.{column}'; add it to `reads`."
+        )
+    if table != rows and not model.tables[table].kind.single:
+        raise ProgramError(
+            f"The kernel of {name} is called for each of the {rows} and cannot take {parameter}; take a column"
+            f" of the {rows} or of what there is one of, such as the environment."
+        )
+
+
+def _is_column(name: str, model: Model) -> bool:
+    table, _, column = name.partition("_")
+    return table in model.tables and column in model.tables[table].fields
+
+
+def explain(bound: Iterable[Bound], model: Model, error: Exception) -> ProgramError:
+    """Why a program did not compile: the first kernel that fails by itself or returns the wrong thing."""
+    for b in bound:
+        try:
+            made = _result_type(b, model)
+        except Exception as failure:  # numba raises many kinds
+            lines = [line.strip() for line in str(failure).splitlines() if line.strip()]
+            return ProgramError(f"The kernel of {b.system.name} does not compile: {'; '.join(lines[1:4])}.")
+        role = b.each or "commit"
+        if getattr(made, "count", 1) != (2 if role in ("particles", "commit") else 1):
+            return ProgramError(
+                f"The kernel of {b.system.name} returns {made}; it must return {_RESULTS[role]}."
+            )
+    return ProgramError(f"The step program does not compile: {error}")
+
+
+def _result_type(b: Bound, model: Model) -> Any:
+    """The numba type that a kernel returns when it is compiled by itself."""
+    from numba import types
+    from numba.np.numpy_support import from_dtype
+
+    def type_of(parameter: str) -> Any:
+        if parameter in PROVIDED:
+            return types.float64
+        if parameter in b.arrays:
+            storage, shape = b.arrays[parameter].dtype, b.arrays[parameter].shape[1:]
+        else:
+            table, _, column = parameter.partition("_")
+            field = model.tables[table].fields[column]
+            storage, shape = field.storage, field.shape
+        scalar = from_dtype(storage)
+        return types.UniTuple(scalar, 2) if shape else scalar
+
+    of_load = (types.float64, types.Array(types.float64, 1, "C"), types.uint32)
+    signature = of_load if b.each == "loads" else tuple(map(type_of, b.parameters))
+    b.function.compile(signature)  # type: ignore[attr-defined]
+    return b.function.overloads[signature].signature.return_type  # type: ignore[attr-defined]

@@ -1,0 +1,227 @@
+"""Scripted sessions: JSON lines that play a session through the real scenes and keys, and record one.
+
+The first line is a header, {"format": "pinjoint session", "version": 1, "model": "isostatic"} (a bundled
+name, a path relative to the script, or a whole document; left out: an empty model). Every further line
+does one thing:
+
+    {"press": "space"}                          a key
+    {"click": [1.0, 1.0]}                       at a point of the model (m); "button": "ctrl+click"
+    {"drag": [[0, 0], [1, 1]]}                  between points of the model (m); "button"
+    {"type": "200000"}   {"box": "stiffness"}   typing, and selecting a box by its title
+    {"set": "particles.B.force=120,-160"}       as --set of the command line
+    {"action": "undo"}                          a named action
+    {"run": "rest"}   {"run": 0.5}              until at rest; or by seconds
+    {"steps": 128}                              by fixed steps
+    {"expect": "rods.AB.axial_force ≈ -28.34 ± 0.01"}   also =, <, >; scene, time, message, energy.…
+    {"input": "click", "pixel": [512, 300]}     what a window recorded
+
+"at": N on a line first lets time pass to the N-th fixed step, as it had in a recording; "window":
+[width, height] sets the size of the view in pixels. Replaying gives the same bits.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TextIO
+
+from components.camera import Viewport
+from components.field import Vector
+from game.overrides import apply_override
+from game.session import Session
+
+HEADER = {"format": "pinjoint session", "version": 1}
+EMPTY = {"format": "pinjoint model", "version": 1}
+
+_EXPECTATION = re.compile(
+    r"^(?P<path>.+?)\s*(?P<relation>≈|~|=|<|>)\s*(?P<value>.+?)(?:\s*(?:±|\+-)\s*(?P<slack>\S+))?$"
+)
+
+
+class ScriptError(ValueError):
+    """A script that cannot be played; the message names the line, the reason and the remedy."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """An expectation that did not hold."""
+
+    line: int
+    expected: str
+    got: Any
+
+    def __str__(self) -> str:
+        return f"line {self.line}: expected {self.expected}, got {self.got}"
+
+
+class Script:
+    """A script read from a file, ready to be played in a session."""
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+        self.lines = list(self._read())
+        if not self.lines or self.lines[0][1].get("format") != HEADER["format"]:
+            raise ScriptError(
+                f"{path}: its first line must be like {json.dumps({**HEADER, 'model': 'isostatic'})}."
+            )
+        if self.lines[0][1].get("version") != HEADER["version"]:
+            raise ScriptError(
+                f"{path}: version {self.lines[0][1].get('version')} is not known; update Pinjoint."
+            )
+
+    def _read(self) -> Iterator[tuple[int, dict[str, Any]]]:
+        try:
+            text = self.path.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise ScriptError(f"{self.path} cannot be read: {error}.") from None
+        for number, line in enumerate(text.splitlines(), start=1):
+            if not line.strip() or line.lstrip().startswith("#"):
+                continue
+            try:
+                entry = json.loads(line)
+            except json.JSONDecodeError as error:
+                raise ScriptError(f"{self.path} line {number}: this is not JSON ({error.msg}).") from None
+            if not isinstance(entry, dict):
+                raise ScriptError(f'{self.path} line {number}: write an object, such as {{"press": "space"}}.')
+            yield number, entry
+
+    def open(self) -> Session:
+        """The session that the header asks for. Raises ModelError."""
+        source = self.lines[0][1].get("model", EMPTY)
+        beside = self.path.parent / source if isinstance(source, str) else None
+        return Session.open(beside if beside is not None and beside.is_file() else source)
+
+    def play(self, session: Session) -> list[Failure]:
+        """Play all lines; returns the expectations that did not hold. Raises ScriptError."""
+        failures = []
+        for number, entry in self.lines[1:]:
+            try:
+                failures += [Failure(number, *wrong) for wrong in perform(session, entry)]
+            except (ValueError, LookupError, TypeError) as error:
+                reason = error.args[0] if error.args else error
+                raise ScriptError(f"{self.path} line {number}: {reason}") from error
+        return failures
+
+
+def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Do what one line says; yields (expected, got) if it expects something that is not so."""
+    rest = dict(entry)
+    if "window" in rest:
+        width, height = rest.pop("window")
+        session.view.camera.viewport = Viewport(0, 0, int(width), int(height))
+        session.view.fit(session.model)
+    if "at" in rest:
+        _advance_to(session, int(rest.pop("at")))
+    button, pixel = rest.pop("button", "click"), rest.pop("pixel", None)
+    if len(rest) > 1:
+        raise ValueError(f"a line does one thing, this one says {', '.join(rest)}; split it.")
+    for verb, value in rest.items():
+        if verb == "expect":
+            yield from _check(session, value)
+        elif verb == "input":
+            session.press(value, tuple(pixel) if pixel else None)
+        elif verb in ("click", "drag"):
+            _VERBS[verb](session, (*value, button))
+        elif verb in _VERBS:
+            _VERBS[verb](session, value)
+        else:
+            raise ValueError(f"there is no '{verb}'; use one of {', '.join((*_VERBS, 'expect', 'input'))}.")
+
+
+def _run(session: Session, value: Any) -> None:
+    if value == "rest":
+        session.run(until="rest")
+    else:
+        session.run(time=float(value))
+
+
+_VERBS: dict[str, Callable[[Session, Any], Any]] = {
+    "press": lambda session, key: session.press(key),
+    "click": lambda session, value: session.click(float(value[0]), float(value[1]), value[2]),
+    "drag": lambda session, value: session.drag(tuple(value[0]), tuple(value[1]), value[2]),
+    "type": lambda session, text: session.type(text),
+    "box": lambda session, title: session.click_box(title),
+    "set": lambda session, text: apply_override(session.model, text),
+    "action": lambda session, name: session.act(name),
+    "run": _run,
+    "steps": lambda session, count: session.run(steps=int(count)),
+}
+
+
+def _advance_to(session: Session, steps: int) -> None:
+    left = steps - session.model.clock.steps
+    if left > 0:
+        session.run(steps=left)
+
+
+# --- expectations ----------------------------------------------------------------------------------------
+
+
+def _check(session: Session, text: str) -> Iterator[tuple[str, Any]]:
+    match = _EXPECTATION.match(text)
+    if match is None:
+        raise ValueError(f"'{text}' is no expectation; write it like rods.AB.axial_force ≈ -28.34 ± 0.01.")
+    got = read(session, match["path"])
+    if not _holds(got, match["relation"], match["value"], match["slack"]):
+        yield text, got
+
+
+def _holds(got: Any, relation: str, value: str, slack: str | None) -> bool:
+    if isinstance(got, bool | str) or got is None:
+        return relation == "=" and str(got).lower() == value.strip("\"'").lower()
+    wanted = float(value)
+    if relation in "<>":
+        return bool(got < wanted if relation == "<" else got > wanted)
+    tolerance = float(slack) if slack is not None else (0.0 if relation == "=" else 1e-9 * abs(wanted))
+    return math.isfinite(got) and abs(got - wanted) <= tolerance
+
+
+def read(session: Session, path: str) -> Any:
+    """A quantity by its path: rods.AB.axial_force, particles.B.displacement.y, energy.imbalance, scene."""
+    head, _, rest = path.strip().partition(".")
+    if head in ("scene", "time", "message"):
+        return getattr(session, head)
+    if head == "energy":
+        return session.energy.as_dict()[rest]
+    if head == "count":
+        return len(session.model.tables[rest])
+    if head not in session.model.tables:
+        raise LookupError(session.model.missing("quantities", head, session.model.tables))
+    table = session.model.tables[head]
+    component = None
+    if rest.endswith((".x", ".y")):
+        rest, component = rest[:-2], "xy".index(rest[-1])
+    name, _, field = rest.rpartition(".")
+    if field not in table.fields:
+        raise LookupError(session.model.missing(f"quantities of {head}", field, table.fields))
+    value = getattr(table[name] if name else table[0], field)
+    return value if component is None else value[component]
+
+
+# --- recording -------------------------------------------------------------------------------------------
+
+
+class Recorder:
+    """Writes what a person does in a window, line by line, so that it can be played again."""
+
+    def __init__(self, session: Session, file: TextIO, model: Any) -> None:
+        self._file = file
+        self._session = session
+        self._write({**HEADER, "model": model})
+        viewport = session.view.camera.viewport
+        self._write({"window": [viewport.width, viewport.height]})
+        session.on_press = self._pressed
+
+    def _pressed(self, key: str, pixel: Vector | None) -> None:
+        entry: dict[str, Any] = {"at": self._session.model.clock.steps, "input": key}
+        if pixel is not None:
+            entry["pixel"] = list(pixel)
+        self._write(entry)
+
+    def _write(self, entry: Mapping[str, Any]) -> None:
+        self._file.write(json.dumps(entry, ensure_ascii=False) + "\n")
+        self._file.flush()

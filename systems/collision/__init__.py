@@ -1,0 +1,1 @@
+"""Discs that collide: exact flight between impacts, impacts alone and together, resting contact."""

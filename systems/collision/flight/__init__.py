@@ -1,0 +1,1 @@
+"""Flight from impact to impact."""

@@ -1,0 +1,227 @@
+"""The first time at which two discs touch while they approach, along paths of constant acceleration.
+
+With d, v, a the relative position, velocity and acceleration, half the squared gap is
+    f(s) = (|d + v s + a s²/2|² − R²)/2,   f' = d(s)·v(s),   f'' = v(s)·v(s) + d(s)·a.
+All are evaluated along the path, which keeps the digits that expanded coefficients lose.
+"""
+
+import math
+
+from systems.collision.disc import (
+    AX,
+    AY,
+    EPOCH,
+    EPSILON,
+    OX,
+    OY,
+    PLACE_NOISE,
+    RADIUS,
+    SPEED_NOISE,
+    UX,
+    UY,
+    VX,
+    VY,
+)
+from systems.kernels import compiled
+
+NEVER = math.inf
+MOST_ITERATIONS = 2200  # what bisection alone needs across all exponents and bits of a double; Newton: 5
+
+
+@compiled
+def relative_motion(discs, i, j, time):
+    """Position, velocity and acceleration of disc j relative to disc i at a time."""
+    s = time - discs[i, EPOCH]
+    t = time - discs[j, EPOCH]
+    iax, iay, jax, jay = discs[i, AX], discs[i, AY], discs[j, AX], discs[j, AY]
+    ivx, ivy, jvx, jvy = discs[i, VX], discs[i, VY], discs[j, VX], discs[j, VY]
+    ux = discs[j, UX] + t * (jvx + 0.5 * t * jax) - (discs[i, UX] + s * (ivx + 0.5 * s * iax))
+    uy = discs[j, UY] + t * (jvy + 0.5 * t * jay) - (discs[i, UY] + s * (ivy + 0.5 * s * iay))
+    dx = (discs[j, OX] - discs[i, OX]) + ux
+    dy = (discs[j, OY] - discs[i, OY]) + uy
+    vx = (jvx + t * jax) - (ivx + s * iax)
+    vy = (jvy + t * jay) - (ivy + s * iay)
+    return dx, dy, vx, vy, difference(iax, jax), difference(iay, jay)
+
+
+@compiled
+def difference(first, second):
+    """second − first, and exactly 0 where only round-off distinguishes them: m (g/m) need not be g."""
+    if abs(second - first) <= 4.0 * EPSILON * (abs(first) + abs(second)):
+        return 0.0
+    return second - first
+
+
+@compiled
+def speed_at(discs, i, time):
+    """Sum of the components' magnitudes of a disc's velocity."""
+    s = time - discs[i, EPOCH]
+    return abs(discs[i, VX] + s * discs[i, AX]) + abs(discs[i, VY] + s * discs[i, AY])
+
+
+@compiled
+def speed_noise(discs, i, j, time):
+    """Relative speed (m/s) that the round-off of the two velocities can feign."""
+    return SPEED_NOISE * (speed_at(discs, i, time) + speed_at(discs, j, time))
+
+
+@compiled
+def extent(discs, i, time):
+    """Magnitude of the numbers that make up a disc's position: its coordinates and its path since t = 0."""
+    place = abs(discs[i, OX]) + abs(discs[i, OY]) + abs(discs[i, UX]) + abs(discs[i, UY])
+    return place + discs[i, RADIUS] + speed_at(discs, i, time) * abs(time)
+
+
+@compiled
+def place_noise(discs, i, j, time):
+    """Gap (m) that the round-off of the two positions and of the time can feign."""
+    return PLACE_NOISE * (extent(discs, i, time) + extent(discs, j, time))
+
+
+@compiled
+def first_approach(dx, dy, vx, vy, ax, ay, reach, noise, horizon, overlapping):
+    """The least s ≥ 0 at which the distance is at most `reach` and shrinks; NEVER if there is none.
+
+    noise: relative speeds below it count as none. horizon: NEVER may be returned for later times; what is
+    returned for earlier ones does not depend on it, to the last bit. overlapping: the discs overlap from
+    the start and are left alone until they have separated.
+    """
+    if ax == 0.0 and ay == 0.0:
+        return _first_on_lines(dx, dy, vx, vy, reach, noise, overlapping)
+    pull = math.sqrt(ax * ax + ay * ay)
+    speed = math.sqrt(vx * vx + vy * vy)
+    distance = math.sqrt(dx * dx + dy * dy)
+    if distance - reach > horizon * (speed + 0.5 * horizon * pull):
+        return NEVER
+    last = (speed + math.sqrt(speed * speed + 2.0 * pull * (distance + reach))) / pull
+    return _first_on_parabolas(dx, dy, vx, vy, ax, ay, reach, noise * reach, horizon, last, overlapping)
+
+
+@compiled
+def _first_on_lines(dx, dy, vx, vy, reach, noise, overlapping):
+    """Root of the quadratic; its discriminant |v|²R² − (d×v)² does not cancel for discs far apart."""
+    approach = dx * vx + dy * vy
+    if approach >= -noise * reach:
+        return NEVER
+    excess = dx * dx + dy * dy - reach * reach
+    if excess <= 0.0:
+        return NEVER if overlapping else 0.0
+    passing = dx * vy - dy * vx
+    speed_reach = (vx * vx + vy * vy) * reach * reach
+    if speed_reach < passing * passing:
+        return NEVER
+    return excess / (math.sqrt(speed_reach - passing * passing) - approach)
+
+
+@compiled
+def _first_on_parabolas(dx, dy, vx, vy, ax, ay, reach, noise, horizon, last, overlapping):
+    """Root of the quartic: between the roots of f'' (a quadratic) f' is monotone, between those of f' f is.
+
+    last: the discs only move apart after it. noise: of f'.
+    """
+    bend, other = _inflections(dx, dy, vx, vy, ax, ay)
+    start = 0.0
+    for piece in range(3):
+        end = bend if piece == 0 else other if piece == 1 else last
+        end = min(end, last)
+        if not end > start:
+            continue
+        slope_start = _slope(dx, dy, vx, vy, ax, ay, start)
+        slope_end = _slope(dx, dy, vx, vy, ax, ay, end)
+        turn = end
+        if (slope_start < 0.0) != (slope_end < 0.0):
+            turn = _turn(dx, dy, vx, vy, ax, ay, start, end, slope_end < 0.0)
+        if slope_start < 0.0:  # approaching until the turn
+            low, high = start, turn
+        else:  # approaching after it, if at all
+            low, high = turn, end
+        if min(slope_start, slope_end) < -noise and low < high:
+            s = _touch(dx, dy, vx, vy, ax, ay, reach, low, high, overlapping)
+            if s < NEVER:
+                return s
+        start = end
+        if start > horizon:
+            return NEVER
+    return NEVER
+
+
+@compiled
+def _inflections(dx, dy, vx, vy, ax, ay):
+    """The two roots of f'', ascending, or −1 twice: (v·v + d·a) + 3 v·a s + 3/2 a·a s²."""
+    c = vx * vx + vy * vy + dx * ax + dy * ay
+    b = 1.5 * (vx * ax + vy * ay)
+    a = 1.5 * (ax * ax + ay * ay)
+    discriminant = b * b - a * c
+    if not discriminant > 0.0:
+        return -1.0, -1.0
+    q = -(b + math.copysign(math.sqrt(discriminant), b))
+    first, second = q / a, c / q
+    return min(first, second), max(first, second)
+
+
+@compiled
+def _half_gap(dx, dy, vx, vy, ax, ay, reach, s):
+    x = dx + s * (vx + 0.5 * s * ax)
+    y = dy + s * (vy + 0.5 * s * ay)
+    return 0.5 * (x * x + y * y - reach * reach)
+
+
+@compiled
+def _slope(dx, dy, vx, vy, ax, ay, s):
+    x = dx + s * (vx + 0.5 * s * ax)
+    y = dy + s * (vy + 0.5 * s * ay)
+    return x * (vx + s * ax) + y * (vy + s * ay)
+
+
+@compiled
+def _curvature(dx, dy, vx, vy, ax, ay, s):
+    x = dx + s * (vx + 0.5 * s * ax)
+    y = dy + s * (vy + 0.5 * s * ay)
+    wx = vx + s * ax
+    wy = vy + s * ay
+    return wx * wx + wy * wy + x * ax + y * ay
+
+
+@compiled
+def _turn(dx, dy, vx, vy, ax, ay, low, high, falling):
+    """Root of f' between low and high, where it is monotone and changes sign: Newton kept in a bracket."""
+    s = low - _slope(dx, dy, vx, vy, ax, ay, low) / _curvature(dx, dy, vx, vy, ax, ay, low)
+    if not (low < s < high):
+        s = 0.5 * (low + high)
+    for _ in range(MOST_ITERATIONS):
+        value = _slope(dx, dy, vx, vy, ax, ay, s)
+        if (value > 0.0) == falling:
+            low = s
+        else:
+            high = s
+        step = value / _curvature(dx, dy, vx, vy, ax, ay, s)
+        following = s - step
+        if not (low < following < high):
+            following = 0.5 * (low + high)
+        if abs(following - s) <= EPSILON * abs(s) or following == low or following == high:
+            return following
+        s = following
+    return s
+
+
+@compiled
+def _touch(dx, dy, vx, vy, ax, ay, reach, low, high, overlapping):
+    """Root of f between low and high, where it falls; `low` itself if the discs overlap there already."""
+    if _half_gap(dx, dy, vx, vy, ax, ay, reach, low) <= 0.0:
+        return NEVER if overlapping else low
+    if _half_gap(dx, dy, vx, vy, ax, ay, reach, high) > 0.0:
+        return NEVER
+    s = low
+    for _ in range(MOST_ITERATIONS):
+        value = _half_gap(dx, dy, vx, vy, ax, ay, reach, s)
+        if value > 0.0:
+            low = s
+        else:
+            high = s
+        following = s - value / _slope(dx, dy, vx, vy, ax, ay, s)
+        if not (low < following < high):
+            following = 0.5 * (low + high)
+        if abs(following - s) <= EPSILON * abs(s) or following == low or following == high:
+            return following
+        s = following
+    return s

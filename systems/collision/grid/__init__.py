@@ -1,0 +1,1 @@
+"""Which discs can meet at all."""

@@ -1,0 +1,1 @@
+"""Which meeting comes first."""

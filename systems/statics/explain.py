@@ -1,0 +1,61 @@
+"""Motions and rods in words, for messages that point at the particle and the direction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from components.model import Model
+from systems.statics.equations import Array, Rows
+
+NAMED = 5  # at most so many by name, then "and 7 more"
+TAKES_PART = 0.1  # of the largest motion
+ONE_WAY = 1e-3  # ratio of a particle's motions across and along, below which it has one direction
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names as in "B, C and D", the rest counted."""
+    shown = list(names[:NAMED])
+    if len(names) > NAMED:
+        return f"{', '.join(shown)} and {len(names) - NAMED} more"
+    return " and ".join(filter(None, [", ".join(shown[:-1]), *shown[-1:]]))
+
+
+def rod_names(model: Model, rows: Rows) -> str:
+    """Rods as a person calls them."""
+    names = model.rods.column("name")
+    return ("rod " if len(rows) == 1 else "rods ") + listed([str(names[row]) for row in rows.tolist()])
+
+
+def describe_motion(model: Model, modes: Array) -> str:
+    """Who moves, and which way, in some modes (k, n, 2): "B along x, C in any direction"."""
+    names = model.particles.column("name")
+    size = np.sqrt((modes**2).sum(axis=(0, 2)))
+    movers = [row for row in np.argsort(-size, kind="stable") if size[row] > TAKES_PART * size.max()]
+    told = [f"{names[row]} {_direction(modes[:, row])}" for row in sorted(movers[:NAMED])]
+    rest = len(movers) - len(told)
+    return ", ".join(told) + (f" and {rest} more" if rest > 0 else "")
+
+
+def _direction(motions: Array) -> str:
+    """The direction of one particle's motions (k, 2)."""
+    _, sizes, ways = np.linalg.svd(motions, full_matrices=False)
+    if len(sizes) > 1 and sizes[1] > ONE_WAY * sizes[0]:
+        return "in any direction"
+    x, y = ways[0]
+    if abs(y) < ONE_WAY:
+        return "along x"
+    if abs(x) < ONE_WAY:
+        return "along y"
+    if x < 0.0:
+        x, y = -x, -y
+    return f"along ({x:.2f}, {y:.2f})"
+
+
+def there(model: Model, moved: Array) -> str:
+    """Where a field of displacements (m) took the particle that moved most: "B by (0, −1.7) m"."""
+    names = model.particles.column("name")
+    row = int(np.hypot(moved[:, 0], moved[:, 1]).argmax())
+    x, y = moved[row]
+    return f"{names[row]} by ({x:.4g}, {y:.4g}) m"

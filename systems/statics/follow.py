@@ -1,0 +1,296 @@
+"""Following a path of equilibria while the load changes, increment by increment, event by event.
+
+A path consists of the equilibria under force + t × change. Each increment goes along the tangent, is
+corrected by Newton's method on a plane across it (which reduces to constant t where the structure is
+stiff, and passes limit points where it is not), and is accepted only if it went where the tangent pointed:
+an increment that lands on another branch is taken back and made smaller.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from systems.statics.equations import ROUND_OFF, Array, Flags, Response, Structure
+from systems.statics.factor import Factor, regular
+
+LARGEST_MOVE = 0.1  # of a rod's length, in one increment; larger: fewer increments, less sure of the branch
+MISS = 0.2  # share of an increment by which it may miss where the tangent pointed
+TURN = 0.5  # share by which the tangent may change over an increment
+NEWTON_ITERATIONS = 25
+CONVERGED = 1e-11  # of the largest force: a residual that stopped falling below it is round-off
+EXACT_EVENTS = 500  # rods up to which every yield ends an increment; larger: slower, no more exact answers
+HALF = 0.5  # share of an increment to try after it failed
+RESOLUTION = 1 / 32  # of the change of load, to which yields are told apart in larger structures
+EVENT = 1e-8  # of the change of load, to which a yield is located
+SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
+NARROWINGS = 42  # halvings that locate a loss of stability; in larger structures:
+FEW_NARROWINGS = 14
+ACTIVE_SET_ROUNDS = 12
+
+
+@dataclass(frozen=True)
+class Point:
+    """A state on a path: displacement (n, 2), plastic strain (rods,), t, and the rods' response.
+
+    dissipated: energy (J) that yielding has taken so far.
+    """
+
+    displacement: Array
+    plastic_strain: Array
+    t: float
+    response: Response
+    dissipated: float
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """The direction of a path at a point.
+
+    rate: du/dt of the unknowns. flowing: rods that yield on the way. sense: +1 if t grows along the path.
+    """
+
+    rate: Array
+    flowing: Flags
+    factor: Factor
+    sense: float
+
+    @property
+    def stable(self) -> bool:
+        """True if the equilibrium resists every small motion, and t grows."""
+        return self.factor.definite and self.sense > 0.0
+
+
+@dataclass(frozen=True)
+class Step:
+    """An accepted increment: the point it led to, the tangent there, its size, and the size to try next."""
+
+    point: Point
+    tangent: Tangent
+    taken: float
+    further: float
+
+
+class Path:
+    """The equilibria of a structure under force + t × change (fields of kN), 0 ≤ t ≤ 1."""
+
+    def __init__(self, structure: Structure, force: Array, change: Array) -> None:
+        self.structure = structure
+        self.force = force
+        self.change = change
+        self.push = structure.gather(change)
+        self.exact_events = len(structure.ends) <= EXACT_EVENTS
+        self.scale = max(np.abs(force).max(initial=0.0), np.abs(force + change).max(initial=0.0))
+        self.reference = 0.0  # size of du/dt that counts as much as dt does; that of the first tangent
+
+    def load(self, t: float) -> Array:
+        """The external force at t."""
+        return self.force + t * self.change
+
+    def start(self, displacement: Array, plastic_strain: Array) -> Point:
+        """The point at t = 0 in this state."""
+        response = self.structure.respond(displacement, plastic_strain)
+        return Point(displacement, plastic_strain, 0.0, response, 0.0)
+
+    def after(self, start: Point, displacement: Array, t: float) -> Point:
+        """The point with these displacements and t, yielding from an earlier one."""
+        response = self.structure.respond(displacement, start.plastic_strain)
+        spent = np.abs(response.axial_force * (response.plastic_strain - start.plastic_strain))
+        dissipated = start.dissipated + 1000.0 * float(spent @ self.structure.rest_length)
+        return Point(displacement, response.plastic_strain, t, response, dissipated)
+
+    # --- directions --------------------------------------------------------------------------------
+
+    def tangent(self, point: Point, onward: Array | None = None) -> Tangent:
+        """The direction in which the path goes on; onward: how the unknowns changed so far.
+
+        Of the rods at a strength those flow whose elongation goes on in that direction: starting from
+        none, rods are added and taken back until that is so.
+        """
+        structure, response = self.structure, point.response
+        limited = structure.at_limit(response)
+        sign = np.sign(response.axial_force)
+        flowing = np.zeros_like(limited)
+        for _ in range(ACTIVE_SET_ROUNDS):
+            found = self._direction(response, flowing, onward)
+            rate = structure.elongation_rate(found.sense * found.rate, response)
+            grows = limited & (sign * rate > 0.0)
+            if not limited.any() or np.array_equal(grows, flowing):
+                break
+            flowing = grows
+        return found
+
+    def _direction(self, response: Response, flowing: Flags, onward: Array | None) -> Tangent:
+        structure = self.structure
+        factor = regular(structure.tangent(response, flowing), structure.weight)
+        rate = factor.solve(self.push) if factor.exists else np.zeros(structure.size)
+        forward = onward is None or float(rate @ onward) >= 0.0
+        return Tangent(rate, flowing, factor, 1.0 if forward else -1.0)
+
+    def stable_without(self, point: Point, flowing: Flags) -> bool:
+        """True if the point is stable when only these rods flow."""
+        matrix = self.structure.tangent(point.response, flowing)
+        return regular(matrix, self.structure.weight).definite
+
+    def stretch(self, tangent: Tangent) -> float:
+        """Increment along the path for an increment of t."""
+        if self.reference == 0.0:
+            return 1.0
+        return math.hypot(1.0, float(np.linalg.norm(tangent.rate)) / self.reference)
+
+    # --- increments ----------------------------------------------------------------------------------
+
+    def advance(self, point: Point, tangent: Tangent, increment: float) -> Step | None:
+        """Go at most one increment on; None if the path is lost.
+
+        An increment ends where a rod begins to yield; one that fails is halved.
+        """
+        trial = min(increment, self._until_event(point, tangent))
+        smallest = SMALLEST * self.stretch(tangent)
+        while trial > smallest:
+            found = self.attempt(point, tangent, trial)
+            if isinstance(found, tuple):
+                return Step(*found, trial, 2.0 * increment)
+            trial *= found
+            if found == HALF:
+                increment = trial
+        return None
+
+    def attempt(self, point: Point, tangent: Tangent, increment: float) -> tuple[Point, Tangent] | float:
+        """One increment; or, if it cannot be accepted, the share of it to try next."""
+        structure = self.structure
+        dt = tangent.sense * increment / self.stretch(tangent)
+        last = point.t + dt >= 1.0 - 4.0 * ROUND_OFF
+        if last:
+            dt = 1.0 - point.t
+        predicted = dt * tangent.rate
+        if structure.move(predicted, point.response.length) > LARGEST_MOVE:
+            return HALF
+        guess = point.displacement + structure.spread(predicted)
+        found = self.correct(point, guess, point.t + dt, None if last else tangent)
+        if found is None:
+            return HALF
+        change = structure.gather(found.displacement - point.displacement)
+        kink = self._kink(point, tangent, found, dt)
+        if kink < 1.0:
+            return kink
+        following = self.tangent(found, change)
+        if self._reversed(tangent, found, following, dt):
+            return HALF
+        fine = self._went_along(point, tangent, found, following, predicted, change)
+        yielded = not np.array_equal(found.response.flowing, tangent.flowing)
+        coarse = not self.exact_events and yielded and abs(dt) <= RESOLUTION
+        return (found, following) if fine or coarse else HALF
+
+    def correct(self, start: Point, guess: Array, t: float, across: Tangent | None) -> Point | None:
+        """The equilibrium near a guess: at constant t, or on the plane across a tangent; None if not found."""
+        structure = self.structure
+        displacement = guess.copy()
+        normal = None
+        if across is not None and self.reference > 0.0:
+            normal = across.rate / self.reference**2
+        before = math.inf
+        for _ in range(NEWTON_ITERATIONS):
+            response = structure.respond(displacement, start.plastic_strain)
+            residual = structure.gather(self.load(t) - structure.internal(response))
+            size = float(np.abs(residual).max(initial=0.0))
+            scale = max(self.scale, float(np.abs(response.axial_force).max(initial=0.0)))
+            if not size <= 1e6 * scale:
+                return None
+            noise = structure.round_off(displacement) + 4.0 * ROUND_OFF * scale
+            if size <= noise or (size >= 0.5 * before and size <= CONVERGED * scale + 64.0 * noise):
+                return self.after(start, displacement, t)
+            before = size
+            factor = regular(structure.tangent(response, response.flowing), structure.weight)
+            if not factor.exists:
+                return None
+            if normal is None:
+                step = factor.solve(residual)
+            else:
+                solved = factor.solve(np.column_stack([residual, self.push]))
+                dt = -float(normal @ solved[:, 0]) / (float(normal @ solved[:, 1]) + 1.0)
+                step = solved[:, 0] + dt * solved[:, 1]
+                t += dt
+            displacement += structure.spread(step)
+            change = structure.gather(displacement - start.displacement)
+            if not structure.move(change, start.response.length) <= 2.0 * LARGEST_MOVE:
+                return None
+        return None
+
+    def _went_along(
+        self,
+        point: Point,
+        tangent: Tangent,
+        found: Point,
+        following: Tangent,
+        predicted: Array,
+        change: Array,
+    ) -> bool:
+        """True if the increment went where the tangent pointed and the tangent did not turn much."""
+        structure, length = self.structure, point.response.length
+        size = structure.move(change, length)
+        if size > LARGEST_MOVE:
+            return False
+        if structure.move(change - predicted, length) > MISS * size + 64.0 * ROUND_OFF:
+            return False
+        if not np.array_equal(following.flowing, tangent.flowing):
+            return True
+        before = tangent.sense / self.stretch(tangent) * tangent.rate
+        after = following.sense / self.stretch(following) * following.rate
+        largest = max(structure.move(before, length), structure.move(after, length))
+        return structure.move(after - before, length) <= TURN * largest
+
+    # --- yielding ----------------------------------------------------------------------------------
+
+    def _until_event(self, point: Point, tangent: Tangent) -> float:
+        """Increment after which the next rod yields, judged from the tangent."""
+        if not self.exact_events:
+            return math.inf
+        structure, response = self.structure, point.response
+        rate = structure.elongation_rate(tangent.sense * tangent.rate, response)
+        growth = rate * structure.stiffness / structure.rest_length
+        with np.errstate(divide="ignore", invalid="ignore"):
+            up = (structure.tension_limit - response.axial_force) / growth
+            down = (-structure.compression_limit - response.axial_force) / growth
+        wait = np.where(growth > 0.0, up, np.where(growth < 0.0, down, np.inf))
+        wait[structure.at_limit(response)] = np.inf
+        return float(wait.min(initial=np.inf)) * self.stretch(tangent)
+
+    def _kink(self, point: Point, tangent: Tangent, found: Point, dt: float) -> float:
+        """Share of an increment after which the first rod yielded in it; 1 if at its end or not at all."""
+        new = found.response.flowing & ~tangent.flowing
+        if not self.exact_events or not new.any():
+            return 1.0
+        structure = self.structure
+        limit = found.response.axial_force[new]
+        before = point.response.axial_force[new]
+        passed = found.response.elastic_force[new] - before
+        was_there = structure.at_limit(point.response)[new]
+        share = np.where(was_there, 1.0, (limit - before) / np.where(passed != 0.0, passed, 1.0))
+        first = float(share.min())
+        return first if (1.0 - first) * abs(dt) > EVENT else 1.0
+
+    def _reversed(self, tangent: Tangent, found: Point, following: Tangent, dt: float) -> bool:
+        """True if a rod stopped flowing well within the increment."""
+        if not self.exact_events or abs(dt) <= 1e-6:
+            return False
+        stopped = tangent.flowing & ~(found.response.flowing & following.flowing)
+        return bool(stopped.any())
+
+    # --- loss of stability -----------------------------------------------------------------------------
+
+    def narrow(
+        self, point: Point, tangent: Tangent, beyond: Tangent, increment: float
+    ) -> tuple[Point, Tangent, Tangent]:
+        """The last stable point of an increment, its tangent, and that of the first point that is not."""
+        for _ in range(NARROWINGS if self.exact_events else FEW_NARROWINGS):
+            increment *= 0.5
+            found = self.attempt(point, tangent, increment)
+            if isinstance(found, tuple):
+                if found[1].stable:
+                    point, tangent = found
+                else:
+                    beyond = found[1]
+        return point, tangent, beyond

@@ -1,0 +1,118 @@
+"""Relaxing to the next stable equilibrium at constant load, as a strongly damped structure would.
+
+The motion is that of W u' = force − internal force, W being the rods' stiffness at each particle, by implicit
+Euler steps: each minimises the energy plus a penalty on moving, so that no step climbs, none leaps over an
+equilibrium, and rods yield in their order. The last steps are Newton's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from systems.statics.equations import Array
+from systems.statics.factor import lowest_mode, regular
+from systems.statics.follow import LARGEST_MOVE, Path, Point
+
+STEPS = 4000  # until relaxing is given up
+NEWTON_ITERATIONS = 12  # within a step
+STEP_CONVERGED = 1e-7  # of the force at its start
+LARGEST_PENALTY = 1e9
+NUDGE = 1e-3  # of a rod's length: how far to push off an unstable equilibrium
+BALANCED = 1e-9  # of the largest force: an equilibrium, if only an unstable one
+LARGEST_PLASTIC_STRAIN = 0.2  # on the way; no structural metal follows further
+RUNAWAY = 100.0  # times the structure's extent: it will not come back
+
+
+@dataclass(frozen=True)
+class Relaxed:
+    """Where relaxing ended; `outcome` is "equilibrium", "strained apart", "ran away" or "gave up"."""
+
+    point: Point
+    outcome: str
+
+
+def relax(path: Path, start: Point, nudge: Array | None = None) -> Relaxed:
+    """Let a structure move under the load at start.t until it rests; nudge: the direction to start in."""
+    structure, point = path.structure, start
+    if nudge is not None:
+        point = _moved(path, point, nudge, NUDGE)
+    penalty = 0.0
+    for _ in range(STEPS):
+        residual = structure.gather(path.load(point.t) - structure.internal(point.response))
+        scale = max(path.scale, float(np.abs(point.response.axial_force).max(initial=0.0)))
+        stable = regular(structure.tangent(point.response, point.response.flowing), structure.weight).definite
+        if stable:
+            rested = path.correct(point, point.displacement, point.t, None)
+            if rested is not None and _is_stable(path, rested):
+                return Relaxed(rested, "equilibrium")
+        elif np.abs(residual).max(initial=0.0) <= BALANCED * scale:
+            point = _moved(path, point, _way_down(path, point), NUDGE)
+            continue
+        if penalty == 0.0:
+            penalty = (
+                max(structure.move(residual / structure.weight, point.response.length), 1e-9) / LARGEST_MOVE
+            )
+        crept = _creep(path, point, residual, penalty)
+        if crept is None:
+            break
+        point, penalty = crept
+        if np.abs(point.plastic_strain - start.plastic_strain).max(initial=0.0) > LARGEST_PLASTIC_STRAIN:
+            return Relaxed(point, "strained apart")
+        if np.abs(point.displacement).max() > RUNAWAY * structure.extent:
+            return Relaxed(point, "ran away")
+    return Relaxed(point, "gave up")
+
+
+def _is_stable(path: Path, point: Point) -> bool:
+    matrix = path.structure.tangent(point.response, point.response.flowing)
+    return regular(matrix, path.structure.weight).definite
+
+
+def _way_down(path: Path, point: Point) -> Array:
+    matrix = path.structure.tangent(point.response, point.response.flowing)
+    return lowest_mode(matrix, path.structure.weight)[1]
+
+
+def _moved(path: Path, point: Point, direction: Array, size: float) -> Point:
+    structure = path.structure
+    share = size / structure.move(direction, point.response.length)
+    displacement = point.displacement + structure.spread(share * direction)
+    return path.after(point, displacement, point.t)
+
+
+def _creep(path: Path, point: Point, residual: Array, penalty: float) -> tuple[Point, float] | None:
+    """One implicit Euler step of length 1/penalty, and the penalty for the next; shorter if it fails."""
+    structure, length = path.structure, point.response.length
+    while penalty < LARGEST_PENALTY:
+        displacement = _implicit_step(path, point, residual, penalty)
+        if displacement is not None:
+            move = structure.move(structure.gather(displacement - point.displacement), length)
+            if move <= LARGEST_MOVE:
+                shorter = 4.0 if move < 0.25 * LARGEST_MOVE else 1.0 if move > 0.5 * LARGEST_MOVE else 2.0
+                return path.after(point, displacement, point.t), penalty / shorter
+        penalty *= 3.0
+    return None
+
+
+def _implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> Array | None:
+    """Displacements u with force − internal(u) = penalty × W (u − u₀), or None if Newton's method fails."""
+    structure = path.structure
+    displacement = point.displacement
+    wanted = STEP_CONVERGED * float(np.abs(residual).max(initial=0.0))
+    moved = np.zeros(structure.size)
+    for _ in range(NEWTON_ITERATIONS):
+        response = structure.respond(displacement, point.plastic_strain)
+        pull = structure.gather(path.load(point.t) - structure.internal(response))
+        pull -= penalty * structure.weight * moved
+        if float(np.abs(pull).max(initial=0.0)) <= max(wanted, structure.round_off(displacement)):
+            return displacement
+        factor = regular(structure.tangent(response, response.flowing), structure.weight, penalty)
+        if not factor.definite:
+            return None
+        moved = moved + factor.solve(pull)
+        if not structure.move(moved, point.response.length) <= 4.0 * LARGEST_MOVE:
+            return None
+        displacement = point.displacement + structure.spread(moved)
+    return None

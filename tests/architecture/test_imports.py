@@ -1,0 +1,177 @@
+"""Who may import whom: components ← systems ← game ← tests, and heavy libraries only where they are used."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from fnmatch import fnmatch
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+LAYERS = ("components", "systems", "game", "tests")  # each may import itself and those before it
+RESOURCES = "assets"
+WINDOW = ("systems/render/pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
+COMPILED = ("systems/kernels.py", "systems/*/kernels.py", "game/program*.py")
+MODULES_OF = {"pygame-ce": "pygame"}  # distributions whose module has another name
+
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+
+def distributions(requirements: list[str]) -> set[str]:
+    """The modules that come with requirements such as "numpy>=2"."""
+    names = {re.split(r"[^\w.-]", requirement, maxsplit=1)[0] for requirement in requirements}
+    return {MODULES_OF.get(name, name) for name in names}
+
+
+REQUIREMENTS = [PROJECT["dependencies"], *PROJECT["optional-dependencies"].values()]
+DECLARED = set[str]().union(*map(distributions, REQUIREMENTS))
+
+
+def imported(source: str, path: str) -> Iterator[tuple[int, str]]:
+    """Line and full name of every module or name that a file imports, at whatever depth it does."""
+    package = path.removesuffix(".py").split("/")[:-1]
+    for node in ast.walk(ast.parse(source, path)):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield node.lineno, alias.name
+        elif isinstance(node, ast.ImportFrom):
+            parents = package[: len(package) - node.level + 1] if node.level else []
+            module = ".".join([*parents, *filter(None, [node.module])])
+            for alias in node.names:
+                yield node.lineno, f"{module}.{alias.name}"
+
+
+def within(path: str, patterns: tuple[str, ...]) -> bool:
+    return any(fnmatch(path, pattern) for pattern in patterns)
+
+
+def broken_rule(path: str, name: str) -> str | None:
+    """The rule that a file breaks by importing a full name, or None."""
+    layer, top = path.split("/")[0], name.split(".")[0]
+    if top in LAYERS:
+        return broken_order(path, layer, top, name)
+    if top == RESOURCES:
+        return None if layer in ("game", "tests") else "only game imports assets; read them as resources"
+    if top in sys.stdlib_module_names or layer == "tests":
+        return None
+    if layer == "components" and top not in ("numpy", "esper"):
+        return "components import only the standard library, numpy and esper"
+    if top not in DECLARED:
+        return "pyproject.toml does not declare it"
+    if top == "pygame" and not within(path, WINDOW):
+        return "pygame is imported only by the window's backends"
+    if top == "numba" and not within(path, COMPILED):
+        return "numba is imported only by kernels.py files and the step program"
+    return None
+
+
+def broken_order(path: str, layer: str, top: str, name: str) -> str | None:
+    if LAYERS.index(top) > LAYERS.index(layer):
+        return f"{layer} must not import {top}"
+    if layer == top == "systems":
+        own, other, *rest = path.split("/")[1], name.split(".")[1], *name.split(".")[2:]
+        shared = other in ("base", "kernels") or rest[:1] == ["kernels"]
+        if own.removesuffix(".py") != other and not shared:
+            return "systems meet in columns and events; they import only base and kernels of each other"
+    return None
+
+
+def files() -> list[str]:
+    return sorted(p.relative_to(ROOT).as_posix() for layer in LAYERS for p in (ROOT / layer).rglob("*.py"))
+
+
+# --- the program -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_imports_point_one_way(layer: str) -> None:
+    paths = [path for path in files() if path.split("/")[0] == layer]
+    assert len(paths) > 3
+    broken = [
+        f"{path}:{line} imports {name}: {rule}"
+        for path in paths
+        for line, name in imported((ROOT / path).read_text(encoding="utf-8"), path)
+        if (rule := broken_rule(path, name))
+    ]
+    assert not broken, "\n".join(broken)
+
+
+def modules(layer: str) -> list[str]:
+    """The modules of a layer that are there without a window and before anything is compiled."""
+    backends = (*WINDOW, *COMPILED[:2], "*/__main__.py")
+    paths = [path for path in files() if path.split("/")[0] == layer and not within(path, backends)]
+    return [path.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for path in paths]
+
+
+@pytest.mark.parametrize(
+    ("names", "unwanted"),
+    [
+        (["game"], ["pygame", "numba", "scipy", "matplotlib"]),
+        (modules("components"), ["pygame", "numba", "scipy", "msgspec"]),
+        (modules("systems"), ["pygame", "numba"]),
+        (modules("game"), ["pygame", "numba"]),
+    ],
+    ids=["import game", "components", "systems", "game"],
+)
+def test_importing_loads_neither_a_window_nor_a_compiler(names: list[str], unwanted: list[str]) -> None:
+    code = f"import sys, importlib\nfor name in {names}: importlib.import_module(name)\n"
+    code += f"print(*sorted(set({unwanted}) & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == []
+
+
+# --- the rules themselves ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("path", "line"),
+    [
+        ("components/rod.py", "import systems"),
+        ("components/rod.py", "from game.session import Session"),
+        ("components/rod.py", "def f():\n    import scipy"),
+        ("components/rod.py", "if TYPE_CHECKING:\n    from systems.base import System"),
+        ("components/rod.py", "import requests"),
+        ("systems/physics/system.py", "from game import Session"),
+        ("systems/physics/system.py", "from systems.plasticity.system import Yielding"),
+        ("systems/physics/system.py", "from systems import plasticity"),
+        ("systems/physics/system.py", "from ..plasticity import system"),
+        ("systems/physics/system.py", "import numba"),
+        ("systems/physics/system.py", "import pygame.gfxdraw"),
+        ("systems/render/scene.py", "import pygame"),
+        ("systems/base.py", "from systems.physics.system import Elasticity"),
+        ("systems/render/theme.py", "import assets"),
+        ("game/session.py", "from tests.reference import models"),
+        ("game/session.py", "import pygame"),
+        ("game/session.py", "from numba import njit"),
+        ("game/session.py", "import requests"),
+    ],
+)
+def test_a_forbidden_import_is_found(path: str, line: str) -> None:
+    assert any(broken_rule(path, name) for _, name in imported(line, path))
+
+
+@pytest.mark.parametrize(
+    ("path", "line"),
+    [
+        ("components/rod.py", "import math, numpy as np\nfrom components.field import Field\nimport esper"),
+        ("components/rod.py", "from .field import Field"),
+        ("systems/physics/system.py", "from systems.base import Law\nfrom systems.physics.kernels import drag"),
+        ("systems/physics/system.py", "from systems.plasticity.kernels import limited"),
+        ("systems/physics/system.py", "from systems.plasticity import kernels\nfrom . import kernels"),
+        ("systems/physics/kernels.py", "from numba import njit\nfrom systems.kernels import compiled"),
+        ("systems/render/pygame_canvas.py", "import pygame.gfxdraw"),
+        ("game/app.py", "import pygame\nfrom systems.physics.system import Elasticity"),
+        ("game/program_cache.py", "import numba"),
+        ("game/models.py", "import msgspec, assets"),
+        ("tests/unit/test_rod.py", "import game, systems.base, components, hypothesis"),
+    ],
+)
+def test_an_allowed_import_is_allowed(path: str, line: str) -> None:
+    assert not [name for _, name in imported(line, path) if broken_rule(path, name)]
