@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Set
+from collections.abc import Callable, Collection, Mapping, Set
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
@@ -50,11 +50,11 @@ class Field(Generic[T]):
     shape: () or (2,).
     unit: unit inside the program and in files; `shown` is (unit, factor) on screen.
     minimum, maximum: inclusive limits; `above`: exclusive lower limit.
-    nullable: None is allowed and stored as NaN.
+    nullable: None is allowed and stored as NaN; `absent` is what a person calls it.
     references: the table that a reference points into.
     overrides: the derived Field of the same handle that this one replaces when it is not None.
     overridden_by: on a derived Field, the one that assigning to it sets instead.
-    choices: the values that a text may take (None: any).
+    choices: the values that a text may take (None: any); a register may grow later.
     key: the name in model files, where it differs from the attribute's.
     checker: replaces the built-in check for values of dtype object.
     """
@@ -76,10 +76,11 @@ class Field(Generic[T]):
         maximum: float | None = None,
         above: float | None = None,
         nullable: bool = False,
+        absent: str = "automatic",
         references: str | None = None,
         overrides: str | None = None,
         overridden_by: str | None = None,
-        choices: tuple[str, ...] | None = None,
+        choices: Collection[str] | None = None,
         key: str | None = None,
         checker: Callable[[Any, str], Any] | None = None,
     ) -> None:
@@ -99,6 +100,7 @@ class Field(Generic[T]):
         self.maximum = maximum
         self.above = above
         self.nullable = nullable
+        self.absent = absent
         self.references = references
         self.overrides = overrides
         self.overridden_by = overridden_by
@@ -200,14 +202,16 @@ class Field(Generic[T]):
             raise FieldError(f"{where}: {title} is {number:.15g}{self._in_unit}; it must be {problem}.")
         return number
 
-    def limit_broken_by(self, number: float) -> str | None:
-        """The limit that a number breaks, in words, or None."""
+    def limit_broken_by(self, number: float, *, shown: bool = False) -> str | None:
+        """The limit that a number breaks, in words (in the unit on screen if `shown`), or None."""
+        unit, factor = self.shown if shown else (self.unit, 1.0)
+        in_unit = f" {unit}" if unit else ""
         if self.above is not None and not number > self.above:
-            return f"greater than {self.above:g}{self._in_unit}"
+            return f"greater than {self.above * factor:g}{in_unit}"
         if self.minimum is not None and number < self.minimum:
-            return f"at least {self.minimum:g}{self._in_unit}"
+            return f"at least {self.minimum * factor:g}{in_unit}"
         if self.maximum is not None and number > self.maximum:
-            return f"at most {self.maximum:g}{self._in_unit}"
+            return f"at most {self.maximum * factor:g}{in_unit}"
         return None
 
     def _check_flags(self, value: Any, where: str) -> Any:
@@ -218,12 +222,11 @@ class Field(Generic[T]):
         return flags if self.shape else flags[0]
 
     def _check_text(self, value: Any, where: str) -> Any:
+        if self.choices is not None and not (isinstance(value, str) and value in self.choices):
+            raise FieldError(f"{where}: {self.title} is {value!r}; choose one of {', '.join(self.choices)}.")
         if not isinstance(value, str):
             raise FieldError(f"{where}: {self.title} is {value!r}; it must be a text.")
-        value = str(value)  # numpy's texts are a type of their own
-        if self.choices is not None and value not in self.choices:
-            raise FieldError(f"{where}: {self.title} is '{value}'; choose one of {', '.join(self.choices)}.")
-        return value
+        return str(value)  # numpy's texts are a type of their own
 
     def _components(self, value: Any, where: str, of_what: str) -> list[Any]:
         if isinstance(value, str | bytes | Mapping | Set) or not np.iterable(value):

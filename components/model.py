@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any, cast
 
-from components.box import Box
 from components.clock import Clock
 from components.derived import DERIVATIONS
 from components.environment import Environment
@@ -16,7 +15,7 @@ from components.settings import Settings
 from components.table import Table
 from components.world import World
 
-KINDS = (Environment, Settings, Clock, Particle, Rod, Load, Grid, Box)
+KINDS = (Environment, Settings, Clock, Particle, Rod, Load, Grid)
 
 
 class Model(World):
@@ -46,10 +45,6 @@ class Model(World):
     @property
     def grids(self) -> Table[Grid]:
         return self.tables["grids"]
-
-    @property
-    def boxes(self) -> Table[Box]:
-        return self.tables["boxes"]
 
     @property
     def environment(self) -> Environment:

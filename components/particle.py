@@ -53,7 +53,7 @@ class Particle(Handle):
         above=0.0,
         title="mass",
         key="mass",
-        doc="Overrides the mass that follows from the rods; None: half the mass of each attached rod.",
+        doc="Of its own; automatic: half the mass of each attached rod, 1 kg without rods.",
         overrides="mass",
     )
     mass: Field[float] = Field(

@@ -39,20 +39,27 @@ class Rod(Handle):
         above=0.0,
         title="rest length",
         key="rest_length",
-        doc="Length without force; None: the distance between the original positions.",
+        doc="Length without force; automatic: the distance between the original positions.",
         shown=("cm", 100.0),
         overrides="rest_length",
     )
     tensile_strength: Field[float | None] = Field(
-        "kN", default=None, nullable=True, minimum=0.0, title="tensile strength", doc="None or 0: unlimited."
+        "kN",
+        default=None,
+        nullable=True,
+        absent="unlimited",
+        minimum=0.0,
+        title="tensile strength",
+        doc="Largest tension; 0: unlimited.",
     )
     compressive_strength: Field[float | None] = Field(
         "kN",
         default=None,
         nullable=True,
+        absent="unlimited",
         minimum=0.0,
         title="compressive strength",
-        doc="None or 0: unlimited.",
+        doc="Largest compression; 0: unlimited.",
     )
     damping: Field[float] = Field(
         "kN·s/m",

@@ -19,14 +19,15 @@ class Snapshot:
     entities: dict[str, NDArray[np.int64]]
 
     @classmethod
-    def take(cls, world: World) -> Snapshot:
-        """Copy the state."""
+    def take(cls, world: World, *tables: str) -> Snapshot:
+        """Copy the state of these tables; none given: of all."""
+        chosen = [world.tables[name] for name in tables or world.tables]
         columns = {
             f"{table.name}.{field.name}": table.column(field.name).copy()
-            for table in world.tables.values()
+            for table in chosen
             for field in table.fields_in(Role.STATE)
         }
-        return cls(columns, {table.name: table.entities.copy() for table in world.tables.values()})
+        return cls(columns, {table.name: table.entities.copy() for table in chosen})
 
     def restore(self, world: World) -> None:
         """Put the state back, bit for bit; entities that did not exist then get their defaults."""

@@ -11,7 +11,6 @@ from components.camera import Camera
 from components.field import Vector
 from components.model import Model
 
-
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
 
 
@@ -19,12 +18,12 @@ MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and 
 class Status:
     """What the status line says.
 
-    time: simulated seconds. speed: simulated seconds per second shown (0: halted). state: such as
+    time: simulated seconds, if they matter. speed: simulated seconds per second shown (0: halted). state: such as
     "running", "at rest", "diverged". hint: the next possible step. problem: why it stopped, or "".
     notice: what the last action did, or what is being waited for, or "".
     """
 
-    time: float = 0.0
+    time: float | None = 0.0
     speed: float = 0.0
     state: str = ""
     hint: str = ""
@@ -46,6 +45,14 @@ class Preview:
     label: str = ""
 
 
+@dataclass(frozen=True)
+class Page:
+    """Text in place of a model: lines, then a table whose columns are aligned; the first row is its head."""
+
+    lines: tuple[str, ...] = ()
+    table: tuple[tuple[str, ...], ...] = ()
+
+
 @dataclass
 class View:
     """How one model is shown in one viewport.
@@ -53,6 +60,7 @@ class View:
     heading: the word top left in red ("Pause"), or "". all_diagrams: force diagrams of all elements.
     legend: show the meaning of colours. help: show what can be pressed (`keys`: (key, meaning)).
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
+    caption: lines at the top: what this is, and facts about it. page: text that is shown instead.
     tool: "rod", "force" or "velocity" while clicks and drags make one, or "". preview: what is being drawn.
     """
 
@@ -67,6 +75,12 @@ class View:
     pointer: Vector | None = None
     tool: str = ""
     preview: Preview | None = None
+    caption: tuple[str, ...] = ()
+    page: Page | None = None
+
+    def fit(self, model: Model) -> None:
+        """Let the camera show the whole model."""
+        self.camera.fit(drawn_positions(model), MARGIN * self.pixel_ratio)
 
 
 def drawn_positions(model: Model) -> NDArray[np.float64]:

@@ -288,6 +288,12 @@ class World:
         handles: list[H] = table.handles[table.count - count :]
         return handles
 
+    def give(self, name: str, values: Column) -> None:
+        """Execute the command that gives a whole column, named "table.field", computed values."""
+        table, _, field = name.partition(".")
+        entities = tuple(self.tables[table].entities.tolist())
+        self.execute(Assign(table, field, entities, np.asarray(values).copy()))
+
     def delete(self, handles: Iterable[Handle]) -> None:
         """Delete entities and whatever refers to them."""
         doomed = [handle for handle in handles if handle.exists]

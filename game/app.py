@@ -11,8 +11,11 @@ import pygame
 
 from components.camera import Viewport
 from components.model import Model
+from game.desk import ModelFile
+from game.scenes.load import Load
 from game.script import Recorder
 from game.session import Session
+from game.spares import SpareKeeper
 from systems.base import System
 from systems.edit.hover import Hover
 from systems.input.pygame_input import PygameInput
@@ -30,40 +33,55 @@ class NoDisplay(RuntimeError):
     """There is nowhere to open a window; the message is the reason."""
 
 
-def open_window(model: Model, title: str, record: tuple[str | None, Any] = (None, None)) -> None:
-    """Show a model until the person closes the window. Raises NoDisplay.
+def open_window(model: Model, file: ModelFile, record: tuple[str | None, Any] = (None, None)) -> None:
+    """Show a model until the person closes the window; a model without a name: what there is. Raises NoDisplay.
 
     record: the file to write what the person does to, if any, and the model as the script names it.
     """
-    app = App(model, title)
     path, source = record
-    if path is None:
-        app.run()
+    app = App(model, file, _spares())
+    if path is not None:
+        with open(path, "w", encoding="utf-8") as script:
+            Recorder(app.session, script, source)
+            app.run()
         return
-    with open(path, "w", encoding="utf-8") as file:
-        Recorder(app.session, file, source)
-        app.run()
+    if not file.name:
+        app.welcome()
+    app.run()
+
+
+def _spares() -> SpareKeeper | None:
+    """None where nothing can be written; the program is of use all the same."""
+    try:
+        return SpareKeeper()
+    except OSError:
+        return None
 
 
 class App:
     """The window and its session."""
 
-    def __init__(self, model: Model, title: str, theme: str = "light") -> None:
+    def __init__(
+        self,
+        model: Model,
+        file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
+        spares: SpareKeeper | None = None,
+        theme: str = "light",
+    ) -> None:
         os.environ.setdefault("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
         try:
             pygame.display.init()
-            self.window = pygame.Window(
-                f"{title} – Pinjoint" if title else "Pinjoint", FIRST_SIZE, resizable=True, allow_high_dpi=True
-            )
+            self.window = pygame.Window("Pinjoint", FIRST_SIZE, resizable=True, allow_high_dpi=True)
         except pygame.error as error:
             raise NoDisplay(str(error)) from None
         self.window.minimum_size = SMALLEST_SIZE
         pygame.key.set_repeat(400, 40)
         self.input = PygameInput()
         self.render = PygameRender(self.window.get_surface(), load_theme(theme))
-        systems: list[System] = [self.input, Hover(), self.render]
-        self.session = Session(model, systems)
+        systems: list[System] = [self.input, Hover(), *([spares] if spares else []), self.render]
+        self.session = Session(model, systems, file=file)
         self.session.window = self
+        self.session.spares = self.spares = spares
         self._follow_size()
         self.session.view.fit(model)
         self._full_screen = False
@@ -77,11 +95,21 @@ class App:
             self.frame(now - before)
             before = now
             clock.tick(FRAME_RATE)
+        if self.spares is not None:
+            self.spares.close(self.session.desks)
         pygame.display.quit()
+
+    def welcome(self) -> None:
+        """Begin with a choice of models."""
+        load = self.session.scenes["load"]
+        assert isinstance(load, Load)
+        load.welcome = True
+        self.session.act("load")
 
     def frame(self, elapsed: float) -> None:
         """One frame: input, steps and picture."""
         self._follow_size()
+        self._follow_title()
         self.session.frame(elapsed)
         if self.render.drawn:
             self.window.flip()
@@ -95,6 +123,22 @@ class App:
         if viewport != view.camera.viewport:
             view.camera.viewport = viewport
             view.pixel_ratio = surface.get_width() / max(self.window.size[0], 1)
+
+    def _follow_title(self) -> None:
+        """Let the window's title name the model, with a dot while it has unsaved work."""
+        session = self.session
+        name = session.file.name or ("Untitled" if session.desk.unsaved else "")
+        title = f"{'• ' if session.desk.unsaved else ''}{name} – Pinjoint" if name else "Pinjoint"
+        if title != self.window.title:
+            self.window.title = title
+
+    def copied(self) -> str:
+        """The text on the system's clipboard."""
+        return pygame.scrap.get_text() if pygame.scrap.has_text() else ""
+
+    def copy(self, text: str) -> None:
+        """Put a text on the system's clipboard."""
+        pygame.scrap.put_text(text)
 
     def toggle_full_screen(self) -> None:
         """Fill the screen, or stop doing so."""

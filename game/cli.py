@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import json
+import math
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,8 +13,9 @@ from typing import NoReturn
 from components.field import FieldError
 from components.settings import INTEGRATORS
 from game import __version__, bench, models, script
+from game.desk import ModelFile, file_of
 from game.overrides import OverrideError, apply_override
-from game.report import FOUND, run_at, run_until_rest
+from game.report import FOUND, run_at, run_static, run_until_rest
 from game.results import as_csv, as_json, as_table
 from game.session import DEFAULT_LIMIT, Session
 
@@ -59,7 +62,7 @@ def _open(words: Sequence[str]) -> int:
     parser = Parser(
         prog="pinjoint",
         description="A laboratory for particles and pin-jointed structures.",
-        epilog="commands: run, render, play, bench (each with --help). Bundled models: "
+        epilog="commands: run, render, force-method, play, bench (each with --help). Bundled models: "
         + ", ".join(models.bundled()),
     )
     parser.add_argument("model", nargs="?", help="a model file, or the name of a bundled model")
@@ -67,13 +70,13 @@ def _open(words: Sequence[str]) -> int:
     parser.add_argument("--version", action="version", version=f"pinjoint {__version__}")
     options = parser.parse_args(words)
     source = options.model or script.EMPTY
-    model = models.load(source)
+    model, file = models.load(source), file_of(source)
     try:
         from game.app import NoDisplay, open_window
     except ImportError as error:
         raise Refusal(f"The window needs pygame-ce, which cannot be imported: {error}.", NO_DISPLAY) from None
     try:
-        open_window(model, options.model or "", record=(options.record, source))
+        open_window(model, file, record=(options.record, source))
     except OSError as error:
         raise Refusal(
             f"{options.record} cannot be written: {error.strerror}. Choose another --record."
@@ -95,7 +98,11 @@ def _run(words: Sequence[str]) -> int:
     _add_model(parser)
     how = parser.add_mutually_exclusive_group()
     how.add_argument("--until-rest", action="store_true", help="run until nothing moves (the default)")
+    how.add_argument(
+        "--static", action="store_true", help="equilibrium by settling, not by running through time"
+    )
     how.add_argument("--at", metavar="T1,T2,…", help="report the state at exactly these times (s)")
+    parser.add_argument("--load-factors", metavar="F1,F2,…", help="with --static: settle at each in turn")
     parser.add_argument(
         "--limit",
         type=_positive,
@@ -107,7 +114,11 @@ def _run(words: Sequence[str]) -> int:
     parser.add_argument("--output", metavar="FILE", help="write to a file instead of standard output")
     options = parser.parse_args(words)
     session = _session(options)
-    if options.at is not None:
+    if options.load_factors is not None and not options.static:
+        raise Refusal("--load-factors goes with --static; add it.")
+    if options.static:
+        run = run_static(session, options.model, _numbers("--load-factors", options.load_factors or "1"))
+    elif options.at is not None:
         run = run_at(session, options.model, _times(options.at))
     else:
         run = run_until_rest(session, options.model, options.limit)
@@ -149,12 +160,19 @@ def _positive(text: str) -> float:
     return value
 
 
-def _times(text: str) -> list[float]:
+def _numbers(option: str, text: str) -> list[float]:
     try:
-        times = [float(part) for part in text.split(",")]
+        numbers = [float(part) for part in text.split(",")]
     except ValueError:
-        raise Refusal(f"--at {text}: write times in seconds separated by commas, such as 0.1,0.5.") from None
-    if any(not 0.0 <= time < float("inf") for time in times) or times != sorted(times):
+        raise Refusal(f"{option} {text}: write numbers separated by commas, such as 0.1,0.5.") from None
+    if not all(map(math.isfinite, numbers)):
+        raise Refusal(f"{option} {text}: write finite numbers.")
+    return numbers
+
+
+def _times(text: str) -> list[float]:
+    times = _numbers("--at", text)
+    if times[0] < 0.0 or times != sorted(times):
         raise Refusal(f"--at {text}: times must be at least 0 s and ascending.")
     return times
 
@@ -167,6 +185,34 @@ def _write(text: str, output: str | None) -> None:
         Path(output).write_text(text, encoding="utf-8")
     except OSError as error:
         raise Refusal(f"{output} cannot be written: {error.strerror}. Choose another --output.") from None
+
+
+# --- force method ------------------------------------------------------------------------------------------
+
+
+def _force_method(words: Sequence[str]) -> int:
+    parser = Parser(prog="pinjoint force-method", description="Hyperstatic forces by the force method.")
+    parser.add_argument("model", help="a model file, or the name of a bundled model")
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument("--release", metavar="AC", help="a rod, or a constraint such as A.y")
+    which.add_argument("--all", action="store_true", help="release unknowns until the structure is isostatic")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="PATH=VALUE", help="change the model first"
+    )
+    parser.add_argument("--output", metavar="FILE", help="write to a file instead of standard output")
+    options = parser.parse_args(words)
+    model = models.load(options.model)
+    for override in options.set:
+        apply_override(model, override)
+    from game.force_method_report import force_method
+    from systems.statics.force_method import ForceMethodError
+
+    try:
+        found = force_method(model, None if options.all else options.release)
+    except ForceMethodError as error:
+        raise Refusal(str(error)) from None
+    _write(json.dumps(found, indent=2, ensure_ascii=False) + "\n", options.output)
+    return ANSWERED
 
 
 # --- scripted sessions -------------------------------------------------------------------------------------
@@ -195,7 +241,7 @@ def _shown(loaded: script.Script) -> Session:
     from game.app import App, NoDisplay
 
     try:
-        app = App(loaded.open().model, loaded.path.stem)
+        app = App(loaded.open().model, ModelFile(None, loaded.path.stem))
     except NoDisplay as error:
         raise Refusal(f"No window can be opened: {error}. Leave --window out.", NO_DISPLAY) from None
     app.session.on_press = lambda key, pixel: app.frame(1.0 / 60.0)
@@ -268,4 +314,11 @@ def _bench(words: Sequence[str]) -> int:
     return ANSWERED
 
 
-_COMMANDS = {"open": _open, "run": _run, "render": _render, "bench": _bench, "play": _play}
+_COMMANDS = {
+    "open": _open,
+    "run": _run,
+    "render": _render,
+    "bench": _bench,
+    "play": _play,
+    "force-method": _force_method,
+}

@@ -2,64 +2,119 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 
-from components.commands import Command
+from components.commands import Assign, Command, Group
 from components.model import Model
-from components.snapshot import Snapshot
+from game.moment import Moment
+from game.simulation import Simulation
 
 
 @dataclass(frozen=True)
 class Edit:
-    """One step that a person took; applying `inverse` takes it back."""
+    """One step that a person took; applying `inverse` takes it back.
+
+    clock: the clock to return to then. key: edits in a row with the same key are one entry.
+    """
 
     inverse: Command
+    clock: Moment
+    key: Hashable | None = None
 
 
 @dataclass(frozen=True)
 class Run:
-    """Time that passed; restoring `state` takes it back (or, in the redo log, repeats it)."""
+    """Time that passed; returning to `before` takes it back (or, in the redo log, repeats it).
 
-    state: Snapshot
+    single: it was stepped through one by one; such runs in a row are one entry.
+    """
+
+    before: Moment
+    single: bool = False
 
 
 Entry = Edit | Run
 
 
 class History:
-    """The log of one model, from when it was opened. `on_restore` is called after a state came back."""
+    """The log of one model, from when it was opened. `on_edit` is called after every entry but runs."""
 
-    def __init__(self, model: Model, on_restore: Callable[[], None]) -> None:
+    def __init__(self, model: Model, simulation: Simulation, on_edit: Callable[[], None]) -> None:
         self._model = model
-        self._on_restore = on_restore
+        self._simulation = simulation
+        self._on_edit = on_edit
         self._done: list[Entry] = []
         self._undone: list[Entry] = []
-        self._run: tuple[Snapshot, int] | None = None
+        self._run: Run | None = None
+        self._key: Hashable | None = None
+        self._clock: Moment | None = None  # before the command that is being executed
+        model.before_change = self._before_change
         model.on_command = self._record
 
-    def _record(self, inverse: Command) -> None:
-        running = self._run is not None
-        self.end_run()
-        self._done.append(Edit(inverse))
-        self._undone.clear()
-        if running:
-            self.begin_run()
+    # --- edits ---------------------------------------------------------------------------------------
 
-    def begin_run(self) -> None:
-        """Time begins to pass."""
+    def _before_change(self) -> None:
+        # A transaction consists of several changes, of which only the first finds all edits accounted for.
+        if self._clock is None or self._simulation.armed:
+            self._clock = self._simulation.moment("clock")
+        self._simulation.before_change()
+
+    def _record(self, inverse: Command) -> None:
+        assert self._clock is not None
+        edit, self._clock = Edit(inverse, self._clock, self._key), None
+        run = self._run
+        self.end_run()
+        if self._key is not None and self._done and _key_of(self._done[-1]) == self._key:
+            edit = merged(self._done.pop(), edit)
+        self._add(edit)
+        self._on_edit()
+        if run is not None:
+            self.begin_run(single=run.single)
+
+    def _add(self, entry: Entry) -> None:
+        self._done.append(entry)
+        self._undone.clear()
+
+    @contextmanager
+    def as_one(self, key: Hashable) -> Iterator[None]:
+        """What is edited inside is one entry together with the edits before it that had the same key."""
+        outer, self._key = self._key, key
+        try:
+            yield
+        finally:
+            self._key = outer
+
+    def retract(self, key: Hashable) -> None:
+        """Take back the last entry, if it has this key, as if it had never been."""
+        if self._done and _key_of(self._done[-1]) == key:
+            self.undo()
+            self._undone.pop()
+
+    # --- runs ----------------------------------------------------------------------------------------
+
+    def begin_run(self, *, single: bool = False) -> Moment:
+        """Time begins to pass; returns the moment at which it did."""
         if self._run is None:
-            self._run = (Snapshot.take(self._model), self._model.clock.steps)
+            self._run = Run(self._simulation.moment(), single)
+        return self._run.before
 
     def end_run(self) -> None:
         """Time stops; what passed since begin_run is one entry, if anything did."""
-        if self._run is None:
+        run, self._run = self._run, None
+        if run is None:
             return
-        before, steps = self._run
-        self._run = None
-        if self._model.clock.steps != steps:
-            self._done.append(Run(before))
-            self._undone.clear()
+        if self._model.clock.steps != run.before.steps:
+            last = self._done[-1] if self._done else None
+            if run.single and isinstance(last, Run) and last.single:
+                run = replace(run, before=last.before)
+                self._done.pop()
+            self._add(run)
+        elif self._simulation.armed != run.before.armed:
+            self._simulation.resume(run.before)  # it only got ready to run
+
+    # --- going through the log -------------------------------------------------------------------------
 
     @property
     def can_undo(self) -> bool:
@@ -71,23 +126,58 @@ class History:
         """True if there is something to repeat."""
         return bool(self._undone)
 
-    def undo(self) -> bool:
-        """Take the last entry back; False if there is none."""
+    def undo(self) -> str:
+        """Take the last entry back; returns what it was, "" if there is none."""
         self.end_run()
         return self._move(self._done, self._undone)
 
-    def redo(self) -> bool:
-        """Repeat the entry last taken back; False if there is none."""
+    def redo(self) -> str:
+        """Repeat the entry last taken back; returns what it was, "" if there is none."""
+        self.end_run()
         return self._move(self._undone, self._done)
 
-    def _move(self, source: list[Entry], target: list[Entry]) -> bool:
+    def _move(self, source: list[Entry], target: list[Entry]) -> str:
         if not source:
-            return False
-        match source.pop():
-            case Edit(inverse):
-                target.append(Edit(self._model.apply(inverse)))
-            case Run(state):
-                target.append(Run(Snapshot.take(self._model)))
-                state.restore(self._model)
-                self._on_restore()
-        return True
+            return ""
+        entry = source.pop()
+        if isinstance(entry, Run):
+            target.append(replace(entry, before=self._simulation.moment()))
+            self._simulation.resume(entry.before)
+            title = "run"
+        else:
+            now = self._simulation.moment("clock")
+            target.append(Edit(self._model.apply(entry.inverse), now, entry.key))
+            self._simulation.resume(entry.clock)
+            title = _title(entry.inverse)
+        self._clock = None
+        self._on_edit()
+        return title
+
+
+def _key_of(entry: Entry) -> Hashable | None:
+    return entry.key if isinstance(entry, Edit) else None
+
+
+def _title(command: Command) -> str:
+    return (command.title if isinstance(command, Group) else "") or "edit"
+
+
+def merged(earlier: Entry, later: Edit) -> Edit:
+    """One edit whose inverse takes back both; of values assigned twice only the first are kept."""
+    assert isinstance(earlier, Edit)
+    old, new = _parts(earlier.inverse), _parts(later.inverse)
+    if all(isinstance(command, Assign) for command in (*old, *new)):
+        known = {_target(command) for command in old}
+        new = tuple(command for command in new if _target(command) not in known)
+    return replace(earlier, inverse=Group((*new, *old), _title(earlier.inverse)))
+
+
+def _parts(command: Command) -> tuple[Command, ...]:
+    if isinstance(command, Group):
+        return tuple(part for inner in command.commands for part in _parts(inner))
+    return (command,)
+
+
+def _target(command: Command) -> tuple[object, ...]:
+    assert isinstance(command, Assign)
+    return command.table, command.field, command.entities

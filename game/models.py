@@ -19,7 +19,7 @@ import msgspec
 from components.model import Model
 from game.document import ModelError, document, parse
 
-__all__ = ["ModelError", "bundled", "document", "laid_out", "load", "parse", "save"]
+__all__ = ["ModelError", "bundled", "document", "laid_out", "load", "parse", "replace", "save"]
 
 
 def bundled() -> list[str]:
@@ -130,7 +130,7 @@ def save(model: Model, path: str | Path) -> None:
     """Write a model to a file, one element a line, as a whole or not at all. Raises ModelError."""
     content = document(model)
     try:
-        _replace(Path(os.path.realpath(path)), laid_out(content, depth=2).encode() + b"\n")
+        replace(Path(os.path.realpath(path)), laid_out(content, depth=2).encode() + b"\n")
     except (OSError, ValueError) as error:
         raise ModelError(
             f"{path} was not saved: {_reason(error)}. What it held is unchanged; choose another folder"
@@ -138,7 +138,7 @@ def save(model: Model, path: str | Path) -> None:
         ) from None
 
 
-def _replace(path: Path, content: bytes) -> None:
+def replace(path: Path, content: bytes) -> None:
     """Give a file new content; at every moment it has either the old or the new one."""
     temporary = path.with_name(f".{uuid.uuid4().hex}.tmp")
     try:

@@ -89,7 +89,7 @@ class Program:
         clock = self.model.clock
         fresh = self._state_revision == self.model.newest(Role.STATE)
         total, first = clock.steps, clock.steps - clock.origin_steps
-        account = np.array([getattr(clock, name) for name in _ACCOUNT])
+        account = self._accounts()
         taken, reason = self._call(
             "advance",
             steps,
@@ -113,6 +113,12 @@ class Program:
             self.model.writable("clock.time")[0] = clock.origin + (first + taken) * clock.step_size
         self._state_revision = self.model.newest(Role.STATE)
         return taken, StopReason(reason)
+
+    def commit(self) -> None:
+        """Let history take note of a state that no step has led to, outside the energy account."""
+        if self._writer.commits:
+            clock = self.model.clock
+            self._call("commit", clock.time, clock.step_size, *self._state(), np.zeros(len(_ACCOUNT)))
 
     def observe(self) -> None:
         """Bring the derived columns of rods and particles, and the measures, up to date."""
@@ -150,6 +156,14 @@ class Program:
             axial_force <= -rods.compression_limit * (1.0 - _AT_STRENGTH)
         )
         model.writable("rods.yielding")[...] = at_limit & model.settings.plasticity
+
+    def conserved_energy(self) -> float:
+        """What the integrator conserves, less the work done so far (J), in the state last observed."""
+        clock, dt = self.model.clock, self.model.clock.step_size
+        return float(self._module.conserved(self.measures, self._accounts(), dt, self._module.SHADOW))
+
+    def _accounts(self) -> Column:
+        return np.array([getattr(self.model.clock, name) for name in _ACCOUNT])
 
     def _state(self) -> tuple[Column, ...]:
         displacement = self.model.writable("particles.displacement")

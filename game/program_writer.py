@@ -45,9 +45,10 @@ class Writer:
         self.particle_rates = [b for b in of_particles if "particles_velocity" in b.parameters]
         self.loads = [b for b in laws if b.each == "loads"]
         self.driver = bind(driver, model)
-        self.kernels = {b.call: b.function for b in bound} | {"judge": _judge()}
+        self.kernels = {b.call: b.function for b in bound} | _of_energy()
         self.rates = bool(self.rod_rates or self.particle_rates)
-        self.powers = self.rates or bool(self.particle_laws)
+        self.working = [b for b in of_rods if b in self.rod_laws and not (b.system.elastic or b.replaces)]
+        self.powers = self.rates or bool(self.particle_laws or self.working)
         self.columns = self._columns()
 
     def _columns(self) -> list[str]:
@@ -94,6 +95,7 @@ class Writer:
             self._observe(),
             self._pasted(self.driver.function, "integrate", "compiled"),
             self._pasted(advance, "advance", "entry"),
+            *([self._commit()] if self.commits else []),
         ]
         return "\n\n".join(parts) + "\n"
 
@@ -196,9 +198,9 @@ class Writer:
             "elongation = stretch + (original - rods_rest_length[r])",
         ]
 
-    def _axial_force(self) -> list[str]:
+    def _axial_force(self, *, without: Sequence[Bound] = ()) -> list[str]:
         lines = ["axial_force = 0.0"]
-        for b in self.rod_laws:
+        for b in (b for b in self.rod_laws if b not in without):
             lines.append(f"axial_force {'=' if b.replaces else '+='} {self._apply(b, 'r')}")
         return lines
 
@@ -221,7 +223,9 @@ class Writer:
         for b in self.rod_rates:
             lines += [f"part = {self._apply(b, 'r')}", "damping_force += part"]
             if powers:
-                lines.append(f"power_{b.slot} {'-' if b.account == 'work' else '+'}= part * rate")
+                lines.append(_rod_power(b, "part"))
+        if powers:
+            lines += [_rod_power(b, self._apply(b, "r")) for b in self.working]
         return lines + _scatter("resisting", "damping_force")
 
     def _resist(self) -> str:
@@ -237,10 +241,10 @@ class Writer:
             particles += [f"fx, fy = {self._apply(b, 'i')}", _particle_power(b)]
         if particles:
             body += ["for i in range(velocity.shape[0]):", *_indent(1, particles)]
-        if self.rod_rates:
-            needed = {parameter for b in self.rod_rates for parameter in b.parameters}
+        if self.rod_rates or self.working:
+            needed = {parameter for b in (*self.rod_rates, *self.working) for parameter in b.parameters}
             rods = ["nx = direction[r, 0]", "ny = direction[r, 1]"]
-            if needed & {"elongation", "axial_force"}:
+            if self.working or needed & {"elongation", "axial_force"}:
                 rods = [*self._geometry(), *self._axial_force()]
             body += self._rod_loop([*rods, *self._rate_forces(powers=True)])
         body += [f"power[{slot}] = power_{slot}" for slot in range(len(ACCOUNTS))]
@@ -284,7 +288,7 @@ class Writer:
             *self._rod_loop(
                 [
                     *self._geometry(),
-                    *self._axial_force(),
+                    *self._axial_force(without=self.working),
                     "flexibility = rods_rest_length[r] / rods_stiffness[r]",
                     "elastic += axial_force * axial_force * flexibility",
                     "largest = max(largest, abs(axial_force))",
@@ -325,10 +329,21 @@ class Writer:
         )
         return "\n".join(["@entry", head, *_indent(1, body)])
 
+    def _commit(self) -> str:
+        """The commits at a state that no step has led to."""
+        arguments = (
+            f"time, dt, displacement, velocity, force, resisting, direction, account, {self._columns_text()}"
+        )
+        return f"@entry\ndef commit({arguments}):\n    accept({arguments})"
+
     def _pasted(self, function: Callable[..., Any], name: str, decorator: str) -> str:
         """A driver's source with the model's columns in place of *columns."""
         source = textwrap.dedent(inspect.getsource(function)).replace("*columns", self._columns_text())
         return f"@{decorator}\n" + source.replace(f"def {function.__name__}(", f"def {name}(", 1)
+
+
+def _rod_power(b: Bound, force: str) -> str:
+    return f"power_{b.slot} {'-' if b.account == 'work' else '+'}= {force} * rate"
 
 
 def _particle_power(b: Bound) -> str:
@@ -349,7 +364,7 @@ def _indent(levels: int, lines: Iterable[str]) -> list[str]:
     return ["    " * levels + line for line in lines]
 
 
-def _judge() -> Callable[..., Any]:
-    from systems.physics.kernels import judge  # numba is imported when a program is built, not before
+def _of_energy() -> dict[str, Callable[..., Any]]:
+    from systems.physics.kernels import conserved, judge  # imports numba, when a program is built, not before
 
-    return judge
+    return {"conserved": conserved, "judge": judge}

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from components.snapshot import Snapshot
-from game.results import Run, State, state
+from game.results import ENERGIES, Run, State, state
 from game.session import Session
+
+if TYPE_CHECKING:
+    from systems.statics.settle import StaticState
 
 FOUND = ("equilibrium", "at rest", "time reached")  # statuses of a run that found what was asked for
 
@@ -37,6 +44,47 @@ def run_at(session: Session, name: str, times: Sequence[float]) -> Run:
     return _run(session, name, status, states)
 
 
+def run_static(session: Session, name: str, factors: Sequence[float]) -> Run:
+    """Settle at each load factor in turn; the history (yielding) is kept from one to the next."""
+    from systems.statics.settle import settle
+
+    started = time.perf_counter()
+    settlement = settle(session.model, factors)
+    seconds = time.perf_counter() - started
+    events = [
+        {"kind": e.kind, "load_factor": e.load_factor, "message": e.message, "rods": list(e.rods)}
+        for e in settlement.events
+    ]
+    states = [_static_state(session, found) for found in settlement.states]
+    return _run(session, name, settlement.status, states) | {
+        "message": settlement.message,
+        "wall_seconds": seconds,
+        "time_step": None,
+        "integrator": None,
+        "events": events,
+    }
+
+
+def _static_state(session: Session, found: StaticState) -> State:
+    """In statics, work is what the path of equilibria stores and dissipates."""
+    energy = dict.fromkeys(ENERGIES, 0.0) | {
+        "elastic": found.elastic_energy,
+        "dissipated_plastic": found.dissipated_plastic,
+        "work": found.elastic_energy + found.dissipated_plastic,
+    }
+    columns = {
+        "particles.displacement": found.displacement,
+        "particles.velocity": np.zeros_like(found.displacement),
+        "particles.reaction": found.reaction,
+        "rods.axial_force": found.axial_force,
+        "rods.length": found.length,
+        "rods.strain": found.strain,
+        "rods.plastic_strain": found.plastic_strain,
+        "rods.yielding": found.yielding,
+    }
+    return state(session.model, energy, found.load_factor, found.residual, columns)
+
+
 def _run_before(session: Session, target: float) -> str:
     """Take all full steps that end at or before a time; at rest, time passes without steps."""
     session.run(steps=0)
@@ -57,7 +105,7 @@ def _state(session: Session) -> State:
     return state(session.model, session.energy.as_dict(), None, session.simulation.residual)
 
 
-def _run(session: Session, name: str, status: str, states: list[State]) -> Run:
+def _run(session: Session, name: str, status: str, states: list[State]) -> dict[str, Any]:
     clock, simulation = session.model.clock, session.simulation
     return {
         "model": name,

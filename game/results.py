@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from components.field import Field
+from components.field import Column, Field
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
@@ -58,17 +58,19 @@ def state(
     energy: Mapping[str, float],
     load_factor: float | None = None,
     residual: float | None = None,
+    columns: Mapping[str, Column] | None = None,
 ) -> State:
     """The present state of a model as plain data: SI units with kN, vectors as [x, y].
 
     energy: J, with the keys of ENERGIES. load_factor: of statics. residual: what is left of the
-    largest force that is out of balance. `position` is the original one. Raises ResultError.
+    largest force that is out of balance. columns: what is reported in place of the model's own columns,
+    by "table.field". `position` is the original one. Raises ResultError.
     """
     made = {
         "time": model.clock.time,
         "load_factor": load_factor,
-        "particles": _elements(model, "particles"),
-        "rods": _elements(model, "rods"),
+        "particles": _elements(model, "particles", columns or {}),
+        "rods": _elements(model, "rods", columns or {}),
         "energy": {name: energy[name] for name in ENERGIES},
         "residual": residual,
         "collisions": model.clock.collisions,
@@ -78,11 +80,12 @@ def state(
     return made
 
 
-def _elements(model: Model, name: str) -> dict[str, dict[str, Any]]:
+def _elements(model: Model, name: str, given: Mapping[str, Column]) -> dict[str, dict[str, Any]]:
     table = model.tables[name]
     columns = []
     for field in REPORTED[name]:
-        column = table.column(field.name)
+        key = f"{name}.{field.name}"
+        column = given[key] if key in given else table.column(field.name)
         for row in np.argwhere(~np.isfinite(column))[:1, 0].tolist():
             element, value = model.describe(table[row]), field.loaded(column[row])
             raise ResultError(f"{element}: {field.title} is {value}, not finite; report a state before it.")
@@ -150,8 +153,12 @@ def as_table(run: Run) -> str:
     run = _plain(run, "run")
     lines = [f"{run['model']}: {run['status']}"]
     lines += [run["message"]] if run["message"] else []
-    step = f" of {_shown(run['time_step'])} s" if run["time_step"] else ""
-    lines.append(f"time {_shown(run['time'])} s, {run['steps']} steps{step}, integrator {run['integrator']}")
+    if run["integrator"] is None:
+        lines.append("static equilibrium, exact geometry")
+    else:
+        step = f" of {_shown(run['time_step'])} s" if run["time_step"] else ""
+        taken = f"time {_shown(run['time'])} s, {run['steps']} steps{step}"
+        lines.append(f"{taken}, integrator {run['integrator']}")
     lines.append(f"computed in {_shown(run['wall_seconds'])} s, compiled in {_shown(run['compile_seconds'])} s")
     for made in run["states"]:
         lines += ["", *_state_lines(made)]
@@ -160,7 +167,7 @@ def as_table(run: Run) -> str:
 
 def _state_lines(made: State) -> Iterator[str]:
     factor = made["load_factor"]
-    yield f"At time {_shown(made['time'])} s" + ("" if factor is None else f", load factor {_shown(factor)}")
+    yield f"At time {_shown(made['time'])} s" if factor is None else f"At load factor {_shown(factor)}"
     for group in REPORTED:
         if made[group]:
             yield ""

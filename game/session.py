@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
+import numpy as np
+
 from components.environment import Environment
-from components.field import Vector
-from components.load import Load
+from components.field import FieldError, Vector
+from components.load import Load, loads_end
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
@@ -17,19 +19,23 @@ from components.settings import Settings
 from components.snapshot import Snapshot
 from components.table import Table
 from components.tags import Selected
-from components.view import Status, View
+from components.view import Preview, Status, View
 from components.world import Handle
 from game import models
-from game.actions import ACTIONS
+from game.actions import ACTIONS, WHILE_DRAWING
 from game.catalogue import step_systems
 from game.clock import FrameClock
+from game.desk import Desk, ModelFile, file_of
+from game.gestures import TOOL_HINTS, Gesture
 from game.history import History
-from game.scenes import Scenes, all_scenes
+from game.scenes import Scenes, Stage, all_scenes
 from game.schedule import Schedule
 from game.simulation import Energy, Simulation
+from game.timeline import Timeline
 from systems.base import Phase, StopReason, System
-from systems.input.bindings import action_for, help_lines
-from systems.physics.pace import natural_pace
+from systems.edit.pull import Pull
+from systems.edit.refusal import Refusal
+from systems.input.bindings import LIVE, TEXT, action_for, help_lines
 
 COMPILING = "Preparing the step program for this kind of model; a few seconds, only the first time."
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
@@ -56,6 +62,22 @@ class Window(Protocol):
     def screenshot(self) -> str:
         """Save a picture of the window; returns where."""
 
+    def copied(self) -> str:
+        """The text on the system's clipboard."""
+
+    def copy(self, text: str) -> None:
+        """Put a text on the system's clipboard."""
+
+
+class Spares(Protocol):
+    """Where a window keeps unsaved work against a crash."""
+
+    def left(self) -> list[Path]:
+        """What a crash left behind."""
+
+    def take_over(self, path: Path, desk: Desk) -> None:
+        """What was left behind is unsaved work of this desk from now on."""
+
 
 class Session:
     """A model with its run, its scenes and its undo log.
@@ -67,31 +89,104 @@ class Session:
     -28.3428
     """
 
-    def __init__(self, model: Model, systems: Iterable[System] = (), view: View | None = None) -> None:
-        self.model = model
-        self.schedule = Schedule([*step_systems(), *systems])
-        self.simulation = Simulation(model, self.schedule)
-        self.history = History(model, self.simulation.forget)
+    def __init__(
+        self,
+        model: Model,
+        systems: Iterable[System] = (),
+        view: View | None = None,
+        file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
+    ) -> None:
+        self.pull = Pull()
+        self.schedule = Schedule([*step_systems(), self.pull, *systems])
+        self.desks = [Desk(model, self.schedule, self.pull, file)]
+        self._at = 0  # the desk in use; undo goes back to those before it
         self.scenes = Scenes(all_scenes())
-        self.clock = FrameClock()
         self.view = view or View()
         self.view.fit(model)
+        self.gesture: Gesture | None = None
+        self._clipboard = ""
         self.notice = ""
         self.window: Window | None = None
         self.on_press: Callable[[str, Vector | None], None] | None = None  # a recorder listens here
-        self._beginning: Snapshot | None = None
-        self._pace_revision = -1
+        self.spares: Spares | None = None  # unsaved work is kept in them, in a window
+        self._keyed = ""  # the scene in which a key was pressed last
 
     @classmethod
     def open(cls, source: str | Path | Mapping[str, Any], systems: Iterable[System] = ()) -> Session:
         """Open a model file, a bundled model by name, or a document. Raises ModelError."""
-        return cls(models.load(source), systems)
+        return cls(models.load(source), systems, file=file_of(source))
+
+    # --- files -------------------------------------------------------------------------------------
+
+    @property
+    def desk(self) -> Desk:
+        """The model that is open, with its run, its log and its file."""
+        return self.desks[self._at]
+
+    @property
+    def file(self) -> ModelFile:
+        """Where the model is saved again, and its name."""
+        return self.desk.file
 
     def save(self, path: str | Path) -> None:
         """Write the model, with its present state, to a file."""
         models.save(self.model, Path(path))
 
+    def save_as(self, path: Path) -> None:
+        """Write the model to a file that is its own from now on. Raises ModelError."""
+        models.save(self.model, path)
+        self.desk.file = ModelFile(path, path.stem)
+        self.desk.saved = self.desk.newest
+        self.notice = f"Saved as '{path.stem}'."
+
+    def open_here(self, source: str | Path | Mapping[str, Any] | None) -> None:
+        """Go on with another model, a new one if None; undo goes back to this one. Raises ModelError."""
+        if source is None:
+            self.adopt(Model())
+        else:
+            self.adopt(models.load(source), file_of(source))
+
+    def adopt(self, model: Model, file: ModelFile = ModelFile()) -> None:  # noqa: B008
+        """Go on with another model. One with unsaved work stays on its desk; undo goes back to it."""
+        self._leave_desk()
+        if not self.desk.unsaved:
+            del self.desks[self._at]
+        self.desks.append(Desk(model, self.schedule, self.pull, file))
+        self._sit_at(len(self.desks) - 1)
+
+    def _leave_desk(self) -> None:
+        self.leave_gesture()
+        if self.pull.hand is not None:
+            self.timeline.hold(None)
+        self.history.end_run()
+
+    def _sit_at(self, desk: int) -> None:
+        self._at = desk
+        self.view.fit(self.model)
+        if self.scene == "simulation":
+            self.history.begin_run()
+
     # --- the model ---------------------------------------------------------------------------------
+
+    @property
+    def model(self) -> Model:
+        """The model that is open."""
+        return self.desk.model
+
+    @property
+    def simulation(self) -> Simulation:
+        """Its run."""
+        return self.desk.simulation
+
+    @property
+    def timeline(self) -> Timeline:
+        """The moments of its run to go back to."""
+        return self.desk.timeline
+
+    @property
+    def history(self) -> History:
+        """Its undo log."""
+        return self.desk.history
 
     @property
     def particles(self) -> Table[Particle]:
@@ -124,6 +219,11 @@ class Session:
         return self.model.clock.time
 
     @property
+    def clock(self) -> FrameClock:
+        """How fast time passes in the window."""
+        return self.desk.live.clock
+
+    @property
     def energy(self) -> Energy:
         """The energy account of the run."""
         return self.simulation.energy
@@ -153,6 +253,7 @@ class Session:
             raise ValueError("Time only runs forward; undo or restart goes back.")
         self._note_beginning()
         self.history.begin_run()
+        self.timeline.begin()
         reached = "time reached"
         if until is not None:
             reached = "limit reached"
@@ -161,40 +262,103 @@ class Session:
             self.simulation.run_to(self.time + time)
         elif steps is not None:
             self.simulation.advance(steps)
+        if self.simulation.reason is not StopReason.REST and steps is None:
+            self.timeline.clear()  # the last step was a short one, which stepping back does not take again
         if self.scene != "simulation":
             self.history.end_run()
         ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
         return ended.get(self.simulation.reason, reached)
 
+    def settle(self, factors: Sequence[float] = (1.0,)) -> str:
+        """Go to the static equilibrium at each load factor in turn, without letting time pass.
+
+        Can be undone. Returns "equilibrium", or "mechanism", "collapse" or "limit reached" with the last
+        good state; `message` says more. Time moves on to the end of the last load history.
+        """
+        from systems.statics.settle import settle
+
+        found = settle(self.model, factors)
+        with self.model.transaction("settle"):
+            self.model.give("particles.displacement", found.final.displacement)
+            self.model.give("particles.velocity", np.zeros_like(found.final.displacement))
+            self.model.give("rods.plastic_strain", found.final.plastic_strain)
+            time = max(self.time, loads_end(self.model))
+            self.model.give("clock.time", np.array([time]))
+            self.model.give("clock.origin", np.array([time]))
+            self.model.give("clock.origin_steps", np.array([self.model.clock.steps]))
+        self.notice = found.message or f"Settled: {found.status}."
+        return found.status
+
     def restart(self) -> None:
         """Go back to the beginning of time, keeping all edits. Can be undone."""
-        if self._beginning is None:
+        if self.desk.beginning is None or self._at_beginning:
             return
+        self.history.end_run()
         self.history.begin_run()
-        self._beginning.restore(self.model)
-        self.simulation.forget()
+        self.desk.beginning.restore(self.model)
+        self.simulation.start_anew()
+        self.timeline.clear()
         self.history.end_run()
         if self.scene == "simulation":
             self.history.begin_run()
 
+    def step(self, steps: int = 1) -> bool:
+        """Go by so many fixed steps, back if negative; False if one cannot go back that far (or is at rest).
+
+        Going back stops where something was edited: undo takes that back.
+        """
+        target = self.model.clock.steps + steps
+        self._note_beginning()
+        self.history.end_run()
+        self.history.begin_run(single=True)
+        if steps >= 0:
+            with self.timeline.recording():
+                self.simulation.advance(steps)
+        else:
+            self.timeline.go_to(max(target, self.timeline.first))
+        self.history.end_run()
+        if self.scene == "simulation":
+            self.history.begin_run()
+        return bool(self.model.clock.steps == target)
+
+    @property
+    def pace(self) -> float:
+        """Simulated seconds per second shown that suit the model, whatever a person chose."""
+        return self.desk.live.find_pace()
+
     def _note_beginning(self) -> None:
-        if self._beginning is None or self.model.clock.steps == 0:
-            self._beginning = Snapshot.take(self.model)
+        if self._at_beginning:
+            self.desk.beginning = Snapshot.take(self.model)
+
+    @property
+    def _at_beginning(self) -> bool:
+        beginning = self.desk.beginning
+        return beginning is None or self.model.clock.steps == beginning.columns["clock.steps"][0]
 
     # --- editing -----------------------------------------------------------------------------------
 
-    def undo(self) -> bool:
-        """Take back the last edit or run; False if there is none."""
+    def undo(self) -> str:
+        """Take back the last edit or run, or the opening of the model; returns what it was, or ""."""
+        if not self.history.can_undo and self._at > 0:
+            return self._go_to_desk(self._at - 1)
         return self._through_log(self.history.undo())
 
-    def redo(self) -> bool:
-        """Repeat what was taken back; False if there is nothing."""
+    def redo(self) -> str:
+        """Repeat what was taken back; returns what it was, "" if there is nothing."""
+        if not self.history.can_redo and self._at + 1 < len(self.desks):
+            return self._go_to_desk(self._at + 1)
         return self._through_log(self.history.redo())
 
-    def _through_log(self, moved: bool) -> bool:
+    def _go_to_desk(self, desk: int) -> str:
+        opened = self.desks[max(desk, self._at)].file.name or "a new model"
+        self._leave_desk()
+        self._sit_at(desk)
+        return f"opening {opened}"
+
+    def _through_log(self, title: str) -> str:
         if self.scene == "simulation":
             self.history.begin_run()
-        return moved
+        return title
 
     @property
     def selected(self) -> list[Handle]:
@@ -203,11 +367,28 @@ class Session:
 
     def select(self, *handles: Handle) -> None:
         """Select exactly these elements; none: deselect."""
+        chosen = set(handles)
         for handle in self.selected:
-            if handle not in handles:
+            if handle not in chosen:
                 self.model.untag(handle, Selected)
         for handle in handles:
             self.model.tag(handle, Selected)
+
+    def name(self, handle: Handle) -> str:
+        """An element as a sentence begins with it, such as "Rod AB"."""
+        described = self.model.describe(handle)
+        return described[:1].upper() + described[1:]
+
+    @property
+    def clipboard(self) -> str:
+        """What was copied, here or, with a window, in any program."""
+        return self.window.copied() if self.window is not None else self._clipboard
+
+    @clipboard.setter
+    def clipboard(self, text: str) -> None:
+        self._clipboard = text
+        if self.window is not None:
+            self.window.copy(text)
 
     # --- scenes and actions --------------------------------------------------------------------------
 
@@ -217,25 +398,84 @@ class Session:
         return self.scenes.active.name
 
     def act(self, name: str, pixel: Vector | None = None) -> None:
-        """Perform a named action with the pointer at a pixel (default: the middle of the view)."""
+        """Perform a named action with the pointer at a pixel; what it refuses is said in `notice`."""
         if name not in ACTIONS:
             raise ValueError(self.model.missing("actions", name, ACTIONS))
-        ACTIONS[name](self, pixel if pixel is not None else self.view.camera.middle)
+        if name not in WHILE_DRAWING:
+            self.leave_gesture()
+        try:
+            ACTIONS[name](self, pixel if pixel is not None else self.pointer)
+        except (Refusal, FieldError) as error:
+            self.notice = str(error)
         self.scenes.apply(self)
+
+    def leave_gesture(self) -> None:
+        """End what is being drawn or dragged, because something else begins."""
+        gesture, self.gesture = self.gesture, None
+        if gesture is not None:
+            gesture.leave(self)
+
+    @property
+    def pointer(self) -> Vector:
+        """The pixel where the pointer is; the middle of the view if it is outside."""
+        return self.view.pointer or self.view.camera.middle
 
     def press(self, key: str, pixel: Vector | None = None) -> None:
         """Press a key, such as "k", "escape" or "ctrl+z"; one that means nothing in this scene does nothing."""
+        if key.startswith(TEXT):
+            self.type(key.removeprefix(TEXT))
+            return
         name = action_for(self.scene, key)
         if name is not None:
+            pixel = pixel if pixel is not None else self.pointer
             if self.on_press is not None:
                 self.on_press(key, pixel)
             self.notice = ""
             self.act(name, pixel)
 
+    def type(self, text: str) -> None:
+        """Type text into the selected box of properties, save and load."""
+        if self.on_press is not None:
+            self.on_press(TEXT + text, None)
+        self.scenes.active.type(self, text)
+        self.scenes.apply(self)
+
+    def click_box(self, title: str) -> None:
+        """Select the box with that title. Raises LookupError if there is none."""
+        self.scenes.active.click_box(self, title)
+
+    @property
+    def boxes(self) -> dict[str, str]:
+        """What the boxes of this scene contain, by their titles."""
+        return self.scenes.active.boxes
+
+    def point(self, x: float, y: float) -> Vector:
+        """Move the pointer to a point of the model (m); returns its pixel."""
+        x, y = self.focus[1].camera.to_pixels((x, y)).tolist()
+        self.focus[1].pointer = x, y
+        return x, y
+
     def click(self, x: float, y: float, button: str = "click") -> None:
         """Click at a point of the model (m); `button` may be "ctrl+click"."""
-        pixel = self.view.camera.to_pixels((x, y))
-        self.press(button, (float(pixel[0]), float(pixel[1])))
+        self.press(button, self.point(x, y))
+
+    def drag(self, start: Vector, end: Vector, button: str = "click") -> None:
+        """Drag from one point of the model (m) to another; `button` may be "ctrl+click"."""
+        self.grab(*start, button)
+        self.drag_to(*end)
+        self.drop()
+
+    def grab(self, x: float, y: float, button: str = "click") -> None:
+        """Begin to drag at a point of the model (m); time may pass until `drop`."""
+        self.press(button.replace("click", "drag"), self.point(x, y))
+
+    def drag_to(self, x: float, y: float) -> None:
+        """Drag what is held to a point of the model (m)."""
+        self.press("drag to", self.point(x, y))
+
+    def drop(self) -> None:
+        """Let go of what is held."""
+        self.press("drop")
 
     # --- frames --------------------------------------------------------------------------------------
 
@@ -244,11 +484,14 @@ class Session:
         frame = Frame(self, elapsed)
         self._phase(Phase.INPUT, frame)
         for key, pixel in frame.pressed:
+            if not key.startswith(TEXT):
+                self._keyed = self.scene
+            elif self._keyed != self.scene:  # the key that led here; it is not meant for a box
+                continue
             self.press(key, pixel)
         self.scenes.apply(self)
         self._phase(Phase.EDIT, frame)
-        if self.scenes.active.runs:
-            self._steps(elapsed)
+        self.scenes.active.advance(self, elapsed)
         self._phase(Phase.EVENTS, frame)
         self.update_view()
         self._phase(Phase.RENDER, frame)
@@ -257,16 +500,13 @@ class Session:
     def _phase(self, phase: Phase, frame: Frame) -> None:
         self.schedule.run(phase, self.scene, self.model, frame)
 
-    def _steps(self, elapsed: float) -> None:
+    def advance(self, elapsed: float) -> None:
+        """Let the time of one frame pass in the model."""
         self._note_beginning()
         if self.simulation.halted or self._announce_compiling():
             return
-        self.simulation.advance(0)
-        self._find_pace()
-        due = self.clock.steps(elapsed, self.model.clock.step_size)
-        before = self.simulation.compute_seconds
-        taken = self.simulation.advance(due)
-        self.clock.took(taken, self.simulation.compute_seconds - before)
+        with self.timeline.recording():
+            self.desk.live.frame(elapsed)
 
     def _announce_compiling(self) -> bool:
         """Let one frame be drawn that says what the person is about to wait for."""
@@ -277,35 +517,47 @@ class Session:
         announced, self.notice = self.notice == COMPILING, COMPILING
         return not announced
 
-    def _find_pace(self) -> None:
-        revision = self.simulation.armed_revision
-        if revision != self._pace_revision:
-            self._pace_revision = revision
-            self.clock.natural = natural_pace(self.model)
+    @property
+    def focus(self) -> tuple[Model, View]:
+        """The model that a pointer picks from, and its view."""
+        return self.scenes.active.focus(self)
 
     @property
-    def stages(self) -> list[tuple[Model, View]]:
+    def stages(self) -> Sequence[Stage]:
         """What the active scene shows: models, each in its view."""
         return self.scenes.active.stages(self)
 
     @property
     def busy(self) -> bool:
         """True while frames change something without a person's doing."""
-        return self.scenes.active.runs and not self.simulation.halted
+        return self.scenes.active.busy(self)
 
     def update_view(self) -> None:
         """Bring what the view says about the run up to date."""
         view, scene = self.view, self.scenes.active
+        view.preview = self._preview()
         view.heading = scene.heading
         view.keys = help_lines(scene.name) if view.help else []
         view.status = Status(
             time=self.time,
             speed=self.clock.shown_pace if self.busy else 0.0,
             state=self._state_word(),
-            hint=scene.hint(self),
+            hint=self._drawing_hint() or scene.hint(self),
             problem=self._problem(),
             notice=self.notice,
         )
+
+    def _preview(self) -> Preview | None:
+        try:
+            return self.gesture.preview(self, self.pointer) if self.gesture is not None else None
+        except Refusal as error:
+            self.gesture, self.notice = None, str(error)
+            return None
+
+    def _drawing_hint(self) -> str:
+        if self.scene not in LIVE:
+            return ""
+        return self.gesture.hint if self.gesture is not None else TOOL_HINTS.get(self.view.tool, "")
 
     def _state_word(self) -> str:
         if self.simulation.halted:

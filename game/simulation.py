@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
 from components.field import Column, Role
@@ -12,11 +13,12 @@ from components.model import Model
 from components.snapshot import Snapshot
 from components.world import Derivation
 from game.catalogue import DRIVERS
+from game.moment import Moment
 from game.program import Program
 from game.program_writer import REVIEW_INTERVAL
 from game.schedule import Schedule
 from systems.base import Driver, StepSystem, StopReason
-from systems.physics.spectrum import spectrum
+from systems.physics.spectrum import Spectrum, spectrum
 
 SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
 ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square
@@ -65,6 +67,7 @@ class Simulation:
     reason: why the last advance ended; message: the same as a sentence, or "".
     warning: what a person should know though the run goes on, or "".
     compute_seconds, compile_seconds: spent so far in steps, and in compiling or loading programs.
+    watch: asked before steps are taken; returns after how many at most it wants to be asked again.
     """
 
     def __init__(self, model: Model, schedule: Schedule) -> None:
@@ -76,6 +79,7 @@ class Simulation:
         self.compute_seconds = 0.0
         self.compile_seconds = 0.0
         self.stable_step = math.inf
+        self.watch: Callable[[], int] | None = None
         self._programs: dict[tuple[str, ...], Program] = {}
         self._program: Program | None = None
         self._armed = False  # the energy account and the step size fit the present document
@@ -83,11 +87,9 @@ class Simulation:
         self._before_edit: Column | None = None
         self._safe: Snapshot | None = None
         self._retries = 0
-        model.before_change = self._before_change
+        model.before_change = self.before_change
         model.derive(Derivation(OBSERVED, self._sources(), lambda world: self.observe()))
-        if self._started:  # a saved run: it goes on with the step size it had
-            self._review_step(edited=False)
-            self._armed = True
+        self.forget()  # a saved run goes on with the step size it had
 
     def _sources(self) -> tuple[str, ...]:
         tables = ("particles", "rods", "loads", "environment", "settings", "clock")
@@ -132,12 +134,45 @@ class Simulation:
         return self._armed_revision
 
     def forget(self) -> None:
-        """The state was replaced (undo, restart): nothing is known about how the run ended."""
+        """The state was replaced (undo, a saved run) by one that fits the document, accounted for."""
+        self._armed = self._started
         self._before_edit = None
         self._safe = None
+        self._retries = 0
         self.reason, self.message = StopReason.DONE, ""
 
-    def _before_change(self) -> None:
+    def start_anew(self) -> None:
+        """The state was replaced by one from before edits: a new run begins with it."""
+        self.model.writable("clock.step_size")[0] = 0.0
+        self.forget()
+
+    def account_for_edits(self) -> None:
+        """If the run was edited, account for it now, so that its state is complete."""
+        if self._started:
+            self._arm()
+
+    @property
+    def armed(self) -> bool:
+        """True if all edits are accounted for and the step size fits the document."""
+        return self._armed
+
+    def moment(self, *tables: str) -> Moment:
+        """The present, to return to: the state of these tables (none given: of all)."""
+        steps = self.model.clock.steps
+        return Moment(Snapshot.take(self.model, *tables), steps, self._armed, self._before_edit)
+
+    def resume(self, moment: Moment) -> None:
+        """Return to a moment in which the document was as it is now."""
+        moment.state.restore(self.model)
+        self.forget()
+        self._armed, self._before_edit = moment.armed, moment.before_edit
+        self._armed_revision = self.model.revision
+
+    def wake(self) -> None:
+        """Something acts on the model from outside: that it was at rest, or diverged, counts no more."""
+        self.reason, self.message = StopReason.DONE, ""
+
+    def before_change(self) -> None:
         """Before anything is edited, note the energy that the edit starts from; the program is void."""
         if self._armed:
             self.observe()
@@ -148,12 +183,14 @@ class Simulation:
     def _arm(self) -> Program:
         """Get ready to run after edits: account for them, choose the step size, note a safe state."""
         if not self._armed:
-            self._account_for_edit()
-            self._review_step(edited=True)
+            self._close_account()
+            self._choose_step(self._find_stable_step())
             self._armed = True
             self._armed_revision = self.model.revision
             self._safe = None
             self.reason, self.message = StopReason.DONE, ""
+        elif self._safe is None:
+            self._find_stable_step()
         if self._safe is None:
             self._safe = Snapshot.take(self.model)
         return self.program
@@ -171,44 +208,74 @@ class Simulation:
             self.compile_seconds += self._programs[key].compile_seconds
         self._program = self._programs[key]
 
-    def _account_for_edit(self) -> None:
-        """What an edit adds to the energy counts as work; the first of a run is the initial energy."""
+    def _account(self) -> tuple[float, float, float]:
+        """(initial energy, work, potential reference) in J, edits since the last step included.
+
+        What an edit adds to the energy counts as work; the energy that a run begins with is its initial one.
+        """
+        clock = self.model.clock
+        kinetic, _, elastic, potential = self.program.measures[:4].tolist()
+        if self._armed:
+            return clock.initial_energy, clock.work, clock.potential_reference
+        if self._before_edit is None:
+            dissipated = clock.dissipated_damping + clock.dissipated_plastic + clock.dissipated_impact
+            return kinetic + elastic + dissipated - clock.work, clock.work, potential
+        kinetic_before, _, elastic_before, potential_before = self._before_edit[:4].tolist()
+        work = potential_before - clock.potential_reference
+        work += kinetic + elastic - kinetic_before - elastic_before
+        return clock.initial_energy, clock.work + work, potential
+
+    def _close_account(self) -> None:
+        """Enter edits into the account; what they left beyond a strength has yielded, at nobody's expense."""
+        self.program.commit()
         self.observe()
-        kinetic, _, elastic, potential = self.program.measures[:4]
-        model, clock = self.model, self.model.clock
-        if not self._started:
-            model.writable("clock.initial_energy")[0] = kinetic + elastic
-        elif self._before_edit is not None:
-            kinetic_before, _, elastic_before, potential_before = self._before_edit[:4]
-            work = potential_before - clock.potential_reference
-            work += kinetic + elastic - kinetic_before - elastic_before
-            model.writable("clock.work")[0] += work
-        model.writable("clock.potential_reference")[0] = potential
+        entries = self._account()
+        for name, value in zip(("initial_energy", "work", "potential_reference"), entries, strict=True):
+            self.model.writable(f"clock.{name}")[0] = value
         self._before_edit = None
 
-    def _review_step(self, *, edited: bool) -> None:
-        """Choose the step size: after an edit anew, in a review only if the stable step changed much."""
-        settings, clock = self.model.settings, self.model.clock
-        present = clock.step_size
-        if settings.time_step is not None and not edited and self._started:
-            return
+    # --- the step size ---------------------------------------------------------------------------
+
+    def _find_stable_step(self) -> Spectrum:
+        """Find out what the present state allows, and warn of a step that a person made too long."""
         found = spectrum(self.model, self.model.rods.axial_force)
         self.stable_step = math.inf
-        if found.frequency > 0.0 or found.damping_ratio > 0.0:
-            self.stable_step = self.driver.stable_step(found.frequency, found.damping_ratio)
+        if found.frequency > 0.0 or found.decay > 0.0:
+            self.stable_step = self.driver.stable_step(found.frequency, found.decay)
+        size = self.model.settings.time_step
         self.warning = ""
-        if settings.time_step is not None:
-            self._take_step_size(settings.time_step)
-            if settings.time_step > self.stable_step:
-                self.warning = (
-                    f"The time step {settings.time_step:.3g} s is above the largest stable one,"
-                    f" {self.stable_step:.3g} s for {self.integrator}; the run will probably diverge."
-                    " Set it to automatic or make it smaller."
-                )
+        if self.stable_step == 0.0 or (size is not None and size > self.stable_step):
+            self.warning = f"{self._remedy(size)} The run will probably diverge."
+        return found
+
+    def _remedy(self, size: float | None) -> str:
+        """What to do about an unstable run."""
+        if self.stable_step == 0.0:
+            return (
+                f"Without damping {self.integrator} is stable at no time step:"
+                f" choose the integrator {DEFAULT_DRIVER}, or give the rods damping."
+            )
+        if size is not None and size > self.stable_step:
+            return (
+                f"The time step {size:.3g} s is above the largest stable one, {self.stable_step:.3g} s for"
+                f" {self.integrator}: set it to automatic or make it smaller."
+            )
+        if self.driver is not DRIVERS[DEFAULT_DRIVER]:
+            return f"Make the time step smaller, or choose the integrator {DEFAULT_DRIVER}."
+        return "Make the time step smaller."
+
+    def _choose_step(self, found: Spectrum) -> None:
+        """Begin with a step size that suits a document."""
+        chosen = self.model.settings.time_step
+        self._begin_step_size(chosen if chosen is not None else self._automatic_step(found.frequency))
+
+    def _review_step(self) -> None:
+        """Change an automatic step size if the stable step changed much."""
+        if self.model.settings.time_step is not None:
             return
-        wanted = self._automatic_step(found.frequency)
-        if edited or not 0.5 * wanted <= present <= min(1.5 * wanted, 0.95 * self.stable_step):
-            self._take_step_size(wanted)
+        wanted = self._automatic_step(self._find_stable_step().frequency)
+        if not 0.5 * wanted <= self.model.clock.step_size <= min(1.5 * wanted, 0.95 * self.stable_step):
+            self._begin_step_size(wanted)
 
     def _automatic_step(self, frequency: float) -> float:
         if self.stable_step == 0.0:
@@ -216,12 +283,14 @@ class Simulation:
         share = ACCURATE if self.model.rods.count <= SMALL else SAFETY
         return _rounded_down(min(share * self.stable_step, FREE_STEP))
 
-    def _take_step_size(self, size: float) -> None:
-        clock = self.model.clock
-        if size != clock.step_size:
-            self.model.writable("clock.origin")[0] = clock.time
-            self.model.writable("clock.origin_steps")[0] = clock.steps
-            self.model.writable("clock.step_size")[0] = size
+    def _begin_step_size(self, size: float) -> None:
+        """From now on steps have this size; the guard against divergence compares with this moment."""
+        model, clock = self.model, self.model.clock
+        model.writable("clock.origin")[0] = clock.time
+        model.writable("clock.origin_steps")[0] = clock.steps
+        model.writable("clock.step_size")[0] = size
+        self.observe()
+        model.writable("clock.guard_energy")[0] = self.program.conserved_energy()
 
     # --- running -----------------------------------------------------------------------------------
 
@@ -236,16 +305,22 @@ class Simulation:
         started = time.perf_counter()
         first = clock.steps
         while clock.steps - first < steps and not self.halted:
-            _, self.reason = program.advance(steps - (clock.steps - first))
-            if self.reason is StopReason.REST:
-                self.message = f"At rest since t = {clock.time:.6g} s."
-            elif self.reason is StopReason.DIVERGED and not self._retry():
-                self._explain_divergence()
-            elif self.reason is StopReason.REVIEW:
-                self._safe, self._retries = Snapshot.take(self.model), 0
-                self._review_step(edited=False)
+            ahead = steps - (clock.steps - first)
+            _, reason = program.advance(ahead if self.watch is None else min(ahead, self.watch()))
+            self._heed(reason)
         self.compute_seconds += time.perf_counter() - started
         return clock.steps - first
+
+    def _heed(self, reason: StopReason) -> None:
+        """Do what a program that returned for this reason asks for."""
+        self.reason = reason
+        if reason is StopReason.REST:
+            self.message = f"At rest since t = {self.model.clock.time:.6g} s."
+        elif reason is StopReason.DIVERGED and not self._retry():
+            self._explain_divergence()
+        elif reason is StopReason.REVIEW:
+            self._safe, self._retries = Snapshot.take(self.model), 0
+            self._review_step()
 
     def _retry(self) -> bool:
         """An automatic step that proved too long (the geometry changed) is halved from the last safe state."""
@@ -254,7 +329,7 @@ class Simulation:
         assert self._safe is not None
         size = self.model.clock.step_size
         self._safe.restore(self.model)
-        self._take_step_size(0.5 * size)
+        self._begin_step_size(0.5 * size)
         self._retries += 1
         self.reason = StopReason.DONE
         return True
@@ -279,12 +354,11 @@ class Simulation:
 
     def _short_step(self, target: float) -> None:
         size, start = self.model.clock.step_size, self.model.clock.time
-        self._take_step_size(target - start)
-        self.advance(1)
-        self._take_step_size(size)
-        if not self.halted:
-            self.model.writable("clock.time")[0] = target
-            self.model.writable("clock.origin")[0] = target
+        self._begin_step_size(target - start)
+        _, reason = self.program.advance(1)
+        self.model.writable("clock.time")[0] = target
+        self._begin_step_size(size)
+        self._heed(reason)
 
     def run_until_rest(self, limit: float) -> bool:
         """Advance until at rest, at most to the time `limit` (s); True if it came to rest."""
@@ -294,8 +368,8 @@ class Simulation:
             left = self.full_steps_to(limit)
             if left == 0:
                 self.run_to(limit)
-            else:
-                self.advance(min(left, REVIEW_INTERVAL))
+                break
+            self.advance(min(left, REVIEW_INTERVAL))
         if not self.halted:
             self.message = self._why_not_at_rest(limit)
         return self.reason is StopReason.REST
@@ -313,16 +387,8 @@ class Simulation:
         failed, size = self.model.clock.time, self.model.clock.step_size
         assert self._safe is not None
         self._safe.restore(self.model)
-        limit = self.stable_step
-        if size > limit:
-            remedy = (
-                f"The time step {size:.3g} s is above the largest stable one, {limit:.3g} s:"
-                " set it to automatic or make it smaller."
-            )
-        else:
-            remedy = "Make the time step smaller, or choose the integrator velocity_verlet."
         self.message = (
-            f"The simulation diverged near t = {failed:.6g} s: energy appeared from nowhere. {remedy}"
+            f"The simulation diverged near t = {failed:.6g} s: energy appeared from nowhere. {self._remedy(size)}"
             f" The last good state, at t = {self.model.clock.time:.6g} s, was kept."
         )
 
@@ -335,14 +401,15 @@ class Simulation:
     @property
     def energy(self) -> Energy:
         """The energy account now."""
-        program, clock = self._arm(), self.model.clock
+        clock = self.model.clock
         self.observe()
-        kinetic, _, elastic, potential = program.measures[:4]
+        kinetic, _, elastic, potential = self.program.measures[:4].tolist()
+        initial, work, reference = self._account()
         return Energy(
-            initial=clock.initial_energy,
-            work=clock.work + potential - clock.potential_reference,
-            kinetic=float(kinetic),
-            elastic=float(elastic),
+            initial=initial,
+            work=work + potential - reference,
+            kinetic=kinetic,
+            elastic=elastic,
             dissipated_damping=clock.dissipated_damping,
             dissipated_plastic=clock.dissipated_plastic,
             dissipated_impact=clock.dissipated_impact,
@@ -350,9 +417,10 @@ class Simulation:
 
     @property
     def residual(self) -> float:
-        """Largest unbalanced force (kN) on a free particle, dampers apart."""
+        """Largest unbalanced force on a free particle over the largest force of all, dampers apart."""
         self.observe()
-        return float(self.program.measures[4])
+        unbalanced, largest = self.program.measures[4:6].tolist()
+        return float(unbalanced / largest) if largest > 0.0 else 0.0
 
 
 def _rounded_down(size: float) -> float:

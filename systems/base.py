@@ -90,19 +90,22 @@ class Law(StepSystem):
     """Forces from a (trial) state; pure.
 
     each = "rods": the kernel maps scalars of one rod to an axial force (kN). Provided are `elongation` (m),
-        `rate` (m/s, of elongation) and `axial_force`. Laws add up in order of name, those without `rate`
-        first. A law that takes `axial_force` is given the sum so far and its result replaces it.
+        `rate` (m/s, of elongation) and `axial_force`. Laws without `rate` add up in order of name. A law
+        that takes `axial_force` is then given the sum and its result replaces it; several, in the order
+        of the schedule. Laws with `rate` add up beside it and may take the result.
     each = "particles": maps one particle's values (vectors as pairs) to a force (x, y).
     each = "loads": `factor(time, values, first)`; `arrays` gives `<name>_on`, `_force`, `_values`, `_first`.
-    account: where the energy goes that the law's force takes from the motion (particles) or dissipates.
+    account: where the energy goes that the law's force takes from the motion.
+    elastic: a law of rods that stores this energy instead, N²L₀/2EA being part of the elastic energy.
     """
 
     each: ClassVar[str] = "rods"
     account: ClassVar[str] = "work"
+    elastic: ClassVar[bool] = False
 
 
 class Commit(StepSystem):
-    """History of one rod, brought up to date once per accepted step.
+    """History of one rod, brought up to date once per accepted step, and before the first after an edit.
 
     The kernel maps scalars of one rod (`elongation` provided) to (the new value of the one column in
     `writes`, the energy dissipated in kN·m).

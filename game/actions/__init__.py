@@ -1,6 +1,34 @@
 """Named actions, by subject: the only way in, for keys, mouse, scripts and mods."""
 
-from game.actions import grids, scenes, selection, time, view
-from game.actions.registry import ACTIONS, Action, action
+from game.actions import (
+    clipboard,
+    drawing,
+    editing,
+    files,
+    force_method,
+    forms,
+    grids,
+    scenes,
+    selection,
+    time,
+    view,
+)
+from game.actions.registry import ACTIONS, WHILE_DRAWING, Action, action
 
-__all__ = ["ACTIONS", "Action", "action", "grids", "scenes", "selection", "time", "view"]
+__all__ = [
+    "ACTIONS",
+    "WHILE_DRAWING",
+    "Action",
+    "action",
+    "clipboard",
+    "drawing",
+    "editing",
+    "files",
+    "force_method",
+    "forms",
+    "grids",
+    "scenes",
+    "selection",
+    "time",
+    "view",
+]

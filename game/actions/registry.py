@@ -13,15 +13,21 @@ if TYPE_CHECKING:
 Action = Callable[["Session", Vector], None]
 
 ACTIONS: dict[str, Action] = {}
+WHILE_DRAWING: set[str] = set()  # names of actions that what is being drawn or dragged survives
 
 
-def action(name: str) -> Callable[[Action], Action]:
-    """Register a function(session, pixel) as a named action; `pixel` is where the pointer is."""
+def action(name: str, *, while_drawing: bool = False) -> Callable[[Action], Action]:
+    """Register a function(session, pixel) as a named action; `pixel` is where the pointer is.
+
+    while_drawing: it goes on with what is being drawn or dragged, or only looks; all others end that first.
+    """
 
     def register(function: Action) -> Action:
         if name in ACTIONS:
             raise ValueError(f"There is an action '{name}' already.")
         ACTIONS[name] = function
+        if while_drawing:
+            WHILE_DRAWING.add(name)
         return function
 
     return register

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from components.field import Vector
-from game.actions.registry import Action, action
+from game.actions.drawing import put_away
+from game.actions.registry import action
 
 if TYPE_CHECKING:
     from game.session import Session
@@ -21,9 +22,14 @@ def _back(session: Session, pixel: Vector) -> None:
     session.scenes.request("pause")
 
 
-@action("escape")
+@action("escape", while_drawing=True)
 def _escape(session: Session, pixel: Vector) -> None:
-    if session.selected:
+    """Leave a drawing, else the tool, else the run or the selection; with nothing to leave, run."""
+    if put_away(session):
+        return
+    if session.scene == "simulation":
+        session.scenes.request("pause")
+    elif session.selected:
         session.select()
     else:
         session.scenes.request("simulation")
@@ -34,9 +40,6 @@ def _toggle_run(session: Session, pixel: Vector) -> None:
     session.scenes.request("pause" if session.scene == "simulation" else "simulation")
 
 
-def _to(scene: str) -> Action:
-    return lambda session, pixel: session.scenes.request(scene)
-
-
-for _name in ("properties", "save", "load", "force method"):
-    action(_name)(_to(_name))
+@action("force method")
+def _force_method(session: Session, pixel: Vector) -> None:
+    session.scenes.request("force method")

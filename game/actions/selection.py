@@ -8,17 +8,21 @@ from components.field import Vector
 from components.particle import Particle
 from components.rod import Rod
 from components.tags import DiagramShown
+from game.actions.drawing import click_with_tool
 from game.actions.registry import action
 from systems.edit.picking import pick
+from systems.edit.selecting import everything
 
 if TYPE_CHECKING:
     from game.session import Session
 
 
-@action("select")
+@action("select", while_drawing=True)
 def _select(session: Session, pixel: Vector) -> None:
-    hit = pick(session.model, session.view, pixel)
-    session.select(*([hit] if hit is not None else []))
+    """With a tool in hand, a click draws instead."""
+    if not click_with_tool(session, pixel):
+        hit = pick(session.model, session.view, pixel)
+        session.select(*([hit] if hit is not None else []))
 
 
 @action("add to selection")
@@ -29,7 +33,13 @@ def _add_to_selection(session: Session, pixel: Vector) -> None:
         session.select(*([h for h in chosen if h is not hit] if hit in chosen else [*chosen, hit]))
 
 
-@action("toggle diagrams")
+@action("select all")
+def _select_all(session: Session, pixel: Vector) -> None:
+    session.select(*everything(session.model))
+    session.notice = f"{len(session.selected)} elements selected."
+
+
+@action("toggle diagrams", while_drawing=True)
 def _toggle_diagrams(session: Session, pixel: Vector) -> None:
     """Of the selected particles and rods; of all when nothing is selected."""
     model, view = session.model, session.view

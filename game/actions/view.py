@@ -14,44 +14,44 @@ if TYPE_CHECKING:
 ZOOM_STEP = 1.2
 
 
-@action("fit")
+@action("fit", while_drawing=True)
 def _fit(session: Session, pixel: Vector) -> None:
     session.view.fit(session.model)
 
 
-@action("zoom in")
+@action("zoom in", while_drawing=True)
 def _zoom_in(session: Session, pixel: Vector) -> None:
     session.view.camera.zoom(ZOOM_STEP, pixel)
 
 
-@action("zoom out")
+@action("zoom out", while_drawing=True)
 def _zoom_out(session: Session, pixel: Vector) -> None:
     session.view.camera.zoom(1.0 / ZOOM_STEP, pixel)
 
 
-@action("toggle legend")
+@action("toggle legend", while_drawing=True)
 def _toggle_legend(session: Session, pixel: Vector) -> None:
     session.view.legend = not session.view.legend
 
 
-@action("toggle help")
+@action("toggle help", while_drawing=True)
 def _toggle_help(session: Session, pixel: Vector) -> None:
     session.view.help = not session.view.help
 
 
-@action("pan")
+@action("pan", while_drawing=True)
 def _pan(session: Session, pixel: Vector) -> None:
     """Here `pixel` is how far the pointer was dragged."""
     session.view.camera.pan(pixel)
 
 
-@action("toggle full screen")
+@action("toggle full screen", while_drawing=True)
 def _toggle_full_screen(session: Session, pixel: Vector) -> None:
     if session.window is not None:
         session.window.toggle_full_screen()
 
 
-@action("screenshot")
+@action("screenshot", while_drawing=True)
 def _screenshot(session: Session, pixel: Vector) -> None:
     if session.window is not None:
         session.notice = f"Picture saved: {session.window.screenshot()}"

@@ -1,6 +1,6 @@
 """Scenes: the modes of the program, a state machine with pause as its hub."""
 
-from game.scenes.base import Scene, SceneError, Scenes
+from game.scenes.base import Scene, SceneError, Scenes, Stage
 from game.scenes.force_method import ForceMethod
 from game.scenes.load import Load
 from game.scenes.pause import Pause
@@ -8,7 +8,7 @@ from game.scenes.properties import Properties
 from game.scenes.save import Save
 from game.scenes.simulation import Simulation
 
-__all__ = ["Scene", "SceneError", "Scenes", "all_scenes"]
+__all__ = ["Scene", "SceneError", "Scenes", "Stage", "all_scenes"]
 
 
 def all_scenes() -> list[Scene]:

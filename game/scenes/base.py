@@ -6,9 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 if TYPE_CHECKING:
+    from components.form import Form
     from components.model import Model
     from components.view import View
     from game.session import Session
+
+
+Stage = tuple["Model | Form", "View"]
 
 
 class SceneError(ValueError):
@@ -24,7 +28,6 @@ class Scene:
     name: ClassVar[str]
     heading: ClassVar[str] = ""
     targets: ClassVar[tuple[str, ...]] = ("pause",)
-    runs: ClassVar[bool] = False
 
     def enter(self, session: Session) -> None:
         """Called once when the scene becomes the active one."""
@@ -32,8 +35,31 @@ class Scene:
     def exit(self, session: Session) -> None:
         """Called once when it stops being the active one."""
 
-    def stages(self, session: Session) -> list[tuple[Model, View]]:
-        """What is shown: models, each in its view."""
+    def advance(self, session: Session, elapsed: float) -> None:
+        """Let the time of one frame pass, where it does."""
+
+    def busy(self, session: Session) -> bool:
+        """True while frames change something without a person's doing."""
+        return False
+
+    def focus(self, session: Session) -> tuple[Model, View]:
+        """The model that a pointer picks from, and its view."""
+        return session.model, session.view
+
+    def type(self, session: Session, text: str) -> None:
+        """Text was typed."""
+
+    def click_box(self, session: Session, title: str) -> None:
+        """Select the box with that title. Raises LookupError."""
+        raise LookupError(f"In {self.name} there are no boxes; go to properties, save or load first.")
+
+    @property
+    def boxes(self) -> dict[str, str]:
+        """What the boxes contain, by their titles."""
+        return {}
+
+    def stages(self, session: Session) -> Sequence[Stage]:
+        """What is shown: models and forms, each in its view."""
         return [(session.model, session.view)]
 
     def hint(self, session: Session) -> str:

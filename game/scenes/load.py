@@ -1,20 +1,99 @@
-"""Load: opening what was saved."""
+"""Load: opening a saved model, an example, or an empty one; also what the program starts with."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from game.scenes.base import Scene
+from components.form import Form, Tile
+from game import library, models
+from game.scenes.files import FileScene, example, saved_tiles, tile
+from game.spares import spare_name
 
 if TYPE_CHECKING:
     from game.session import Session
 
+NEW = "New, empty model"
+EXAMPLES = "Examples"
+LEFT_BEHIND = "Unsaved work, recovered"
+# Of the examples, those to look at first; the others follow in alphabetical order.
+FIRST = ("isostatic", "hyperstatic", "pendulum", "collision_iii", "warren_bridge", "hyperstatic_yield", "tower")
 
-class Load(Scene):
-    """Opening what was saved."""
+
+class Load(FileScene):
+    """Opening a model by its name or its picture.
+
+    welcome: the program was just started; it says what it is.
+    """
 
     name = "load"
     heading = "Load"
 
+    def __init__(self) -> None:
+        super().__init__()
+        self.welcome = False
+
+    def make_form(self, session: Session) -> Form:
+        new = tile("", NEW, "draw your own", "", None, "An empty plane, to draw particles and rods on.")
+        tiles = [new, *_left_behind(session), *saved_tiles(), *_examples()]
+        return self.new_form("Pinjoint" if self.welcome else "Load", "", tiles)
+
+    def exit(self, session: Session) -> None:
+        super().exit(session)
+        self.welcome = False
+
+    def choose(self, session: Session, tile: Tile) -> None:
+        """Open what was clicked."""
+        self._open(session, tile.source)
+
+    def accept(self, session: Session) -> None:
+        """Return: open the chosen tile, or the model whose name was typed."""
+        name, chosen = self.box.text.strip(), self.form.chosen
+        if chosen is not None:
+            self._open(session, chosen.source)
+        elif not name:
+            self.say("Type a name, or choose a picture with the arrow keys.")
+        elif (source := library.find(name)) is not None:
+            self._open(session, source)
+        else:
+            nearest = library.nearest(name)
+            hint = f" Did you mean '{nearest}'?" if nearest else ""
+            self.say(f"File not found: there is no model '{name}'.{hint}")
+
+    def _open(self, session: Session, source: Any) -> None:
+        try:
+            session.open_here(source)
+        except models.ModelError as error:
+            self.say(str(error))
+            return
+        if session.spares is not None and source in session.spares.left():
+            session.spares.take_over(source, session.desk)
+        session.scenes.request("pause")
+
+    def changed(self, session: Session) -> None:
+        """Show the tiles whose titles or names contain every word that was typed."""
+        super().changed(session)
+        words = self.box.text.lower().split()
+        tiles = list(self.form.tiles)
+        hidden = [not all(word in f"{tile.title} {tile.file}".lower() for word in words) for tile in tiles]
+        self.form.assign(tiles, "hidden", hidden)
+        self.form.heading.first = 0
+
     def hint(self, session: Session) -> str:
-        return "This mode has no boxes yet; Esc goes back to pause"
+        return "Click a picture     Arrows choose     Return open     Type to search     Esc back"
+
+
+def _left_behind(session: Session) -> list[dict[str, Any]]:
+    """Unsaved work that a crash left behind."""
+    files = session.spares.left() if session.spares is not None else []
+    return [
+        tile(LEFT_BEHIND, spare_name(path) or "Untitled", library.written_age(path), "", path) for path in files
+    ]
+
+
+def _examples() -> list[dict[str, Any]]:
+    names = sorted(models.bundled(), key=lambda name: example(name).title)
+    names.sort(key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
+    shown = [(name, example(name)) for name in names]
+    return [
+        tile(EXAMPLES, model.title or name, name, name, name, model.description, model) for name, model in shown
+    ]

@@ -1,20 +1,108 @@
-"""Properties: what an element is, as boxes to type into."""
+"""Properties: what elements are, as boxes to type into."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from game.scenes.base import Scene
+from components.camera import Viewport
+from components.field import Vector
+from components.form import Form
+from components.model import Model
+from components.particle import Particle
+from components.rod import Rod
+from components.view import View, drawn_positions
+from game.scenes.base import Stage
+from game.scenes.form import FormScene
+from systems.edit.picking import pick
+from systems.forms import properties, typing
+from systems.render.form_layout import beside
 
 if TYPE_CHECKING:
     from game.session import Session
 
 
-class Properties(Scene):
-    """What an element is, as boxes to type into."""
+class Properties(FormScene):
+    """What the selected elements are, or the environment. Leaving applies all boxes at once."""
 
     name = "properties"
     heading = "Properties"
 
+    def __init__(self) -> None:
+        super().__init__()
+        self._return_to: tuple[str, ...] = ("pause",)
+        self._at_left = False
+
+    def enter(self, session: Session) -> None:
+        super().enter(session)
+        self._at_left = _is_right(session)
+
+    def make_form(self, session: Session) -> Form:
+        model, selected = session.model, session.selected
+        form = Form(properties.heading(model, selected), lambda box: properties.problem(model, box))
+        properties.fill(form, model, selected)
+        return form
+
+    def exit(self, session: Session) -> None:
+        session.notice = " ".join(properties.apply(self.form, session.model)) or session.notice
+        super().exit(session)
+
+    def opened_from(self, scene: str) -> None:
+        """Leaving goes back to that scene."""
+        self._return_to = ("pause", scene) if scene == "simulation" else ("pause",)
+
+    def leave(self, session: Session) -> None:
+        session.scenes.request(*self._return_to)
+
+    def accept(self, session: Session) -> None:
+        """Return: accept the selected box; without one, leave."""
+        if self.form.selected is None:
+            self.leave(session)
+        elif not typing.accept(self.form):
+            self.form.selected.marked = True
+
     def hint(self, session: Session) -> str:
-        return "This mode has no boxes yet; Esc goes back to pause"
+        if self.form.selected is not None:
+            return "Return accept     Esc restore     Tab next box"
+        return "Click a box     Tab next box     Esc apply and go back"
+
+    # --- beside the model --------------------------------------------------------------------------
+
+    def _split(self, session: Session) -> tuple[Viewport | None, Viewport]:
+        view = session.view
+        return beside(view.camera.viewport, view.pixel_ratio, at_left=self._at_left)
+
+    def viewport(self, session: Session) -> Viewport:
+        return self._split(session)[1]
+
+    def stages(self, session: Session) -> Sequence[Stage]:
+        form = super().stages(session)
+        return form if self._split(session)[0] is None else [self.focus(session), *form]
+
+    def focus(self, session: Session) -> tuple[Model, View]:
+        """The model beside the boxes."""
+        rest, view = self._split(session)[0], session.view
+        camera = replace(view.camera, viewport=rest) if rest is not None else view.camera
+        return session.model, replace(view, camera=camera, status=replace(view.status, hint=""))
+
+    def click_beside(self, session: Session, pixel: Vector) -> None:
+        """A click on another element shows that one's properties, once these are applied."""
+        if not typing.accept(self.form) or self.viewport(session).contains(pixel):
+            return
+        hit = pick(*self.focus(session), pixel)
+        if hit is not None and [hit] != session.selected:
+            notice = " ".join(properties.apply(self.form, session.model))
+            session.notice = notice or session.notice
+            session.select(hit)
+            self.form = self.make_form(session)
+
+
+def _is_right(session: Session) -> bool:
+    """True if the selected particles and rods are in the right half of the picture."""
+    particles = [h.row for h in session.selected if isinstance(h, Particle)]
+    particles += [row for h in session.selected if isinstance(h, Rod) for row in h.between]
+    if not particles:
+        return False
+    camera = session.view.camera
+    return bool(camera.to_pixels(drawn_positions(session.model)[particles])[:, 0].mean() > camera.middle[0])

@@ -1,20 +1,65 @@
-"""Save: saving under a name."""
+"""Save: giving the model a name and a file."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from game.scenes.base import Scene
+from components.form import Form, Tile
+from game import library, models
+from game.scenes.files import FileScene, saved_tiles
+from systems.forms import typing
 
 if TYPE_CHECKING:
     from game.session import Session
 
 
-class Save(Scene):
-    """Saving under a name."""
+class Save(FileScene):
+    """Saving under a name; what has the name already is only replaced when asked twice."""
 
     name = "save"
     heading = "Save"
 
+    def __init__(self) -> None:
+        super().__init__()
+        self._confirmed = ""
+
+    def make_form(self, session: Session) -> Form:
+        self._confirmed = ""
+        return self.new_form("Save", session.file.name, saved_tiles())
+
+    def choose(self, session: Session, tile: Tile) -> None:
+        """A tile's name may be used again, or changed a little."""
+        self.form.choose(None)
+        typing.select(self.form, self.box)
+        typing.put(self.form, self.box, tile.file)
+        self.changed(session)
+
+    def move(self, session: Session, direction: str) -> None:
+        super().move(session, direction)
+        chosen = self.form.chosen
+        if chosen is not None and self.box.text != chosen.file:
+            typing.put(self.form, self.box, chosen.file)
+            self.say("")
+
+    def accept(self, session: Session) -> None:
+        """Return: save."""
+        name = self.box.text.strip()
+        try:
+            path = library.path_of(name)
+            if path.exists() and self._confirmed != name:
+                self._confirmed = name
+                self.say(f"There is a model '{name}' already. Return again replaces it; Esc does not.")
+                return
+            path.parent.mkdir(parents=True, exist_ok=True)
+            session.save_as(path)
+        except (library.NameRefused, models.ModelError, OSError) as error:
+            self.say(str(error))
+            return
+        session.scenes.request("pause")
+
+    def changed(self, session: Session) -> None:
+        super().changed(session)
+        self._confirmed = ""
+
     def hint(self, session: Session) -> str:
-        return "This mode has no boxes yet; Esc goes back to pause"
+        return "Type a name     Return save     Esc back"

@@ -15,13 +15,18 @@ class Simulation(Scene):
 
     name = "simulation"
     targets = ("pause",)
-    runs = True
 
     def enter(self, session: Session) -> None:
         session.history.begin_run()
 
     def exit(self, session: Session) -> None:
         session.history.end_run()
+
+    def advance(self, session: Session, elapsed: float) -> None:
+        session.advance(elapsed)
+
+    def busy(self, session: Session) -> bool:
+        return not session.simulation.halted
 
     def hint(self, session: Session) -> str:
         return "Space pause     + − speed     I forces     R restart     F1 keys"

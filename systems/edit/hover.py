@@ -24,8 +24,9 @@ class Hover(System):
 
     def process(self, frame: Any) -> None:
         """Move the mark if the pointer is over something else now."""
-        model, view = frame.session.model, frame.session.view
-        hit = pick(model, view, view.pointer) if view.pointer is not None else None
+        model, view = frame.session.focus
+        pointer = frame.session.view.pointer
+        hit = pick(model, view, pointer) if pointer is not None else None
         before = model.tagged(Hovered)
         if before == [hit] or (hit is None and not before):
             return

@@ -10,51 +10,115 @@ LIVE = (SIMULATION, PAUSE)
 PANELS = (PROPERTIES, SAVE, LOAD)
 EVERY = (*LIVE, *PANELS, FORCE_METHOD)
 
+TEXT = "text "  # what begins the "key" that is typed text, such as "text a"
+
 
 @dataclass(frozen=True)
 class Binding:
     """A key (or "click", "wheel up", …) that performs an action in some scenes.
 
     Key names are lower case: "escape", "return", "space", "a", "+", "left", "f1"; modifiers come first,
-    in the order ctrl, shift: "ctrl+z", "ctrl+shift+z".
+    in the order ctrl, shift: "ctrl+z", "ctrl+shift+z". "drag" begins one, "drag to" and "drop" follow.
+    title: what it does, for the help; "" where that goes without saying. repeats: while the key is held.
     """
 
     key: str
     action: str
     scenes: tuple[str, ...]
     title: str
+    repeats: bool = False
 
 
 BINDINGS: tuple[Binding, ...] = (
-    Binding("escape", "pause", (SIMULATION,), "pause"),
-    Binding("escape", "escape", (PAUSE,), "drop the selection, or run"),
-    Binding("escape", "back", (*PANELS, FORCE_METHOD), "back to pause"),
+    Binding("escape", "escape", (SIMULATION,), "put the tool away, or pause"),
+    Binding("escape", "escape", (PAUSE,), "put the tool away, drop the selection, or run"),
+    Binding("escape", "back", (FORCE_METHOD,), "back to pause"),
     Binding("space", "toggle run", LIVE, "run / pause"),
-    Binding("right", "step", (PAUSE,), "a single step"),
-    Binding("return", "properties", (PAUSE,), "properties of the selected element"),
+    Binding("right", "arrow right", (PAUSE,), "a single step; with a selection: move it", repeats=True),
+    Binding("left", "arrow left", (PAUSE,), "a step back; with a selection: move it", repeats=True),
+    Binding("up", "arrow up", (PAUSE,), "move the selection", repeats=True),
+    Binding("down", "arrow down", (PAUSE,), "move the selection", repeats=True),
+    Binding(
+        "shift+right", "far arrow right", (PAUSE,), "skip ahead; with a selection: move it far", repeats=True
+    ),
+    Binding("shift+left", "far arrow left", (PAUSE,), "skip back; a selection: move far", repeats=True),
+    Binding("shift+up", "far arrow up", (PAUSE,), "move the selection by a grid spacing", repeats=True),
+    Binding("shift+down", "far arrow down", (PAUSE,), "move the selection by a grid spacing", repeats=True),
+    Binding("return", "properties", LIVE, "properties of the selected elements"),
     Binding("s", "save", (PAUSE,), "save"),
+    Binding("ctrl+s", "save again", LIVE, "save under the same name"),
     Binding("d", "load", (PAUSE,), "load"),
+    Binding("ctrl+o", "load", LIVE, "load"),
+    Binding("ctrl+n", "new", LIVE, "new, empty model"),
     Binding("k", "force method", (PAUSE,), "force method"),
-    Binding("i", "toggle diagrams", (*LIVE, FORCE_METHOD), "force diagrams on / off"),
+    Binding("i", "toggle diagrams", LIVE, "force diagrams on / off"),
+    Binding("i", "toggle diagrams of sets", (FORCE_METHOD,), "force diagrams on / off"),
+    Binding("k", "next part", (FORCE_METHOD,), "next part"),
+    Binding("click", "pick unknown", (FORCE_METHOD,), "pick the static unknown in set 1"),
+    Binding("x", "release x", (FORCE_METHOD,), "release the horizontal constraint"),
+    Binding("y", "release y", (FORCE_METHOD,), "release the vertical constraint"),
+    Binding("p", "place", LIVE, "new particle under the pointer"),
+    Binding("l", "rod", LIVE, "new rod: over a particle, then over another"),
+    Binding("c", "support", LIVE, "support: pinned, roller, roller sideways, none"),
+    Binding("f", "force", LIVE, "force: over a particle, then where its arrow ends"),
+    Binding("v", "velocity", LIVE, "velocity: over a particle, then where its arrow ends"),
+    Binding("delete", "delete", LIVE, "delete the selection"),
+    Binding("backspace", "delete", LIVE, "delete the selection"),
     Binding("g", "new grid", (PAUSE,), "new grid"),
     Binding("h", "next grid", (PAUSE,), "next grid"),
     Binding("r", "restart", LIVE, "restart from the beginning"),
-    Binding("+", "faster", LIVE, "faster"),
-    Binding("-", "slower", LIVE, "slower"),
+    Binding("e", "settle", LIVE, "settle: go to the equilibrium at once"),
+    Binding("+", "faster", LIVE, "faster", repeats=True),
+    Binding("-", "slower", LIVE, "slower", repeats=True),
     Binding("0", "natural pace", LIVE, "pace that suits the model"),
-    Binding("ctrl+z", "undo", LIVE, "undo"),
-    Binding("ctrl+y", "redo", LIVE, "redo"),
-    Binding("ctrl+shift+z", "redo", LIVE, "redo"),
-    Binding("home", "fit", (*LIVE, FORCE_METHOD), "fit the view"),
-    Binding("tab", "toggle legend", (*LIVE, FORCE_METHOD), "legend on / off"),
+    Binding("ctrl+z", "undo", LIVE, "undo", repeats=True),
+    Binding("ctrl+y", "redo", LIVE, "redo", repeats=True),
+    Binding("ctrl+shift+z", "redo", LIVE, "redo", repeats=True),
+    Binding("ctrl+a", "select all", LIVE, "select all"),
+    Binding("ctrl+c", "copy", LIVE, "copy the selection"),
+    Binding("ctrl+x", "cut", LIVE, "cut the selection"),
+    Binding("ctrl+v", "paste", LIVE, "paste at the pointer"),
+    Binding("ctrl+d", "duplicate", LIVE, "duplicate the selection"),
+    Binding("home", "fit", LIVE, "fit the view"),
+    Binding("tab", "toggle legend", LIVE, "legend on / off"),
+    Binding("return", "accept", (PROPERTIES,), "accept the box; without one, go back"),
+    Binding("return", "accept", (SAVE,), "save"),
+    Binding("return", "accept", (LOAD,), "open"),
+    Binding("escape", "cancel", (PROPERTIES,), "restore the box; without one, apply all and go back"),
+    Binding("escape", "cancel", (SAVE, LOAD), "restore the box; without one, go back"),
+    Binding("tab", "next box", PANELS, "next box", repeats=True),
+    Binding("shift+tab", "previous box", PANELS, "previous box", repeats=True),
+    Binding("click", "click form", (PROPERTIES,), "select a box, turn a switch"),
+    Binding("click", "click form", (SAVE, LOAD), "choose"),
+    Binding("up", "go up", PANELS, "up", repeats=True),
+    Binding("down", "go down", PANELS, "down", repeats=True),
+    Binding("left", "go left", PANELS, "left", repeats=True),
+    Binding("right", "go right", PANELS, "right", repeats=True),
+    Binding("home", "to the beginning", PANELS, ""),
+    Binding("end", "to the end", PANELS, ""),
+    Binding("backspace", "erase", PANELS, "erase", repeats=True),
+    Binding("delete", "erase after", PANELS, "erase after the caret", repeats=True),
+    Binding("ctrl+a", "mark all", PANELS, "mark all"),
+    Binding("ctrl+c", "copy text", PANELS, "copy"),
+    Binding("ctrl+x", "cut text", PANELS, "cut"),
+    Binding("ctrl+v", "paste text", PANELS, "paste"),
+    Binding("wheel up", "scroll up", PANELS, "scroll up"),
+    Binding("wheel down", "scroll down", PANELS, "scroll down"),
+    Binding("page up", "scroll up", PANELS, "", repeats=True),
+    Binding("page down", "scroll down", PANELS, "", repeats=True),
     Binding("f1", "toggle help", EVERY, "these keys"),
     Binding("f11", "toggle full screen", EVERY, "full screen"),
     Binding("f12", "screenshot", EVERY, "save a picture"),
     Binding("click", "select", LIVE, "select"),
     Binding("ctrl+click", "add to selection", LIVE, "add to the selection"),
-    Binding("wheel up", "zoom in", (*LIVE, FORCE_METHOD), "zoom in at the pointer"),
-    Binding("wheel down", "zoom out", (*LIVE, FORCE_METHOD), "zoom out"),
-    Binding("drag middle", "pan", (*LIVE, FORCE_METHOD), "move the view (or right button)"),
+    Binding("drag", "drag", (PAUSE,), "move an element; from empty space: select in a box"),
+    Binding("drag", "drag", (SIMULATION,), "pull a particle; from empty space: select in a box"),
+    Binding("ctrl+drag", "drag to add", LIVE, "add to the selection what is in a box"),
+    Binding("drag to", "drag to", LIVE, ""),
+    Binding("drop", "drop", LIVE, ""),
+    Binding("wheel up", "zoom in", LIVE, "zoom in at the pointer"),
+    Binding("wheel down", "zoom out", LIVE, "zoom out"),
+    Binding("drag middle", "pan", LIVE, "move the view (or right button)"),
 )
 
 _BY_KEY = {(scene, binding.key): binding for binding in BINDINGS for scene in binding.scenes}
@@ -66,6 +130,12 @@ def action_for(scene: str, key: str) -> str | None:
     return binding.action if binding else None
 
 
+def repeats(scene: str, key: str) -> bool:
+    """True if holding a key performs its action again and again in a scene."""
+    binding = _BY_KEY.get((scene, key))
+    return binding is not None and binding.repeats
+
+
 def help_lines(scene: str) -> list[tuple[str, str]]:
     """(key, title) of everything that can be pressed in a scene."""
-    return [(binding.key, binding.title) for binding in BINDINGS if scene in binding.scenes]
+    return [(binding.key, binding.title) for binding in BINDINGS if scene in binding.scenes and binding.title]

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import pygame
 
 from components.field import Vector
 from systems.base import Phase, System
+from systems.input.bindings import TEXT, repeats
 
-CLICK_REACH = 4.0  # px that the pointer may move between pressing and releasing a button in a click
+CLICK_REACH = (
+    4.0  # px that the pointer may move between pressing and releasing a button in a click; more: a drag
+)
 IDLE_WAIT = 100  # ms to sleep for an event while nothing moves
 
 _NAMES = {
@@ -41,7 +45,10 @@ class PygameInput(System):
 
     def __init__(self) -> None:
         self.closed = False
-        self._pressed_at: dict[int, Vector] = {}
+        self._held: set[int] = set()  # keys that are down
+        self._grip: tuple[str, Vector] | None = (
+            None  # "click" or "ctrl+click" and where, while that button is down
+        )
         self._dragging = False
 
     def process(self, frame: Any) -> None:
@@ -58,35 +65,58 @@ class PygameInput(System):
         if event.type in (pygame.QUIT, pygame.WINDOWCLOSE):
             self.closed = True
         elif event.type == pygame.KEYDOWN:
-            key = _key_name(event)
-            if key:
-                frame.pressed.append((key, view.pointer or view.camera.middle))
+            self._press(event, frame)
+        elif event.type == pygame.TEXTINPUT:
+            frame.pressed.append((TEXT + event.text, frame.session.pointer))
+        elif event.type == pygame.KEYUP:
+            self._held.discard(event.key)
         elif event.type == pygame.MOUSEMOTION:
             view.pointer = _scaled(event.pos, ratio)
             self._drag(event, frame, ratio)
         elif event.type == pygame.MOUSEBUTTONDOWN:
-            view.pointer = self._pressed_at[event.button] = _scaled(event.pos, ratio)
+            view.pointer = _scaled(event.pos, ratio)
+            if event.button == pygame.BUTTON_LEFT:
+                self._grip = ("ctrl+click" if _control(pygame.key.get_mods()) else "click", view.pointer)
         elif event.type == pygame.MOUSEBUTTONUP:
-            self._release(event, frame, ratio)
+            if event.button == pygame.BUTTON_LEFT:
+                view.pointer = _scaled(event.pos, ratio)
+                self._release(frame)
         elif event.type == pygame.MOUSEWHEEL and event.y:
             key = "wheel up" if event.y > 0 else "wheel down"
             frame.pressed += [(key, view.pointer or view.camera.middle)] * abs(event.y)
         elif event.type == pygame.WINDOWLEAVE:
             view.pointer = None
+        elif event.type == pygame.WINDOWFOCUSLOST:  # what is let go of elsewhere is not told
+            self._held.clear()
+            self._release(frame)
+
+    def _press(self, event: pygame.event.Event, frame: Any) -> None:
+        key, repeated = _key_name(event), event.key in self._held
+        self._held.add(event.key)
+        if key and (not repeated or repeats(frame.session.scene, key)):
+            frame.pressed.append((key, frame.session.pointer))
 
     def _drag(self, event: pygame.event.Event, frame: Any, ratio: float) -> None:
         _, middle, right = event.buttons
         if middle or right:
             frame.pressed.append(("drag middle", _scaled(event.rel, ratio)))
+        elif self._grip is not None:
+            button, start = self._grip
+            end = _scaled(event.pos, ratio)
+            if not self._dragging and math.dist(start, end) > CLICK_REACH * ratio:
+                self._dragging = True
+                frame.pressed.append((button.replace("click", "drag"), start))
+            if self._dragging:
+                if frame.pressed and frame.pressed[-1][0] == "drag to":
+                    frame.pressed.pop()  # only the last place of a frame counts
+                frame.pressed.append(("drag to", end))
 
-    def _release(self, event: pygame.event.Event, frame: Any, ratio: float) -> None:
-        start = self._pressed_at.pop(event.button, None)
-        end = _scaled(event.pos, ratio)
-        if event.button != pygame.BUTTON_LEFT or start is None:
-            return
-        if max(abs(end[0] - start[0]), abs(end[1] - start[1])) <= CLICK_REACH * ratio:
-            key = "ctrl+click" if pygame.key.get_mods() & (pygame.KMOD_CTRL | pygame.KMOD_META) else "click"
-            frame.pressed.append((key, end))
+    def _release(self, frame: Any) -> None:
+        """The left button is up again: the end of a drag, or a click."""
+        grip, self._grip = self._grip, None
+        dragging, self._dragging = self._dragging, False
+        if grip is not None:
+            frame.pressed.append(("drop" if dragging else grip[0], frame.session.pointer))
 
 
 def _scaled(position: Any, ratio: float) -> Vector:
@@ -96,6 +126,10 @@ def _scaled(position: Any, ratio: float) -> Vector:
 def _key_name(event: pygame.event.Event) -> str:
     """The name of a key as in the table of bindings, modifiers first."""
     name = _NAMES.get(event.key) or pygame.key.name(event.key)
-    control = event.mod & (pygame.KMOD_CTRL | pygame.KMOD_META)
+    control = _control(event.mod)
     shift = event.mod & pygame.KMOD_SHIFT and (control or len(name) > 1)
     return ("ctrl+" if control else "") + ("shift+" if shift else "") + name if name else ""
+
+
+def _control(modifiers: int) -> bool:
+    return bool(modifiers & (pygame.KMOD_CTRL | pygame.KMOD_META))

@@ -202,7 +202,10 @@ def advance(
                 *columns,
             )
             time = origin + age * dt
-            reason = judge(measures, account, dt, SHADOW, time >= loads_end)
+            ahead = 0.0
+            if LOADS:
+                ahead = 1000.0 * dt * abs(load_power(time, velocity, *columns))
+            reason = judge(measures, account, dt, SHADOW, ahead, time >= loads_end)
             if reason != 0:
                 return taken, reason
         if (total + taken) % REVIEW_INTERVAL == 0:

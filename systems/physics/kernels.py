@@ -35,13 +35,23 @@ def drag(particles_mass, particles_velocity, environment_drag):
 
 
 @compiled
-def judge(measures, account, dt, shadow, loads_are_over):
+def conserved(measures, account, dt, shadow):
+    """Kinetic − (h²/8) fᵀM⁻¹f + elastic + dissipated − supplied (J); arguments as those of judge()."""
+    kinetic, power_norm, elastic, potential = measures[0], measures[1], measures[2], measures[3]
+    supplied = account[0] + potential - account[5]
+    spent = account[1] + account[2] + account[3]
+    return kinetic + elastic - shadow * dt * dt / 8.0 * power_norm + spent - supplied
+
+
+@compiled
+def judge(measures, account, dt, shadow, ahead, loads_are_over):
     """Decide from the measures of a state whether the run stops: 0 go on, 2 rest, 3 diverged.
 
     measures: kinetic energy, Σ fᵀM⁻¹f, elastic energy, potential of constant forces (all J), residual,
         largest force and round-off of the forces (kN).
     account: the accounts, then initial energy, potential reference, force scale, energy scale, guard energy.
-    shadow: 1 if the integrator conserves kinetic − (h²/8) fᵀM⁻¹f + elastic, else 0.
+    shadow: 1 if the integrator conserves kinetic − (h²/8) fᵀM⁻¹f + elastic, else 0. ahead: what varying
+        loads will supply in the next step (J); after a jump they have moved the mass but done no work yet.
 
     Diverged: energy came from nowhere. Beyond the stable step Verlet conserves its energy too, while the
     second term grows past the elastic energy, and both past all that was supplied. Rest: REQUIREMENTS' residual and a kinetic energy to match it,
@@ -52,13 +62,12 @@ def judge(measures, account, dt, shadow, loads_are_over):
     residual, largest, round_off = measures[4], measures[5], measures[6]
     supplied = account[0] + potential - account[5]
     deficit = shadow * dt * dt / 8.0 * power_norm
-    spent = account[1] + account[2] + account[3]
-    created = kinetic + elastic - deficit + spent - supplied - account[8]
+    created = conserved(measures, account, dt, shadow) - account[8]
     account[6] = max(account[6], largest)
-    account[7] = max(account[7], abs(account[4]), abs(account[0]), abs(supplied))
+    account[7] = max(account[7], abs(account[4]), abs(account[0]), abs(supplied), ahead)
     if not created <= DIVERGENCE_SHARE * account[7] + SMALLEST_ENERGY:
         return 3
-    if min(elastic, deficit - elastic) > INSTABILITY_SHARE * account[7] + SMALLEST_ENERGY:
+    if min(max(kinetic, elastic), deficit - elastic) > INSTABILITY_SHARE * account[7] + SMALLEST_ENERGY:
         return 3
     still_force = max(REST_RESIDUAL * max(largest, SMALL_SHARE * account[6]), 8.0 * round_off)
     still_energy = REST_RESIDUAL**2 * max(elastic, SMALL_SHARE**2 * account[7])

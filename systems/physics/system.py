@@ -16,6 +16,7 @@ class Elasticity(Law):
     """Axial force of rods that never yielded and cannot: N = EA ε."""
 
     name = "physics.elasticity"
+    elastic = True
     kernel = "systems.physics.kernels:elastic"
     reads = ("rods.stiffness", "rods.rest_length")
     adds = ("rods.axial_force",)
@@ -28,6 +29,7 @@ class ElasticityAfterYielding(Law):
     """Axial force of rods with plastic strain: N = EA (ε − ε_p)."""
 
     name = "physics.elasticity_after_yielding"
+    elastic = True
     kernel = "systems.physics.kernels:elastic_after_yielding"
     reads = ("rods.stiffness", "rods.rest_length", "rods.plastic_strain")
     adds = ("rods.axial_force",)

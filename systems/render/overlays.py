@@ -22,8 +22,10 @@ def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     marks, bottom = _status_bar(sheet)
     heading, heading_end = _heading(sheet)
     legend, top = _legend(sheet, heading_end)
-    empty = _empty(sheet, bottom) if sheet.model.particles.count == 0 else []
-    return marks + heading + legend + empty + _problem(sheet, top, bottom), (top, bottom)
+    blank = sheet.model.particles.count == 0 and sheet.view.page is None
+    empty = _empty(sheet, bottom) if blank else []
+    caption, top = _caption(sheet, top)
+    return marks + heading + legend + caption + empty + _problem(sheet, top, bottom), (top, bottom)
 
 
 # --- what numbers look like ------------------------------------------------------------------------
@@ -68,7 +70,7 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
     """The bar at the bottom, if there is anything to say, and the height that is left above it."""
     v, u, theme, status = sheet.viewport, sheet.unit, sheet.theme, sheet.view.status
     bottom = float(v.top + v.height)
-    if not (status.state or (status.hint and sheet.model.particles.count)):
+    if not (status.state or (status.hint and _shows_hint(sheet))):
         return [], bottom
     top, thin = round(bottom - _BAR * u), max(round(u), 1)
     bar = np.array([[v.left, top, v.width, v.top + v.height - top]], dtype=np.int64)
@@ -83,7 +85,8 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
         x += 13.0 * u
         state = status.state[0].upper() + status.state[1:]
         x = _append(sheet, marks, state, x, middle, theme.text, "semibold")
-        for text in (f"t = {written_time(status.time)}", written_speed(status.speed)):
+        time = "" if status.time is None else f"t = {written_time(status.time)}"
+        for text in (time, written_speed(status.speed)):
             x = _append(sheet, marks, text, x, middle, theme.text)
     _append_hint(sheet, marks, x, middle)
     return marks, float(top)
@@ -101,10 +104,15 @@ def _append(
     return x + width + 18.0 * sheet.unit
 
 
+def _shows_hint(sheet: Sheet) -> bool:
+    """False where the hint stands on the card of an empty model instead."""
+    return sheet.model.particles.count > 0 or sheet.view.page is not None
+
+
 def _append_hint(sheet: Sheet, marks: list[Mark], x: float, y: float) -> None:
     """The next possible step at the right end, as much of it as there is room for."""
     v, u, size = sheet.viewport, sheet.unit, sheet.font(12.0)
-    if sheet.model.particles.count == 0:
+    if not _shows_hint(sheet):
         return
     right = v.left + v.width - _EDGE * u
     text = shortened(sheet.view.status.hint, right - x - 6.0 * u, size)
@@ -138,6 +146,24 @@ def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
         marks.append(Text(line, left, y, size, sheet.theme.heading, "semibold"))
     right = left + max(text_width(line, size, "semibold") for line in lines)
     return marks, (right, top + len(lines) * line_height(size) - 4.0 * u)
+
+
+def _caption(sheet: Sheet, top: float) -> tuple[list[Mark], float]:
+    """What this viewport shows, and facts about it, at its top between hairlines; and their lower end."""
+    v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(13.0)
+    if not sheet.view.caption:
+        return [], top
+    thin = max(round(u), 1)
+    edges = np.array([[v.left, v.top, v.width, thin], [v.left, v.top, thin, v.height]], dtype=np.int64)
+    marks: list[Mark] = [Rectangles(edges, theme.line)]
+    left, room = v.left + _EDGE * u, v.width - 2 * _EDGE * u
+    for number, line in enumerate(sheet.view.caption):
+        weight, colour = ("semibold", theme.text) if number == 0 else ("regular", theme.muted)
+        text = shortened(line, room, size, weight)
+        y = top + 8.0 * u + (number + 0.5) * line_height(size)
+        sheet.occupancy.block(left, y - size / 2, text_width(text, size, weight), size)
+        marks.append(Text(text, left, y, size, colour, weight))
+    return marks, top + 8.0 * u + len(sheet.view.caption) * line_height(size)
 
 
 def _problem(sheet: Sheet, top: float, bottom: float) -> list[Mark]:

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from components.form import Form
 from components.view import View, drawn_positions
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.help import draw_help
 from systems.render.labels import place_labels
 from systems.render.marks import Picture
 from systems.render.overlays import draw_overlays, draw_scale
+from systems.render.page import draw_page
+from systems.render.panel import compose_form
 from systems.render.sheet import measure
 from systems.render.structure import draw_ghost, draw_grid, draw_halos, draw_particles, draw_rods, label_names
 from systems.render.supports import crowding, draw_supports, support_sides
 from systems.render.theme import Theme
+from systems.render.tools import draw_preview
 
 if TYPE_CHECKING:
     from components.model import Model
@@ -21,12 +25,16 @@ if TYPE_CHECKING:
 __all__ = ["compose", "drawn_positions"]
 
 
-def compose(model: Model, view: View, theme: Theme) -> Picture:
-    """The model as seen in a view, as marks in pixels. Reads the model, changes nothing.
+def compose(model: Model | Form, view: View, theme: Theme) -> Picture:
+    """The model (or form) as seen in a view, as marks in pixels. Reads it, changes nothing.
 
     Forces are read only where a diagram shows them, yielding only where a rod has a strength.
     """
+    if isinstance(model, Form):
+        return compose_form(model, view, theme)
     sheet = measure(model, view, theme)
+    if view.page is not None:
+        return Picture(view.camera.viewport, theme.background, [*draw_page(sheet), *draw_help(sheet)])
     draw_grid(sheet)
     draw_rod_diagrams(sheet)
     draw_ghost(sheet)
@@ -42,4 +50,5 @@ def compose(model: Model, view: View, theme: Theme) -> Picture:
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit)
     scale = draw_scale(sheet, room) if model.particles.count else []
     viewport = view.camera.viewport
-    return Picture(viewport, theme.background, [*sheet.marks, *labels, *scale, *overlays, *draw_help(sheet)])
+    over = [*scale, *draw_preview(sheet), *overlays, *draw_help(sheet)]
+    return Picture(viewport, theme.background, [*sheet.marks, *labels, *over])

@@ -7,6 +7,7 @@ from typing import Any
 
 import pygame
 
+from components.form import Form
 from components.model import Model
 from components.view import View
 from systems.base import Phase, System
@@ -40,5 +41,5 @@ class PygameRender(System):
             self._shown = (id(self.surface), self.theme, looks, _revisions(stages))
 
 
-def _revisions(stages: Sequence[tuple[Model, View]]) -> tuple[int, ...]:
-    return tuple(model.revision for model, _ in stages)
+def _revisions(stages: Sequence[tuple[Model | Form, View]]) -> tuple[tuple[str, int], ...]:
+    return tuple((shown.context, shown.revision) for shown, _ in stages)

@@ -19,6 +19,9 @@ from components.model import Model
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Rows = NDArray[np.intp]
+Matrix = Array | csc_matrix  # full up to DENSE unknowns, else sparse
+
+DENSE = 100  # unknowns up to which full matrices are faster
 
 AT_LIMIT = 1e-10  # share of its strength within which a rod counts as yielding
 ROUND_OFF = float(np.finfo(np.float64).eps)
@@ -195,7 +198,7 @@ class Structure:
 
     # --- tangent -------------------------------------------------------------------------------------
 
-    def tangent(self, response: Response, flowing: Flags, *, geometric: bool = True) -> csc_matrix:
+    def tangent(self, response: Response, flowing: Flags, *, geometric: bool = True) -> Matrix:
         """dF/du over the unknowns: Σ EA/L₀ a aᵀ (not of flowing rods) + Σ N/L (1 − a aᵀ)."""
         along = np.where(flowing, 0.0, self.stiffness / self.rest_length)
         across = np.zeros_like(along)
@@ -208,32 +211,42 @@ class Structure:
         block[:, 1, 1] += across
         return self._assembled(block)
 
-    def _assembled(self, block: Array) -> csc_matrix:
+    def _assembled(self, block: Array) -> Matrix:
         """Sum of the rods' 2 × 2 blocks: + at its ends, − between them."""
-        kept, slot, rows, starts = self._pattern
         signs = np.array([[1.0, -1.0], [-1.0, 1.0]])
-        parts = signs[None, :, None, :, None] * block[:, None, :, None, :]
-        values = np.bincount(slot, parts.ravel()[kept], len(rows))
+        parts = (signs[None, :, None, :, None] * block[:, None, :, None, :]).ravel()
+        if self.size <= DENSE:
+            kept, place = self._dense_pattern
+            dense: Array = np.bincount(place, parts[kept], self.size**2).reshape(self.size, self.size)
+            return dense
+        kept, slot, rows, starts = self._sparse_pattern
+        values = np.bincount(slot, parts[kept], len(rows))
         return csc_matrix((values, rows, starts), shape=(self.size, self.size))
 
     @cached_property
-    def _pattern(self) -> tuple[Rows, Rows, NDArray[np.int32], NDArray[np.int32]]:
-        """Which of the rods' 16 entries count, where each goes, and the compressed columns' rows and starts."""
-        number = np.full(self.unknown.size, -1, dtype=np.int64)
+    def _dense_pattern(self) -> tuple[Rows, Rows]:
+        """Which of the rods' 16 entries count, and where each goes in the flattened matrix."""
+        number = np.full(self.unknown.size, -1)
         number[self.index] = np.arange(self.size)
         own = number.reshape(-1, 2)[self.ends].reshape(-1, 4)
         row = np.repeat(own, 4, axis=1).ravel()
         column = np.tile(own, (1, 4)).ravel()
         kept = np.flatnonzero((row >= 0) & (column >= 0))
-        code, slot = np.unique(column[kept] * self.size + row[kept], return_inverse=True)
-        counts = np.bincount(code // max(self.size, 1), minlength=self.size)
-        starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
-        return kept, slot, (code % max(self.size, 1)).astype(np.int32), starts
+        return kept, column[kept] * self.size + row[kept]
 
-    def compatibility(self, response: Response) -> csc_matrix:
-        """Elongations of the rods from the unknowns, (rods, N); its transpose is the equilibrium matrix."""
-        a = response.axis
-        return csc_matrix(_compatibility(self.ends, a, len(self.position))[:, self.index])
+    @cached_property
+    def _sparse_pattern(self) -> tuple[Rows, Rows, NDArray[np.int32], NDArray[np.int32]]:
+        """The same for compressed columns: entries, the slot of each, and the slots' rows and starts."""
+        kept, place = self._dense_pattern
+        places, slot = np.unique(place, return_inverse=True)
+        counts = np.bincount(places // self.size, minlength=self.size)
+        starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
+        return kept, slot, (places % self.size).astype(np.int32), starts
+
+    def compatibility(self, response: Response, rows: Rows | slice = slice(None)) -> csc_matrix:
+        """Elongations of (some) rods from the unknowns, (rods, N); its transpose is the equilibrium matrix."""
+        matrix = _compatibility(self.ends[rows], response.axis[rows], len(self.position))
+        return csc_matrix(matrix[:, self.index])
 
 
 def _compatibility(ends: Rows, axis: Array, particles: int) -> csc_matrix:

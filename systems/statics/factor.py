@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy.linalg.lapack import dsytrf, dsytrs
 from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
 
-Array = NDArray[np.float64]
+from systems.statics.equations import Array, Matrix
 
 NO_STIFFNESS = 1e-13  # of the rods' at the same particle: what is softer than that is round-off
 SOFT = 1e-12  # of the rods' at the same particle: such a motion counts as not resisted
@@ -16,30 +16,48 @@ BLOCK = 8  # soft modes that are looked for at once
 
 
 class Factor:
-    """LU factors of a symmetric matrix with pivots on its diagonal only.
+    """A factored symmetric matrix: L D Lᵀ, full or sparse.
 
-    By Sylvester's law the pivots have the signs of the eigenvalues. If a pivot vanishes there is nothing
-    to solve with: `exists` is False.
+    negative: number of eigenvalues that are not positive, by Sylvester's law from the signs of D.
+    exists: False if a pivot vanishes and there is nothing to solve with.
     """
 
-    def __init__(self, matrix: csc_matrix) -> None:
-        self.size = matrix.shape[0]
+    def __init__(self, matrix: Matrix) -> None:
         self.exists, self.negative = True, 0
-        if self.size == 0:
+        if isinstance(matrix, np.ndarray):
+            self._factor_full(matrix)
+        else:
+            self._factor_sparse(matrix)
+        if not self.exists:
+            self.negative = matrix.shape[0]
+
+    def _factor_full(self, matrix: Array) -> None:
+        """Bunch and Kaufman's pivoting; its 2 × 2 pivots have one eigenvalue of either sign."""
+        if matrix.shape[0] == 0:
+            self._solve = np.zeros_like
             return
+        factors, swaps, info = dsytrf(matrix, lower=1)
+        self.exists = info == 0
+        single = swaps >= 0
+        self.negative = int((np.diagonal(factors)[single] <= 0.0).sum()) + int((~single).sum()) // 2
+        self._solve = lambda right: dsytrs(factors, swaps, right, lower=1)[0].reshape(right.shape)
+
+    def _factor_sparse(self, matrix: csc_matrix) -> None:
+        """Pivots on the diagonal only, so that they are those of a symmetric elimination."""
         try:
-            self._lu = splu(
+            factors = splu(
                 matrix,
                 permc_spec="MMD_AT_PLUS_A",
                 diag_pivot_thresh=0.0,
                 options={"SymmetricMode": True},
             )
         except RuntimeError:  # exactly singular
-            self.exists, self.negative = False, self.size
+            self.exists = False
             return
-        pivots = self._lu.U.diagonal()
-        moved = not np.array_equal(self._lu.perm_r, self._lu.perm_c)
-        self.negative = int((pivots <= 0.0).sum()) if not moved else max(1, int((pivots <= 0.0).sum()))
+        self.negative = int((factors.U.diagonal() <= 0.0).sum())
+        if not np.array_equal(factors.perm_r, factors.perm_c):  # a diagonal entry was zero
+            self.negative = max(1, self.negative)
+        self._solve = factors.solve
 
     @property
     def definite(self) -> bool:
@@ -48,18 +66,18 @@ class Factor:
 
     def solve(self, right: Array) -> Array:
         """The solution for one or several right-hand sides, (N,) or (N, k)."""
-        if self.size == 0:
-            return np.zeros_like(right)
-        solution: Array = self._lu.solve(right)
+        solution: Array = self._solve(right)
         return solution
 
 
-def regular(matrix: csc_matrix, weight: Array, share: float = NO_STIFFNESS) -> Factor:
-    """Factor of K + share × weight: definite if no motion is resisted by less than −share."""
+def regular(matrix: Matrix, weight: Array, share: float = NO_STIFFNESS) -> Factor:
+    """Factor of K + share × weight: definite if every motion is resisted by more than −share."""
+    if isinstance(matrix, np.ndarray):
+        return Factor(matrix + np.diag(share * weight))
     return Factor(csc_matrix(matrix + diags(share * weight, format="csc")))
 
 
-def lowest_mode(matrix: csc_matrix, weight: Array) -> tuple[float, Array]:
+def lowest_mode(matrix: Matrix, weight: Array) -> tuple[float, Array]:
     """The least eigenvalue λ of K φ = λ W φ and its mode, φᵀWφ = 1, by shifted inverse iteration."""
     share = NO_STIFFNESS
     factor = regular(matrix, weight, share)
@@ -77,7 +95,7 @@ def lowest_mode(matrix: csc_matrix, weight: Array) -> tuple[float, Array]:
     return value, mode
 
 
-def soft_modes(matrix: csc_matrix, weight: Array, factor: Factor | None = None) -> Array:
+def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None) -> Array:
     """Up to 8 modes (N, k) that K resists by less than a share SOFT of W, orthonormal in W."""
     factor = factor or regular(matrix, weight)
     if len(weight) == 0 or not factor.exists:

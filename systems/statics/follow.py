@@ -9,10 +9,11 @@ an increment that lands on another branch is taken back and made smaller.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from systems.statics.complementarity import yielding_set
 from systems.statics.equations import ROUND_OFF, Array, Flags, Response, Structure
 from systems.statics.factor import Factor, regular
 
@@ -50,17 +51,19 @@ class Tangent:
     """The direction of a path at a point.
 
     rate: du/dt of the unknowns. flowing: rods that yield on the way. sense: +1 if t grows along the path.
+    consistent: False if no set of flowing rods agrees with the motion it leads to.
     """
 
     rate: Array
     flowing: Flags
     factor: Factor
     sense: float
+    consistent: bool = True
 
     @property
     def stable(self) -> bool:
         """True if the equilibrium resists every small motion, and t grows."""
-        return self.factor.definite and self.sense > 0.0
+        return self.consistent and self.factor.definite and self.sense > 0.0
 
 
 @dataclass(frozen=True)
@@ -106,18 +109,49 @@ class Path:
     def tangent(self, point: Point, onward: Array | None = None) -> Tangent:
         """The direction in which the path goes on; onward: how the unknowns changed so far.
 
-        Of the rods at a strength those flow whose elongation goes on in that direction: starting from
-        none, rods are added and taken back until that is so.
+        Of the rods at a strength those flow whose elongation goes on in that direction.
         """
         structure, response = self.structure, point.response
         limited = structure.at_limit(response)
-        sign = np.sign(response.axial_force)
+        elastic = self._direction(response, np.zeros_like(limited), onward)
+        if not limited.any() or not elastic.stable:
+            return elastic
+        growth = structure.elongation_rate(elastic.rate, response) * np.sign(response.axial_force)
+        grows = limited & (growth > 0.0)
+        if not grows.any():
+            return elastic
+        if not self.exact_events:
+            return self._flow_by_trial(response, limited, grows, onward)
+        flowing = self._flow_exactly(response, limited, growth, elastic.factor)
+        if flowing is not None:
+            return self._direction(response, flowing, onward)
+        return replace(self._direction(response, grows, onward), consistent=False)
+
+    def _flow_exactly(self, response: Response, limited: Flags, growth: Array, elastic: Factor) -> Flags | None:
+        """Of the rods at a strength those that flow, or None if there is no such set."""
+        structure = self.structure
+        sign = np.sign(response.axial_force)[limited]
+        stiffness = (structure.stiffness / structure.rest_length)[limited]
+        pull = structure.compatibility(response, np.flatnonzero(limited)).toarray() * sign[:, None]
+        softening = pull @ elastic.solve(np.ascontiguousarray(pull.T))
+        matrix = np.diag(stiffness) - stiffness[:, None] * softening * stiffness
+        chosen = yielding_set(0.5 * (matrix + matrix.T), stiffness * growth[limited])
+        if chosen is None:
+            return None
         flowing = np.zeros_like(limited)
+        flowing[limited] = chosen
+        return flowing
+
+    def _flow_by_trial(
+        self, response: Response, limited: Flags, flowing: Flags, onward: Array | None
+    ) -> Tangent:
+        """In a large structure: let rods flow and stop until the set stays, or nearly."""
+        sign = np.sign(response.axial_force)
         for _ in range(ACTIVE_SET_ROUNDS):
             found = self._direction(response, flowing, onward)
-            rate = structure.elongation_rate(found.sense * found.rate, response)
+            rate = self.structure.elongation_rate(found.sense * found.rate, response)
             grows = limited & (sign * rate > 0.0)
-            if not limited.any() or np.array_equal(grows, flowing):
+            if np.array_equal(grows, flowing):
                 break
             flowing = grows
         return found
@@ -126,7 +160,7 @@ class Path:
         structure = self.structure
         factor = regular(structure.tangent(response, flowing), structure.weight)
         rate = factor.solve(self.push) if factor.exists else np.zeros(structure.size)
-        forward = onward is None or float(rate @ onward) >= 0.0
+        forward = factor.definite or onward is None or float(rate @ onward) >= 0.0
         return Tangent(rate, flowing, factor, 1.0 if forward else -1.0)
 
     def stable_without(self, point: Point, flowing: Flags) -> bool:
@@ -147,15 +181,15 @@ class Path:
 
         An increment ends where a rod begins to yield; one that fails is halved.
         """
-        trial = min(increment, self._until_event(point, tangent))
+        trial, failed = min(increment, self._until_event(point, tangent)), False
         smallest = SMALLEST * self.stretch(tangent)
         while trial > smallest:
             found = self.attempt(point, tangent, trial)
             if isinstance(found, tuple):
-                return Step(*found, trial, 2.0 * increment)
+                return Step(*found, trial, increment if failed else 2.0 * increment)
             trial *= found
             if found == HALF:
-                increment = trial
+                increment, failed = trial, True
         return None
 
     def attempt(self, point: Point, tangent: Tangent, increment: float) -> tuple[Point, Tangent] | float:
@@ -170,6 +204,8 @@ class Path:
             return HALF
         guess = point.displacement + structure.spread(predicted)
         found = self.correct(point, guess, point.t + dt, None if last else tangent)
+        if found is not None and found.t > 1.0:
+            found = self.correct(point, found.displacement, 1.0, None)
         if found is None:
             return HALF
         change = structure.gather(found.displacement - point.displacement)

@@ -28,7 +28,7 @@ def truss(**rods: Any) -> Model:
 
 def lattice(rods: int, **columns: Any) -> Model:
     """A square lattice with both diagonals and about so many rods, its left edge held, pulled to the right."""
-    side = max(int(round((rods / 4.0) ** 0.5)), 2)
+    side = max(round((rods / 4.0) ** 0.5), 2)
     x, y = np.meshgrid(np.arange(side, dtype=float), np.arange(side, dtype=float))
     position = np.stack([x.ravel(), y.ravel()], axis=1)
     left, right = position[:, 0] == 0.0, position[:, 0] == side - 1.0

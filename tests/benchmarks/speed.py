@@ -142,7 +142,7 @@ _FIRST_FRAME = """
 import os; os.environ["SDL_VIDEODRIVER"] = "dummy"
 from game import models
 from game.app import App
-app = App(models.load("isostatic"), "isostatic")
+app = App(models.load("isostatic"))
 if {frames} > 1: app.session.press("space")
 for _ in range({frames}): app.frame(1 / 60)
 """

@@ -5,9 +5,10 @@ least as large as the box. It is entered there as native, by the cell of its box
 coarser layers, so that two boxes that overlap are in adjacent cells of the coarser one's layer, whatever their
 sizes; a very large or very fast disc costs no more than a look at all others.
 
-boxes: shape (n, 4): left, bottom, right, top, m. layer: the disc's layer, shape (n,). levels: cell size of
-layer k = cell × 2^levels[k], ascending. Entries of one bucket are doubly linked; entry = disc × layers + layer.
-heads: first entry of a bucket, power of two long. after, before: links; −1 ends. keys: hash of the cell.
+boxes: shape (n, 4): left, bottom, right, top, m. layer: the layer of each disc, shape (n,). levels: the cells
+of layer k have the size cell × 2^levels[k]; ascending. Entry disc × layers + layer of `entries`, shape
+(capacity, 3), holds the entries after and before it in its bucket (−1: none) and the hash of its cell; heads
+are the first entries of the buckets, a power of two of them.
 """
 
 import math
@@ -17,6 +18,7 @@ from systems.collision.gap.kernels import extent
 from systems.kernels import compiled
 
 NONE = -1
+AFTER, BEFORE, KEY = 0, 1, 2
 FARTHEST_CELL = 2.0**40  # cells from the origin; farther out cells grow, so that they stay whole numbers
 COARSEST = 63
 MARGIN = 1e-13  # of a disc's coordinates, added to its box: above what counts as touching
@@ -88,7 +90,7 @@ def _inverse_size(cell, level):
 
 
 @compiled
-def enter(i, boxes, layer, levels, layers, cell, heads, after, before, keys):
+def enter(i, boxes, layer, levels, layers, cell, heads, entries):
     """Enter a disc into its layer and all coarser ones."""
     x, y = 0.5 * (boxes[i, 0] + boxes[i, 2]), 0.5 * (boxes[i, 1] + boxes[i, 3])
     for k in range(layer[i], layers):
@@ -98,46 +100,46 @@ def enter(i, boxes, layer, levels, layers, cell, heads, after, before, keys):
         bucket = key & (heads.shape[0] - 1)
         entry = i * layers + k
         first = heads[bucket]
-        keys[entry] = key
-        before[entry] = NONE
-        after[entry] = first
+        entries[entry, KEY] = key
+        entries[entry, BEFORE] = NONE
+        entries[entry, AFTER] = first
         if first != NONE:
-            before[first] = entry
+            entries[first, BEFORE] = entry
         heads[bucket] = entry
 
 
 @compiled
-def leave(i, layer, layers, heads, after, before, keys):
+def leave(i, layer, layers, heads, entries):
     """Take a disc out of the grid."""
     for k in range(layer[i], layers):
         entry = i * layers + k
-        previous, following = before[entry], after[entry]
+        previous, following = entries[entry, BEFORE], entries[entry, AFTER]
         if previous == NONE:
-            heads[keys[entry] & (heads.shape[0] - 1)] = following
+            heads[entries[entry, KEY] & (heads.shape[0] - 1)] = following
         else:
-            after[previous] = following
+            entries[previous, AFTER] = following
         if following != NONE:
-            before[following] = previous
+            entries[following, BEFORE] = previous
 
 
 @compiled
-def _collect(i, key, boxes, layers, heads, after, keys, found, count):
+def _collect(i, key, boxes, layers, heads, entries, found, count):
     """Add the discs of one cell whose boxes overlap that of disc i."""
     left, bottom, right, top = boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3]
     entry = heads[key & (heads.shape[0] - 1)]
     while entry != NONE:
-        if keys[entry] == key:
+        if entries[entry, KEY] == key:
             j = entry // layers
             apart = boxes[j, 0] > right or boxes[j, 2] < left or boxes[j, 1] > top or boxes[j, 3] < bottom
             if not apart and j != i and count < found.shape[0]:
                 found[count] = j
                 count += 1
-        entry = after[entry]
+        entry = entries[entry, AFTER]
     return count
 
 
 @compiled
-def neighbours(i, boxes, layer, levels, layers, cell, heads, after, keys, found):
+def neighbours(i, boxes, layer, levels, layers, cell, heads, entries, found):
     """Discs whose boxes overlap that of disc i, each once, into `found`, shape (n,); returns how many."""
     count = 0
     x, y = 0.5 * (boxes[i, 0] + boxes[i, 2]), 0.5 * (boxes[i, 1] + boxes[i, 3])
@@ -147,13 +149,10 @@ def neighbours(i, boxes, layer, levels, layers, cell, heads, after, keys, found)
         reach = 0.501 * (size * inverse + 1.0)  # in cells; the excess covers rounding
         left, right = math.floor(x * inverse - reach), math.floor(x * inverse + reach)
         bottom, top = math.floor(y * inverse - reach), math.floor(y * inverse + reach)
+        guests = k == layer[i] and k > 0
         for cx in range(left, right + 1):
             for cy in range(bottom, top + 1):
-                count = _collect(
-                    i, _key(cx, cy, 2 * k), boxes, layers, heads, after, keys, found, count
-                )
-                if k == layer[i] and k > 0:
-                    count = _collect(
-                        i, _key(cx, cy, 2 * k + 1), boxes, layers, heads, after, keys, found, count
-                    )
+                count = _collect(i, _key(cx, cy, 2 * k), boxes, layers, heads, entries, found, count)
+                if guests:
+                    count = _collect(i, _key(cx, cy, 2 * k + 1), boxes, layers, heads, entries, found, count)
     return count

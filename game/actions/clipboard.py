@@ -1,0 +1,56 @@
+"""Actions that copy, cut, paste and duplicate elements."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from components.field import Vector
+from components.world import Handle
+from game.actions.registry import action
+from game.clipboard import copied, parsed, paste
+from systems.edit.placing import snapped
+from systems.edit.rods import delete
+
+if TYPE_CHECKING:
+    from game.session import Session
+
+BESIDE = 30.0  # points to the right and down, where a duplicate appears
+
+
+@action("copy")
+def _copy(session: Session, pixel: Vector) -> None:
+    session.clipboard = copied(session.model, session.selected)
+    session.notice = "Copied; Ctrl+V pastes it at the pointer."
+
+
+@action("cut")
+def _cut(session: Session, pixel: Vector) -> None:
+    session.clipboard = copied(session.model, session.selected)
+    delete(session.model, session.selected)
+    session.notice = "Cut; Ctrl+V pastes it at the pointer."
+
+
+@action("paste")
+def _paste(session: Session, pixel: Vector) -> None:
+    """With the middle at the pointer; the first particle snaps to the grid."""
+    source = parsed(session.clipboard)
+    position = source.particles.position
+    middle = 0.5 * (position.min(axis=0) + position.max(axis=0))
+    x, y = (position[0] + session.view.camera.to_model(pixel) - middle).tolist()
+    offset = np.subtract(snapped(session.model, session.view, (x, y)), position[0]).tolist()
+    _show(session, paste(session.model, source, (offset[0], offset[1])), "Pasted")
+
+
+@action("duplicate")
+def _duplicate(session: Session, pixel: Vector) -> None:
+    view = session.view
+    beside = BESIDE * view.pixel_ratio / view.camera.scale
+    source = parsed(copied(session.model, session.selected))
+    _show(session, paste(session.model, source, snapped(session.model, view, (beside, -beside))), "Duplicated")
+
+
+def _show(session: Session, made: list[Handle], done: str) -> None:
+    session.select(*made)
+    session.notice = f"{done}: {len(made)} elements; drag them where they belong."

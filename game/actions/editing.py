@@ -1,0 +1,70 @@
+"""Actions that make, change and delete elements."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from components.field import Vector
+from components.particle import Particle
+from game.actions.registry import action
+from systems.edit.moving import movable, move, nudged
+from systems.edit.picking import pick_particle
+from systems.edit.placing import place
+from systems.edit.refusal import Refusal
+from systems.edit.rods import delete
+from systems.edit.supports import next_support
+
+if TYPE_CHECKING:
+    from game.session import Session
+
+
+@action("place", while_drawing=True)
+def _place(session: Session, pixel: Vector) -> None:
+    particle = place(session.model, session.view, pixel)
+    x, y = particle.position
+    session.notice = f"{session.name(particle)}: ({100.0 * x:g}, {100.0 * y:g}) cm"
+
+
+@action("delete")
+def _delete(session: Session, pixel: Vector) -> None:
+    doomed = session.selected
+    if not doomed:
+        raise Refusal("Nothing is selected; click what is to be deleted first.")
+    before = {table.name: table.count for table in session.model.tables.values()}
+    named = session.name(doomed[0])
+    delete(session.model, doomed)
+    gone = {name: count - session.model.tables[name].count for name, count in before.items()}
+    told = [f"{count} {name if count > 1 else name[:-1]}" for name, count in gone.items() if count]
+    session.notice = f"{named} deleted." if sum(gone.values()) == 1 else f"{', '.join(told)} deleted."
+
+
+@action("support")
+def _support(session: Session, pixel: Vector) -> None:
+    """Of the particle under the pointer, or of the selected ones."""
+    hit = pick_particle(session.model, session.view, pixel)
+    chosen = [handle for handle in session.selected if isinstance(handle, Particle)]
+    if hit is not None and hit not in chosen:
+        chosen = [hit]
+    if not chosen:
+        raise Refusal("Point at a particle, or select some, to support them.")
+    support = next_support(session.model, chosen)
+    session.notice = f"{_all_of(session, chosen)}: {support}"
+
+
+def _all_of(session: Session, particles: list[Particle]) -> str:
+    return session.name(particles[0]) if len(particles) == 1 else f"{len(particles)} particles"
+
+
+def nudge(session: Session, direction: Vector, *, far: bool) -> bool:
+    """Move what is selected by about a pixel, or (far) a grid spacing; False if nothing is."""
+    model = session.model
+    particles = movable(model, session.selected)
+    if not particles:
+        return False
+    rows = [particle.row for particle in particles]
+    positions = nudged(model, session.view, model.particles.position[rows], direction, far=far)
+    with session.history.as_one(("nudge", *(particle.entity for particle in particles))):
+        move(model, particles, positions)
+    x, y = particles[0].position
+    session.notice = f"{_all_of(session, particles)}: ({100.0 * x:g}, {100.0 * y:g}) cm"
+    return True

@@ -1,0 +1,58 @@
+"""Actions of the force method's guide."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from components.field import Vector
+from game.actions.registry import action
+from game.scenes.force_method import ForceMethod
+from systems.edit.picking import pick
+
+if TYPE_CHECKING:
+    from game.force_method import Guide
+    from game.session import Session
+
+
+def _guide(session: Session) -> Guide | None:
+    scene = session.scenes.active
+    return scene.guide if isinstance(scene, ForceMethod) else None
+
+
+@action("next part")
+def _next_part(session: Session, pixel: Vector) -> None:
+    guide = _guide(session)
+    if guide is not None and not guide.next():
+        session.scenes.request("pause")
+
+
+@action("pick unknown")
+def _pick_unknown(session: Session, pixel: Vector) -> None:
+    guide = _guide(session)
+    if guide is not None and guide.part == 2:
+        guide.pick(pick(*session.focus, pixel))
+
+
+@action("release x")
+def _release_x(session: Session, pixel: Vector) -> None:
+    _pick_axis(session, 0)
+
+
+@action("release y")
+def _release_y(session: Session, pixel: Vector) -> None:
+    _pick_axis(session, 1)
+
+
+def _pick_axis(session: Session, axis: int) -> None:
+    guide = _guide(session)
+    if guide is not None:
+        guide.pick_axis(axis)
+
+
+@action("toggle diagrams of sets")
+def _toggle_diagrams(session: Session, pixel: Vector) -> None:
+    guide = _guide(session)
+    if guide is not None:
+        session.view.all_diagrams = not session.view.all_diagrams
+        for one in guide.sets:
+            one.view.all_diagrams = session.view.all_diagrams

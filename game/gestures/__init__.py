@@ -1,0 +1,8 @@
+"""Gestures: what a person draws and drags with the pointer."""
+
+from game.gestures.base import Gesture
+from game.gestures.drawing import TOOL_HINTS, TOOLS, Drawing
+from game.gestures.moving import Move, PullParticle
+from game.gestures.selecting import BoxSelect
+
+__all__ = ["TOOLS", "TOOL_HINTS", "BoxSelect", "Drawing", "Gesture", "Move", "PullParticle"]

@@ -1,0 +1,28 @@
+"""Moment: a point in a run that one can return to and go on from, bit for bit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from components.field import Column
+from components.snapshot import Snapshot
+
+
+@dataclass(frozen=True)
+class Moment:
+    """The state at a fixed step, and how far edits are accounted for in it. The document is not part of it.
+
+    state: all of it, or of the clock only where nothing else can have changed since.
+    armed: the energy account and the step size fit the document.
+    before_edit: measures of the state before edits that are not accounted for yet.
+    """
+
+    state: Snapshot
+    steps: int
+    armed: bool
+    before_edit: Column | None
+
+    @property
+    def size(self) -> int:
+        """Bytes that it keeps."""
+        return sum(column.nbytes for column in self.state.columns.values())

@@ -1,0 +1,151 @@
+"""Spares: unsaved work, written every few seconds, so that a crash loses no more than that."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import threading
+import time
+import uuid
+from pathlib import Path
+from typing import IO, Any
+
+import msgspec
+
+from game import library, models
+from game.desk import Desk
+from game.document import document
+from systems.base import Phase, System
+
+INTERVAL = 2.0  # s between spares of the same model, at least
+SHARE = 0.05  # of the time at most goes into making them
+LAST_SESSION = "last session"  # the name under which edits are kept that nobody saved
+
+
+def spare_name(path: Path) -> str:
+    """The name of the model in a spare."""
+    return path.stem.partition(".")[2].partition(".")[2]
+
+
+class SpareKeeper(System):
+    """Writes the unsaved work of a window to files that only a crash leaves behind.
+
+    The folder holds, for every running program, a lock "ID.lock" that its end releases, however it ends,
+    and its spares "ID.NUMBER.NAME.json".
+    """
+
+    name = "files.spares"
+    phase = Phase.EVENTS
+
+    def __init__(self, folder: Path | None = None, interval: float = INTERVAL) -> None:
+        self._folder = folder or library.data_folder() / "autosave"
+        self._interval = interval
+        self._id = uuid.uuid4().hex[:8]
+        self._count = 0
+        self._written: dict[Desk, int] = {}  # revision of what the spare of a desk holds
+        self._due = 0.0
+        self._thread: threading.Thread | None = None
+        self._folder.mkdir(parents=True, exist_ok=True)
+        lock = _lock(self._folder / f"{self._id}.lock")
+        self._locks = [lock] if lock is not None else []
+        self._left = self._orphans()
+
+    # --- what a crash left behind --------------------------------------------------------------------
+
+    def _orphans(self) -> list[Path]:
+        """Spares of programs that are not running any more, the newest first; they are ours now."""
+        for path in self._folder.glob("*.lock"):
+            if path.stem == self._id:
+                continue
+            lock = _lock(path)
+            if lock is not None:
+                self._locks.append(lock)
+        ours = {Path(lock.name).stem for lock in self._locks}
+        files = [p for p in self._folder.glob("[!.]*.json") if p.name.partition(".")[0] in ours]
+        return sorted(files, key=lambda path: path.stat().st_mtime, reverse=True)
+
+    def left(self) -> list[Path]:
+        """What a crash left behind."""
+        return [path for path in self._left if path.exists()]
+
+    def take_over(self, path: Path, desk: Desk) -> None:
+        """What was left behind is unsaved work of this desk from now on."""
+        self._left.remove(path)
+        desk.spare = path
+        desk.saved = -1
+
+    # --- writing -------------------------------------------------------------------------------------
+
+    def process(self, frame: Any) -> None:
+        """Write a spare of one model that changed, if it is time to."""
+        now = time.monotonic()
+        if now < self._due or (self._thread is not None and self._thread.is_alive()):
+            return
+        for desk in frame.session.desks:
+            if not desk.unsaved:
+                self._remove(desk)
+            elif self._written.get(desk) != desk.newest:
+                self._write(desk)
+                spent = time.monotonic() - now
+                self._due = now + max(self._interval, spent / SHARE)
+                return
+
+    def _write(self, desk: Desk) -> None:
+        """Take the model as it is now; a thread puts it into the file."""
+        if desk.spare is None:
+            self._count += 1
+            desk.spare = self._folder / f"{self._id}.{self._count}.{desk.file.name}.json"
+        try:
+            content = document(desk.model)
+        except models.ModelError:  # nothing that a file can hold; what was written before stays
+            return
+        finally:
+            self._written[desk] = desk.newest
+        self._thread = threading.Thread(target=_put, args=(desk.spare, content), daemon=True)
+        self._thread.start()
+
+    def _remove(self, desk: Desk) -> None:
+        if desk.spare is not None:
+            desk.spare.unlink(missing_ok=True)
+            desk.spare = None
+            self._written.pop(desk, None)
+
+    def close(self, desks: list[Desk]) -> None:
+        """A clean end: no spare stays. Edits that nobody saved are kept as the model "last session"."""
+        if self._thread is not None:
+            self._thread.join()
+        edited = [desk for desk in desks if desk.edited and desk.model.particles.count]
+        with contextlib.suppress(models.ModelError, OSError):
+            for desk in edited[-1:]:
+                library.models_folder().mkdir(parents=True, exist_ok=True)
+                models.save(desk.model, library.path_of(LAST_SESSION))
+        for desk in desks:
+            self._remove(desk)
+        for lock in self._locks:
+            path = Path(lock.name)
+            lock.close()
+            if not any(self._folder.glob(f"{path.stem}.*.json")):
+                path.unlink(missing_ok=True)
+
+
+def _put(path: Path, content: dict[str, Any]) -> None:
+    with contextlib.suppress(OSError):  # a full disk shall not end the session; saving will say so
+        models.replace(path, msgspec.json.encode(content))
+
+
+def _lock(path: Path) -> IO[bytes] | None:
+    """The open file, if no running program holds it; it is held until it is closed or the program ends."""
+    file = path.open("ab")
+    try:
+        if sys.platform == "win32":
+            import msvcrt
+
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        file.close()
+        return None
+    return file

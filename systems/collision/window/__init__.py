@@ -1,0 +1,1 @@
+"""What is foreseen, and for how long."""

@@ -1,0 +1,279 @@
+"""Windows of time: for how long meetings are foreseen, and between which discs.
+
+When a window opens, every disc gets a box around its path until the window's end, and the meetings of discs
+whose boxes overlap are foreseen and queued. What is foreseen for two discs follows from their paths alone, so
+that windows, boxes, grid and queue can be thrown away and made anew at any time without changing a bit of what
+comes out.
+
+first, partners, bonds: pairs that do not collide; those of disc i are partners[first[i] : first[i + 1]].
+"""
+
+from systems.collision.disc import AX, AY, EPOCH, RADIUS, VX, VY, WX, WY
+from systems.collision.gap.kernels import NEVER, first_approach, relative_motion, speed_noise
+from systems.collision.grid.kernels import (
+    COARSEST,
+    NONE,
+    box_size,
+    enclose,
+    enter,
+    layer_of,
+    level_of,
+    neighbours,
+)
+from systems.collision.queue.kernels import purge, push
+from systems.collision.state import (
+    CELL,
+    CROWDING,
+    END,
+    LAYERS,
+    LEVEL,
+    NOW,
+    OPENED,
+    QUEUED,
+    RENEW,
+    STRIKES,
+    STRIKES_BEFORE,
+    WINDOW,
+    Reason,
+)
+from systems.kernels import compiled
+
+DONE, QUEUE_FULL, GRID_FULL = int(Reason.DONE), int(Reason.QUEUE_FULL), int(Reason.GRID_FULL)
+FREE, JOINED, OVERLAPPING = 0, 1, 2  # bonds: none; never collide; do not collide before they have separated
+
+LONGEST_WINDOW, SHORTEST_WINDOW = 2.0**20, 2.0**-200  # s
+BOX_COST = 12.0  # of renewing a disc's box, relative to that of looking at one neighbour (measured)
+CROWD = 64  # neighbours per disc; a window with more is opened anew with a shorter one
+SAMPLE = 128  # discs that decide the size of the grid's cells
+
+
+@compiled
+def is_held(discs, i):
+    """True if a disc cannot move at all."""
+    return discs[i, WX] == 0.0 and discs[i, WY] == 0.0
+
+
+@compiled
+def find_bond(i, j, first, partners, bonds):
+    """Index of the bond of i to j, or −1."""
+    for k in range(first[i], first[i + 1]):
+        if partners[k] == j and bonds[k] != FREE:
+            return k
+    return -1
+
+
+@compiled
+def foresee(i, j, discs, first, partners, bonds, end):
+    """Time at which two discs next touch while they approach, up to `end`; NEVER if they do not."""
+    if i > j:
+        i, j = j, i
+    if is_held(discs, i) and is_held(discs, j):
+        return NEVER
+    bond = find_bond(i, j, first, partners, bonds)
+    if bond >= 0 and bonds[bond] == JOINED:
+        return NEVER
+    start = max(discs[i, EPOCH], discs[j, EPOCH])
+    dx, dy, vx, vy, ax, ay = relative_motion(discs, i, j, start)
+    reach = discs[i, RADIUS] + discs[j, RADIUS]
+    overlapping = bond >= 0
+    if overlapping and dx * dx + dy * dy > reach * reach:
+        bonds[bond] = FREE
+        bonds[find_bond(j, i, first, partners, bonds)] = FREE
+        overlapping = False
+    noise = speed_noise(discs, i, j, start)
+    return start + first_approach(dx, dy, vx, vy, ax, ay, reach, noise, end - start, overlapping)
+
+
+@compiled
+def expect(i, j, discs, changes, first, partners, bonds, times, meetings, numbers, counts):
+    """Foresee a meeting and queue it if it falls into the window. False if the queue is full."""
+    time = foresee(i, j, discs, first, partners, bonds, numbers[END])
+    if time > numbers[END]:
+        return True
+    if counts[QUEUED] == times.shape[0]:
+        counts[QUEUED] = purge(times, meetings, counts[QUEUED], changes)
+        if counts[QUEUED] > times.shape[0] - times.shape[0] // 8:
+            return False
+    if i > j:
+        i, j = j, i
+    push(times, meetings, counts[QUEUED], time, i, j, changes[i], changes[j])
+    counts[QUEUED] += 1
+    return True
+
+
+@compiled
+def open_window(
+    discs,
+    changes,
+    boxes,
+    layer,
+    levels,
+    heads,
+    entries,
+    first,
+    partners,
+    bonds,
+    times,
+    meetings,
+    found,
+    numbers,
+    counts,
+):
+    """Choose a window that begins now, box all discs and queue all meetings in it. Returns a Reason."""
+    counts[RENEW] = 1
+    _choose_length(discs, numbers, counts)
+    while True:
+        reason, pairs = _fill(
+            discs, changes, boxes, layer, levels, heads, entries, first, partners, bonds, times, meetings, found,
+            numbers, counts,
+        )  # fmt: skip
+        if reason != DONE:
+            return reason
+        window = numbers[WINDOW]
+        area = _area(discs, numbers, window)
+        if pairs <= CROWD * discs.shape[0] or area <= 2.0 * _area(discs, numbers, 0.0):
+            break
+        numbers[WINDOW] = max(0.25 * window, SHORTEST_WINDOW)
+    numbers[CROWDING] = max(pairs, 0.05 * discs.shape[0]) / area
+    numbers[OPENED] = numbers[NOW]
+    counts[STRIKES_BEFORE] = counts[STRIKES]
+    counts[RENEW] = 0
+    return DONE
+
+
+@compiled
+def _fill(
+    discs,
+    changes,
+    boxes,
+    layer,
+    levels,
+    heads,
+    entries,
+    first,
+    partners,
+    bonds,
+    times,
+    meetings,
+    found,
+    numbers,
+    counts,
+):
+    """Boxes, grid and queue of a window; returns a Reason and how many pairs of boxes overlap."""
+    numbers[END] = numbers[NOW] + numbers[WINDOW]
+    for i in range(discs.shape[0]):
+        enclose(i, discs, boxes, numbers[NOW], numbers[END])
+    _layer(boxes, layer, levels, numbers, counts)
+    if discs.shape[0] * counts[LAYERS] > entries.shape[0]:
+        return GRID_FULL, 0
+    heads[:] = NONE
+    counts[QUEUED] = 0
+    pairs = 0
+    for i in range(discs.shape[0]):
+        layers = counts[LAYERS]
+        near = neighbours(i, boxes, layer, levels, layers, numbers[CELL], heads, entries, found)
+        for k in range(near):
+            if not expect(
+                i, found[k], discs, changes, first, partners, bonds, times, meetings, numbers, counts
+            ):
+                return QUEUE_FULL, 0
+        pairs += near
+        enter(i, boxes, layer, levels, layers, numbers[CELL], heads, entries)
+    return DONE, pairs
+
+
+# --- length of the window: what costs least -------------------------------------------------------------
+
+
+@compiled
+def _area(discs, numbers, window):
+    """Sum of the areas of all boxes in a window of some length; none more than would hold half of all discs."""
+    most = 0.5 * discs.shape[0] / numbers[CROWDING] if numbers[CROWDING] > 0.0 else NEVER
+    total = 0.0
+    for i in range(discs.shape[0]):
+        s = numbers[NOW] - discs[i, EPOCH]
+        vx, vy = abs(discs[i, VX] + s * discs[i, AX]), abs(discs[i, VY] + s * discs[i, AY])
+        pull = max(abs(discs[i, AX]), abs(discs[i, AY]))
+        side = 2.0 * discs[i, RADIUS] + window * (max(vx, vy) + 0.5 * window * pull)
+        total += min(side * side, most)
+    return total
+
+
+@compiled
+def _cost(discs, numbers, rate, window):
+    """Cost per second: boxes and pairs once a window, and those of two discs for every strike."""
+    pairs = numbers[CROWDING] * _area(discs, numbers, window)
+    count = discs.shape[0]
+    return (BOX_COST * count + pairs) / window + rate * 2.0 * (BOX_COST + 2.0 * pairs / count)
+
+
+@compiled
+def _choose_length(discs, numbers, counts):
+    """Adapt the length of the window to speeds, crowding and strikes per second; seek it the first time."""
+    if discs.shape[0] == 0:
+        numbers[WINDOW] = LONGEST_WINDOW
+        return
+    passed = numbers[NOW] - numbers[OPENED]
+    rate = (counts[STRIKES] - counts[STRIKES_BEFORE]) / passed if passed > 0.0 else 0.0
+    steps = 1
+    if numbers[WINDOW] == 0.0:
+        numbers[WINDOW] = 1.0
+        steps = 300
+    for _ in range(steps):
+        window = numbers[WINDOW]
+        cost = _cost(discs, numbers, rate, window)
+        if _cost(discs, numbers, rate, 0.5 * window) < cost:
+            numbers[WINDOW] = max(0.5 * window, SHORTEST_WINDOW)
+        elif _cost(discs, numbers, rate, 2.0 * window) < cost:
+            numbers[WINDOW] = min(2.0 * window, LONGEST_WINDOW)
+        if numbers[WINDOW] == window:
+            return
+
+
+# --- layers of the grid ---------------------------------------------------------------------------------
+
+
+@compiled
+def _layer(boxes, layer, levels, numbers, counts):
+    """Choose the finest cells and the layers that the boxes need, and give every disc its layer."""
+    numbers[CELL] = _cell_size(boxes)
+    needed = 0
+    for i in range(boxes.shape[0]):
+        layer[i] = level_of(i, boxes, numbers[CELL])
+        needed |= 1 << layer[i]
+    needed |= 1 << min(counts[LEVEL], COARSEST)
+    counts[LAYERS] = 0
+    for level in range(COARSEST + 1):
+        if (needed >> level) & 1:
+            levels[counts[LAYERS]] = level
+            counts[LAYERS] += 1
+    for i in range(boxes.shape[0]):
+        layer[i] = layer_of(layer[i], levels, counts[LAYERS])
+    counts[LEVEL] = 0
+
+
+@compiled
+def _cell_size(boxes):
+    """About the largest of the boxes, but not more than a few times the small ones."""
+    if boxes.shape[0] == 0:
+        return 1.0
+    stride = max(boxes.shape[0] // SAMPLE, 1)
+    small, large = _quantile(boxes, stride, 0.1), _quantile(boxes, stride, 0.9)
+    return large if large <= 8.0 * small else 2.0 * small
+
+
+@compiled
+def _quantile(boxes, stride, share):
+    """The least size of a sampled box that at least a share of the sampled boxes do not exceed."""
+    sampled = (boxes.shape[0] + stride - 1) // stride
+    best = NEVER
+    for i in range(0, boxes.shape[0], stride):
+        size = box_size(i, boxes)
+        if size < best:
+            smaller = 0
+            for j in range(0, boxes.shape[0], stride):
+                if box_size(j, boxes) <= size:
+                    smaller += 1
+            if smaller >= share * sampled:
+                best = size
+    return best

@@ -1,0 +1,57 @@
+"""Arrows: forces and velocities as arrows that a person drags, to a round scale."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from components.field import Vector
+from components.model import Model
+from components.view import View
+from systems.edit.placing import SNAP_REACH
+
+COMFORTABLE = 100.0  # points long is an arrow of the size that is usual in a model
+USUAL_STRAIN = 1e-3  # of a loaded structure, where no force is known yet
+USUAL_ACCELERATION = 10.0  # m/s², of a loaded free body
+USUAL_SPEED = 5.0  # m/s
+
+
+def usual_force(model: Model) -> float:
+    """The size (kN) of forces in a model: the largest there is, else what suits its rods, else its masses."""
+    particles, rods, loads = model.particles, model.rods, model.loads
+    largest = max(np.abs(particles.force).max(initial=0.0), np.abs(loads.force).max(initial=0.0))
+    if largest > 0.0:
+        return float(largest)
+    if rods.count:
+        return float(USUAL_STRAIN * rods.stiffness.max())
+    return float(USUAL_ACCELERATION * particles.mass.max(initial=1.0) / 1000.0)
+
+
+def usual_speed(model: Model) -> float:
+    """The size (m/s) of velocities in a model."""
+    largest = float(np.abs(model.particles.velocity).max(initial=0.0))
+    return largest if largest > 0.0 else USUAL_SPEED
+
+
+def arrow_value(view: View, start: Vector, pixel: Vector, usual: float) -> Vector:
+    """What an arrow from the point `start` (m) of the picture to a pixel stands for, both components.
+
+    An arrow of COMFORTABLE length is about `usual`, to a scale of 1, 2 or 5 times a power of ten for each
+    point. Whole points count; a component within reach of zero is zero.
+    """
+    scale = _rounded_down(usual / COMFORTABLE)
+    origin = view.camera.to_pixels(start)
+    across = (pixel[0] - origin[0]) / view.pixel_ratio
+    up = (origin[1] - pixel[1]) / view.pixel_ratio
+    x, y = (
+        0.0 if abs(points) <= SNAP_REACH else float(f"{round(points) * scale:.12g}") for points in (across, up)
+    )
+    return x, y
+
+
+def _rounded_down(value: float) -> float:
+    """The largest of …, 1, 2, 5, 10, 20, … that is at most `value`."""
+    power = 10.0 ** math.floor(math.log10(value))
+    step = next(step for step in (5.0, 2.0, 1.0, 0.5) if step * power <= value * (1.0 + 1e-9))
+    return float(f"{step * power:.12g}")

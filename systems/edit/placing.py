@@ -1,0 +1,64 @@
+"""Placing: where a new or moved particle comes to lie."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from components.field import Vector
+from components.model import Model
+from components.particle import Particle
+from components.view import View, drawn_positions
+from systems.edit.picking import PARTICLE_REACH
+from systems.edit.refusal import Refusal
+
+SNAP_REACH = 5.0  # points from a grid line
+
+
+def snapped(model: Model, view: View, point: Vector) -> Vector:
+    """A point (m) moved onto the lines of the shown grid within reach, each axis by itself.
+
+    Elsewhere it is rounded to a power of ten that is at most a pixel, so that numbers stay short.
+    """
+    shown = np.flatnonzero(model.grids.shown)
+    spacing = model.grids.spacing[shown[-1]].tolist() if len(shown) else (math.inf, math.inf)
+    x, y = (_snapped(value, step, view) for value, step in zip(point, spacing, strict=True))
+    return x, y
+
+
+def _snapped(value: float, step: float, view: View) -> float:
+    scale = view.camera.scale
+    if math.isfinite(step):
+        line = float(f"{round(value / step) * step:.12g}")  # 3 × 0.1 is 0.3
+        if abs(line - value) * scale <= SNAP_REACH * view.pixel_ratio:
+            return line + 0.0
+    return round(value, _digits(view)) + 0.0  # no −0
+
+
+def resolution(view: View) -> float:
+    """The power of ten (m) that is nearest below a pixel."""
+    return float(10.0 ** -_digits(view))
+
+
+def _digits(view: View) -> int:
+    return math.ceil(math.log10(view.camera.scale) - 1e-9)
+
+
+def place(model: Model, view: View, pixel: Vector) -> Particle:
+    """A new particle under a pixel, on the grid if near it. Raises Refusal if one is there already."""
+    point = snapped(model, view, view.camera.to_model(pixel))
+    check_free(model, view, point)
+    return model.create(Particle, position=[point])[0]
+
+
+def check_free(model: Model, view: View, point: Vector, besides: list[Particle] | None = None) -> None:
+    """Raise Refusal if a particle other than those in `besides` is drawn at a point (m)."""
+    if model.particles.count == 0:
+        return
+    distance = np.hypot(*(drawn_positions(model) - point).T) * view.camera.scale
+    distance[[particle.row for particle in besides or []]] = math.inf
+    nearest = int(np.argmin(distance))
+    if distance[nearest] <= PARTICLE_REACH * view.pixel_ratio:
+        name = model.describe(model.particles[nearest])
+        raise Refusal(f"{name[0].upper()}{name[1:]} is here already; choose another place, or zoom in.")

@@ -1,0 +1,110 @@
+"""Pull: a spring between the pointer and the particle that a person drags while time passes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import Vector
+from components.model import Model
+from components.particle import Particle
+from components.view import View
+from systems.base import Law
+from systems.edit.arrows import COMFORTABLE, usual_force
+
+FOLLOWS_WITHIN = 0.5  # s shown, the period of a free particle on the spring
+STEPS_PER_RADIAN = 5.0  # at least, so that the spring does not upset the integration
+
+
+@dataclass(frozen=True)
+class Hand:
+    """What pulls: a spring (kN/m) with a damper (kN·s/m) from a particle to the displacement `anchor` (m)."""
+
+    particle: Particle
+    stiffness: float
+    damping: float
+    anchor: Vector
+
+    def at(self, anchor: Vector) -> Hand:
+        """The same hand at another place."""
+        return replace(self, anchor=anchor)
+
+
+class Pull(Law):
+    """The hand's force on one particle. Its work is accounted for; no hand, no law."""
+
+    name = "edit.pull"
+    each = "particles"
+    kernel = "systems.edit.kernels:pull"
+    reads = ("particles.displacement", "particles.velocity")
+    adds = ("particles.force",)
+    account = "work"
+
+    def __init__(self) -> None:
+        self.hand: Hand | None = None
+        self._arrays: dict[str, NDArray[np.float64]] = {}
+
+    def needs(self, model: Model) -> bool:
+        return self.hand is not None and self.hand.particle.exists
+
+    def take(self, hand: Hand | None) -> None:
+        """Pull by this hand from now on, or let go. The step program must be bound anew."""
+        self.hand = hand
+        self._arrays = {}
+
+    def move(self, model: Model, anchor: Vector) -> None:
+        """Pull to another displacement (m)."""
+        assert self.hand is not None
+        self.hand = self.hand.at(anchor)
+        if self._arrays:
+            self._arrays["edit_pull_anchor"][self.hand.particle.row] = anchor
+        model.writable("particles.velocity")  # marks the state as changed: its forces are no longer known
+
+    def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
+        """Stiffness, damping and anchor for each particle, zero but for the one that is pulled."""
+        assert self.hand is not None
+        count, row = model.particles.count, self.hand.particle.row
+        if not self._arrays or len(self._arrays["edit_pull_anchor"]) != count:
+            self._arrays = {
+                "edit_pull_stiffness": np.zeros(count),
+                "edit_pull_damping": np.zeros(count),
+                "edit_pull_anchor": np.zeros((count, 2)),
+            }
+            self._arrays["edit_pull_stiffness"][row] = self.hand.stiffness
+            self._arrays["edit_pull_damping"][row] = self.hand.damping
+            self._arrays["edit_pull_anchor"][row] = self.hand.anchor
+        return self._arrays
+
+    @property
+    def force(self) -> Vector:
+        """The hand's force (kN) now; zero without one."""
+        hand = self.hand
+        if hand is None:
+            return 0.0, 0.0
+        x, y = (
+            hand.stiffness * (a - u) - hand.damping * v
+            for a, u, v in zip(hand.anchor, hand.particle.displacement, hand.particle.velocity, strict=True)
+        )
+        return x, y
+
+
+def hand_on(model: Model, view: View, particle: Particle, pace: float) -> Hand:
+    """A hand that holds a particle where it is; `pace`: seconds simulated per second shown.
+
+    A particle without rods follows the pointer within FOLLOWS_WITHIN. One of a structure is pulled no
+    harder than by the usual force of the model when the pointer is COMFORTABLE points away, so that a
+    stiff truss bends instead of being torn apart. The damper is critical for the particle by itself.
+    """
+    rods = model.rods.between
+    frequency = min(2.0 * math.pi / (FOLLOWS_WITHIN * pace), 1.0 / (STEPS_PER_RADIAN * model.clock.step_size))
+    stiffness = particle.mass * frequency**2 / 1000.0
+    if (rods == particle.row).any():
+        reach = COMFORTABLE * view.pixel_ratio / view.camera.scale / model.settings.displacement_scale
+        stiffness = min(stiffness, usual_force(model) / reach)
+    damping = 2.0 * math.sqrt(1000.0 * stiffness * particle.mass) / 1000.0
+    return Hand(particle, stiffness, damping, particle.displacement)

@@ -1,0 +1,1 @@
+"""Panels: typing into boxes, and boxes that show and change what elements are."""

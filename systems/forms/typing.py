@@ -1,0 +1,165 @@
+"""Typing into boxes: what each accepts, its caret, and moving from box to box."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from components.box import FILE_NAME, NUMBER, TEXT, Box
+from components.form import Form
+from components.tags import Selected
+
+YES_NO = ("no", "yes")
+MOST_CHARACTERS = 200  # in one box
+
+_MEANS = {"0": "no", "1": "yes"}
+_DIGITS = r"-?(\d+\.?\d*|\.\d*)?"  # a number, or what can still become one
+_NUMBER_SO_FAR = re.compile(rf"{_DIGITS}|-?(\d+\.?\d*|\.\d+)[eE][+-]?\d*")
+_IN_NUMBERS = {",": ".", "−": "-"}  # of other keyboards, and of numbers copied from the screen
+
+
+# --- selecting ---------------------------------------------------------------------------------------
+
+
+def select(form: Form, box: Box | None) -> None:
+    """Make this box the selected one, all its text marked; None: no box is."""
+    before = form.selected
+    if before is not None:
+        form.untag(before, Selected)
+        before.marked = False
+    if box is not None:
+        box.held = box.text
+        box.caret = len(box.text)
+        box.marked = True
+        form.tag(box, Selected)
+
+
+def restore(form: Form) -> None:
+    """Give the selected box back what it held, and deselect it."""
+    box = form.selected
+    if box is not None:
+        _set(form, box, box.held, len(box.held))
+        select(form, None)
+
+
+def accept(form: Form) -> bool:
+    """Deselect the selected box; False if its text is refused, and then it stays selected."""
+    box = form.selected
+    if box is not None and box.problem:
+        return False
+    select(form, None)
+    return True
+
+
+def move_on(form: Form, by: int) -> None:
+    """Select the next (1) or previous (-1) box, around the ends."""
+    boxes, here = list(form.boxes), form.selected
+    if boxes:
+        start = (-1 if by > 0 else 0) if here is None else here.row
+        select(form, boxes[(start + by) % len(boxes)])
+
+
+# --- typing ------------------------------------------------------------------------------------------
+
+
+def write(form: Form, text: str) -> None:
+    """Type characters into the selected box; those that it does not accept are passed over."""
+    box = form.selected
+    if box is None:
+        return
+    for character in text:
+        entered = _entered(box, character)
+        if entered is not None and len(entered[0]) <= MOST_CHARACTERS:
+            _set(form, box, *entered)
+
+
+def erase(form: Form, *, after: bool = False) -> None:
+    """Erase what is marked, or the character before (or after) the caret."""
+    box = form.selected
+    if box is None:
+        return
+    text, caret = box.text, box.caret
+    if box.marked or text in (box.words or ()):
+        _set(form, box, "", 0)
+    elif after:
+        _set(form, box, text[:caret] + text[caret + 1 :], caret)
+    elif caret:
+        _set(form, box, text[: caret - 1] + text[caret:], caret - 1)
+
+
+def place_caret(form: Form, caret: int) -> None:
+    """Put the caret of the selected box after so many characters; nothing is marked any more."""
+    box = form.selected
+    if box is not None:
+        box.caret = min(max(caret, 0), len(box.text))
+        box.marked = False
+
+
+def step_caret(form: Form, by: int) -> None:
+    """Move the caret by one character, or to that end of what is marked."""
+    box = form.selected
+    if box is not None and box.marked:
+        place_caret(form, len(box.text) if by > 0 else 0)
+    elif box is not None:
+        place_caret(form, box.caret + by)
+
+
+def mark_all(form: Form) -> None:
+    """Mark all text of the selected box."""
+    box = form.selected
+    if box is not None:
+        box.caret = len(box.text)
+        box.marked = True
+
+
+def turn_word(form: Form, box: Box, by: int = 1) -> None:
+    """Put the next (or previous) of its words into a box."""
+    words: Sequence[str] = box.words
+    at = words.index(box.text) if box.text in words else -1 if by > 0 else 0
+    word = words[(at + by) % len(words)]
+    _set(form, box, word, len(word))
+    box.marked = True
+
+
+def put(form: Form, box: Box, text: str) -> None:
+    """Replace all text of a box."""
+    _set(form, box, text, len(text))
+
+
+def _set(form: Form, box: Box, text: str, caret: int) -> None:
+    box.text = text
+    box.caret = caret
+    box.marked = False
+    box.problem = form.check(box)
+
+
+# --- what is accepted --------------------------------------------------------------------------------
+
+
+def _entered(box: Box, character: str) -> tuple[str, int] | None:
+    """Text and caret after a character was typed; None if the box does not accept it."""
+    words: Sequence[str] = box.words or ()
+    whole = box.marked or box.text in words
+    before, after = ("", "") if whole else (box.text[: box.caret], box.text[box.caret :])
+    if box.accepts == NUMBER:
+        character = _IN_NUMBERS.get(character, character)
+        if _NUMBER_SO_FAR.fullmatch(before + character + after):
+            return before + character + after, len(before) + 1
+    elif box.accepts == TEXT and character.isprintable():
+        return before + character + after, len(before) + 1
+    elif box.accepts == FILE_NAME:
+        character = character.replace("/", "-")
+        if character.isalnum() or character in " -._":
+            return before + character + after, len(before) + 1
+    return _completed(box, words, character)
+
+
+def _completed(box: Box, words: Sequence[str], character: str) -> tuple[str, int] | None:
+    """The word whose beginning was typed, and how much of it was."""
+    so_far = "" if box.marked or box.text not in words else box.text[: box.caret]
+    for typed in (so_far + character, character):
+        meant = _MEANS.get(typed, typed).lower() if words == YES_NO else typed.lower()
+        for word in words:
+            if word.startswith(meant):
+                return word, len(meant)
+    return None

@@ -1,0 +1,215 @@
+"""Where the boxes and tiles of a form are, in pixels: the same for drawing and for picking."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import groupby
+
+from components.box import Box
+from components.camera import Viewport
+from components.field import Vector
+from components.form import Form, Tile
+
+SIDE = 400.0  # points, width of the properties beside the model
+LEAST_MODEL = 240.0  # points that the model keeps beside them, or they cover it
+WIDEST = 1500.0  # points that tiles spread over
+EDGE = 16.0  # points around everything
+LOW = 330.0  # points: a viewport less high does without explanations
+
+TITLE, BOX, BELOW = 18.0, 26.0, 14.0  # points: title above a box, the box, what is said below it
+SECTION = 28.0
+COLUMN_GAP = 14.0
+HEADING = 80.0  # points, where a low viewport has the box beside the heading
+NARROW = 150.0  # points, a box less wide does not share its row
+TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.62
+
+Row = str | list[Box] | list[Tile]
+
+
+@dataclass(frozen=True)
+class Place:
+    """A box, tile or section heading, and the rectangle that it takes (of a box: without its title)."""
+
+    item: Box | Tile | str
+    left: float
+    top: float
+    width: float
+    height: float
+
+    def contains(self, pixel: Vector) -> bool:
+        """True if the pixel lies inside."""
+        return 0.0 <= pixel[0] - self.left < self.width and 0.0 <= pixel[1] - self.top < self.height
+
+
+@dataclass(frozen=True)
+class FormLayout:
+    """Where everything is.
+
+    unit: pixels per point. left, right: of all that is written. header: baseline of the heading.
+    message, top, bottom: the middle of the message's line; between which the rows are; footer: the upper
+    end of what is said at the bottom. first, shown, count: rows of which the first is shown, how many
+    are, and there are.
+    """
+
+    viewport: Viewport
+    unit: float
+    left: float
+    right: float
+    header: float
+    message: float
+    top: float
+    bottom: float
+    first: int = 0
+    shown: int = 0
+    count: int = 0
+    places: list[Place] = field(default_factory=list)
+
+    def at(self, pixel: Vector) -> Box | Tile | None:
+        """The box or tile under a pixel."""
+        found = (p.item for p in self.places if not isinstance(p.item, str) and p.contains(pixel))
+        return next(found, None)
+
+    def place_of(self, item: Box | Tile) -> Place | None:
+        """Where a box or tile is; None if it is scrolled away."""
+        return next((place for place in self.places if place.item is item), None)
+
+
+def beside(viewport: Viewport, unit: float, *, at_left: bool) -> tuple[Viewport | None, Viewport]:
+    """What is left of a viewport for the model (None: nothing), and the part that properties take."""
+    width = round(SIDE * unit)
+    if viewport.width - width < LEAST_MODEL * unit:
+        return None, viewport
+    rest = viewport.width - width
+    left, top, height = viewport.left, viewport.top, viewport.height
+    if at_left:
+        return Viewport(left + width, top, rest, height), Viewport(left, top, width, height)
+    return Viewport(left, top, rest, height), Viewport(left + rest, top, width, height)
+
+
+def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
+    """Place everything that is shown now; rows that do not fit whole are scrolled away."""
+    u, v = unit, viewport
+    width = min(v.width - 2 * EDGE * u, WIDEST * u)
+    left = v.left + (v.width - width) / 2
+    low = v.height < LOW * u
+    header = v.top + (18.0 if low else 26.0) * u
+    top = header + (16.0 if low else 24.0) * u
+    bottom = v.top + v.height - (22.0 if low else 58.0) * u
+    fixed: list[Place] = []
+    if _has_files(form):
+        beside_heading = HEADING * u if low else 0.0
+        top = v.top + 6.0 * u if low else top + TITLE * u
+        room = min(width - beside_heading, 420.0 * u)
+        fixed = [Place(box, left + beside_heading, top, room, BOX * u) for box in form.boxes]
+        top += (BOX + 22.0) * u
+    layout = FormLayout(v, u, left, left + width, header, top - 11.0 * u, top, bottom)
+    return _with_rows(form, layout, fixed)
+
+
+def _has_files(form: Form) -> bool:
+    """True for forms that choose a file: their boxes stay, tiles are scrolled."""
+    return any(box.target == "name" for box in form.boxes)
+
+
+def _with_rows(form: Form, layout: FormLayout, fixed: list[Place]) -> FormLayout:
+    u, room, width = layout.unit, layout.bottom - layout.top, layout.right - layout.left
+    rows = list(_tile_rows(form, width / u) if _has_files(form) else _box_rows(form, width / u))
+    heights = [_height(row, width, room, u) for row in rows]
+    first = min(form.heading.first, _last_first(heights, room))
+    places, top, shown = list(fixed), layout.top, 0
+    for row, height in zip(rows[first:], heights[first:], strict=True):
+        if top + height > layout.bottom + 0.5 and shown:
+            break
+        places += _placed(row, layout.left, top, width, height, u)
+        top += height
+        shown += 1
+    return replace(layout, first=first, shown=shown, count=len(rows), places=places)
+
+
+def _last_first(heights: Sequence[float], room: float) -> int:
+    """The first row when scrolled to the end."""
+    first, total = len(heights), 0.0
+    while first > 0 and total + heights[first - 1] <= room + 0.5:
+        first -= 1
+        total += heights[first]
+    return min(first, max(len(heights) - 1, 0))
+
+
+def row_of(form: Form, item: Box | Tile, layout: FormLayout) -> int:
+    """The number of the row in which a box or tile is."""
+    width = (layout.right - layout.left) / layout.unit
+    rows = _tile_rows(form, width) if _has_files(form) else _box_rows(form, width)
+    return next(number for number, row in enumerate(rows) if not isinstance(row, str) and item in row)
+
+
+# --- rows --------------------------------------------------------------------------------------------
+
+
+def _box_rows(form: Form, width: float) -> Iterator[Row]:
+    """Sections and boxes: the two components of a vector share a row, and so do single boxes."""
+    several = (width - COLUMN_GAP) / 2 >= NARROW
+    for section, boxes in groupby(form.boxes, lambda box: box.section):
+        if section != form.heading.text:
+            yield section
+        waiting: list[Box] = []
+        for box in boxes:
+            if waiting and (not several or _partner(waiting[0]) != _partner(box)):
+                yield waiting
+                waiting = []
+            waiting.append(box)
+            if len(waiting) == 2:
+                yield waiting
+                waiting = []
+        if waiting:
+            yield waiting
+
+
+def _partner(box: Box) -> str:
+    """What boxes in the same row have in common: the vector that they belong to, or that they are single."""
+    table, name, *axis = box.target.split(".")
+    return f"{table}.{name}" if axis else ""
+
+
+def _tile_rows(form: Form, width: float) -> Iterator[Row]:
+    columns = tile_columns(width)
+    shown = (tile for tile in form.tiles if not tile.hidden)
+    for section, group in groupby(shown, lambda tile: tile.section):
+        if section:
+            yield section
+        tiles = list(group)
+        for start in range(0, len(tiles), columns):
+            yield tiles[start : start + columns]
+
+
+def tile_columns(width: float) -> int:
+    """How many tiles stand side by side in a width in points."""
+    return max(int((width + TILE_GAP) / (min(TILE, 0.45 * width) + TILE_GAP)), 1)
+
+
+def _height(row: Row, width: float, room: float, u: float) -> float:
+    if isinstance(row, str):
+        return SECTION * u
+    if isinstance(row[0], Box):
+        return (TITLE + BOX + BELOW) * u
+    most = room - (CAPTION + TILE_GAP + SECTION) * u
+    return min(_tile_width(width, u) * PROPORTION, max(most, 40.0 * u)) + (CAPTION + TILE_GAP) * u
+
+
+def _tile_width(width: float, u: float) -> float:
+    columns = tile_columns(width / u)
+    return (width - (columns - 1) * TILE_GAP * u) / columns
+
+
+def _placed(row: Row, left: float, top: float, width: float, height: float, u: float) -> Iterator[Place]:
+    if isinstance(row, str):
+        yield Place(row, left, top, width, height)
+    elif isinstance(row[0], Box):
+        gap = COLUMN_GAP * u
+        each = (width - gap) / 2 if (width - gap) / 2 >= NARROW * u else width
+        for column, box in enumerate(row):
+            yield Place(box, left + column * (each + gap), top + TITLE * u, each, BOX * u)
+    else:
+        each = _tile_width(width, u)
+        for column, tile in enumerate(row):
+            yield Place(tile, left + column * (each + TILE_GAP * u), top, each, height - TILE_GAP * u)

@@ -1,0 +1,231 @@
+"""Panel: the boxes of properties, save and load, and the tiles to choose from, as marks."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from components.box import WORD, Box
+from components.camera import Camera, Viewport
+from components.form import Form, Tile
+from components.model import Model
+from components.view import View, drawn_positions
+from systems.render.form_layout import CAPTION, LOW, FormLayout, Place, lay_out
+from systems.render.marks import Fills, Mark, Panel, Picture, Rectangles, Text
+from systems.render.sheet import measure
+from systems.render.structure import draw_particles, draw_rods
+from systems.render.supports import crowding, draw_supports, support_sides
+from systems.render.theme import Colour, Theme, faded
+from systems.render.typography import shortened, text_width, wrapped
+
+_TEXT = 13.0  # points, of what is in a box
+_PAD = 8.0  # points between a box's edge and its text
+_THUMBNAIL_MARGIN = 30.0  # points, room for supports
+
+
+def compose_form(form: Form, view: View, theme: Theme) -> Picture:
+    """A form as marks in the pixels of the view's viewport. Reads the form, changes nothing."""
+    layout = lay_out(form, view.camera.viewport, view.pixel_ratio)
+    writer = _Writer(form, view, theme, layout)
+    marks = [*writer.header(), *writer.rows(), *writer.footer(), *writer.scroll_bar()]
+    return Picture(layout.viewport, theme.form, marks)
+
+
+class _Writer:
+    """Makes the marks of one form."""
+
+    def __init__(self, form: Form, view: View, theme: Theme, layout: FormLayout) -> None:
+        self.form, self.view, self.theme, self.layout, self.u = form, view, theme, layout, layout.unit
+        self.selected, self.chosen = form.selected, form.chosen
+        under = layout.at(view.pointer) if view.pointer is not None else None
+        self.hovered = under
+
+    def font(self, points: float) -> int:
+        """A font size in whole pixels."""
+        return max(round(points * self.u), 7)
+
+    # --- what stands in fixed places -------------------------------------------------------------
+
+    def header(self) -> list[Mark]:
+        """The heading, and the message below the boxes that stay."""
+        layout, heading = self.layout, self.form.heading
+        size, small = self.font(19.0), self.font(12.0)
+        room = layout.right - layout.left
+        text = shortened(heading.text, room, size, "semibold")
+        marks: list[Mark] = [Text(text, layout.left, layout.header, size, self.theme.form_text, "semibold")]
+        if heading.message:
+            message = shortened(heading.message, room, small)
+            marks.append(Text(message, layout.left, layout.message, small, self.theme.form_problem))
+        return marks
+
+    def footer(self) -> list[Mark]:
+        """What the selected box or tile is about, and the next possible step."""
+        layout, size, v = self.layout, self.font(12.0), self.layout.viewport
+        width, bottom = layout.right - layout.left, v.top + v.height
+        hint = shortened(self.view.status.hint, width, size)
+        marks: list[Mark] = [Text(hint, layout.left, bottom - 13.0 * self.u, size, self.theme.form_muted)]
+        if v.height >= LOW * self.u:
+            lines = wrapped(self._explanation(), width, size)
+            for number, line in enumerate(_at_most(lines, 2, width, size)):
+                y = bottom - 48.0 * self.u + number * 1.1 * size * 1.15
+                marks.append(Text(line, layout.left, y, size, self.theme.form_text))
+        return marks
+
+    def _explanation(self) -> str:
+        if self.selected is not None and self.selected.explanation:
+            return self.selected.explanation
+        subject = self.hovered if self.hovered is not None else self.chosen
+        return subject.explanation if subject is not None else ""
+
+    def scroll_bar(self) -> list[Mark]:
+        """How much is scrolled away, if anything is."""
+        layout = self.layout
+        if layout.shown >= layout.count:
+            return []
+        v, width = layout.viewport, max(round(3.0 * self.u), 2)
+        track = layout.bottom - layout.top
+        length = max(track * layout.shown / layout.count, 16.0 * self.u)
+        last = layout.count - layout.shown
+        top = layout.top + (track - length) * min(layout.first / last, 1.0)
+        box = [v.left + v.width - 2 * width, round(top), width, round(length)]
+        return [Rectangles(np.array([box], dtype=np.int64), self.theme.form_muted)]
+
+    # --- rows ------------------------------------------------------------------------------------
+
+    def rows(self) -> list[Mark]:
+        """Sections, boxes and tiles."""
+        marks: list[Mark] = []
+        for place in self.layout.places:
+            if isinstance(place.item, str):
+                y = place.top + 0.5 * place.height
+                marks.append(Text(place.item, place.left, y, self.font(13.0), self.theme.form_text, "semibold"))
+            elif isinstance(place.item, Box):
+                marks += self._box(place, place.item)
+            else:
+                marks += self._tile(place, place.item)
+        return marks
+
+    def _box(self, place: Place, box: Box) -> list[Mark]:
+        u, theme, size = self.u, self.theme, self.font(11.5)
+        above, below = place.top - 10.0 * u, place.top + place.height + 8.0 * u
+        marks: list[Mark] = []
+        if above > self.layout.header:
+            unit_width = text_width(box.unit, size)
+            title = shortened(box.title, place.width - unit_width - 8.0 * u, size)
+            marks.append(Text(title, place.left, above, size, theme.form_text))
+            if box.unit:
+                end = place.left + place.width
+                marks.append(Text(box.unit, end, above, size, theme.form_muted, anchor="right"))
+        marks += self._frame(place, box is self.selected, box is self.hovered)
+        marks += self._contents(place, box)
+        if box.problem:
+            problem = shortened(box.problem, place.width, size)
+            marks.append(Text(problem, place.left, below, size, theme.form_problem))
+        return marks
+
+    def _frame(self, place: Place, selected: bool, hovered: bool) -> list[Mark]:
+        """The white box, red when selected."""
+        theme, u, radius = self.theme, self.u, 4.0 * self.u
+        box = _grown(place, 0.0, radius, theme.box)
+        if selected:
+            tint = _grown(place, 0.0, radius, faded(theme.selected, 0.14))
+            return [_grown(place, 2.5 * u, radius + 2.0 * u, theme.selected), box, tint]
+        return [_grown(place, 2.0 * u, radius + 1.5 * u, theme.hover), box] if hovered else [box]
+
+    def _contents(self, place: Place, box: Box) -> list[Mark]:
+        """Text, caret or mark, and the note at the right while nothing was typed."""
+        u, theme, size = self.u, self.theme, self.font(_TEXT)
+        left, middle = place.left + _PAD * u, place.top + place.height / 2
+        room = place.width - 2 * _PAD * u - (12.0 * u if box.accepts == WORD else 0.0)
+        marks: list[Mark] = []
+        start, visible = _window(box.text, box.caret if box is self.selected else 0, room, size)
+        width = text_width(visible, size)
+        if box is self.selected:
+            before = text_width(box.text[start : box.caret], size)
+            x, w = (left, width) if box.marked and box.text else (left + before, max(1.5 * u, 1.0))
+            mark = Place(box, round(x), place.top + 5.0 * u, max(round(w), 1), place.height - 10.0 * u)
+            colour = faded(theme.selected, 0.3) if box.marked and box.text else theme.box_text
+            marks.append(_grown(mark, 0.0, 1.0 * u, colour))
+        marks.append(Text(visible, left, middle, size, theme.box_text))
+        note_size = self.font(11.0)
+        if box.note and not box.changed and width + text_width(box.note, note_size) + 10.0 * u <= room:
+            marks.append(Text(box.note, left + room, middle, note_size, theme.box_muted, anchor="right"))
+        if box.accepts == WORD:
+            marks.append(_turning(place.left + place.width - 14.0 * u, middle, u, theme.box_muted))
+        return marks
+
+    def _tile(self, place: Place, tile: Tile) -> list[Mark]:
+        """A picture of the model, its title and its caption."""
+        u, theme = self.u, self.theme
+        height = place.height - CAPTION * u
+        card = Place(tile, place.left, place.top, place.width, height)
+        radius = 6.0 * u
+        marks: list[Mark] = []
+        if tile is self.chosen or tile is self.hovered:
+            colour = theme.selected if tile is self.chosen else theme.hover
+            marks.append(_grown(card, 3.0 * u, radius + 2.0 * u, colour))
+        marks.append(_grown(card, 0.0, radius, theme.background))
+        if tile.picture is not None:
+            viewport = Viewport(round(card.left), round(card.top), round(card.width), round(card.height))
+            marks += thumbnail(tile.picture, viewport, u, theme)
+        elif tile.source is None:
+            middle = card.left + card.width / 2, card.top + card.height / 2
+            marks.append(Text("+", *middle, self.font(44.0), theme.muted, anchor="centre"))
+        title, caption = self.font(12.5), self.font(11.0)
+        text = shortened(tile.title, place.width, title, "semibold")
+        marks.append(Text(text, place.left, card.top + height + 13.0 * u, title, theme.form_text, "semibold"))
+        text = shortened(tile.caption, place.width, caption)
+        marks.append(Text(text, place.left, card.top + height + 28.0 * u, caption, theme.form_muted))
+        return marks
+
+
+def _at_most(lines: list[str], most: int, width: float, size: int) -> list[str]:
+    """The first lines, the last of them ending in an ellipsis if there are more."""
+    if len(lines) <= most:
+        return lines
+    return [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), width, size)]
+
+
+def _grown(place: Place, by: float, radius: float, colour: Colour) -> Panel:
+    return Panel(place.left - by, place.top - by, place.width + 2 * by, place.height + 2 * by, radius, colour)
+
+
+def _turning(x: float, y: float, u: float, colour: Colour) -> Fills:
+    """Two small triangles, up and down: a click turns to the next word."""
+    half, gap, height = 3.5 * u, 2.0 * u, 4.0 * u
+    up = [[x - half, y - gap], [x + half, y - gap], [x, y - gap - height]]
+    down = [[x - half, y + gap], [x + half, y + gap], [x, y + gap + height]]
+    return Fills(np.array([up, down]), colour)
+
+
+def _window(text: str, caret: int, room: float, size: int) -> tuple[int, str]:
+    """As much of a text as fits so that the caret is seen, and how many characters before it are not."""
+    start = 0
+    while text_width(text[start:caret], size) > room:
+        start += 1
+    end = len(text)
+    while text_width(text[start:end], size) > room:
+        end -= 1
+    return start, text[start:end]
+
+
+def caret_at(place: Place, box: Box, x: float, unit: float) -> int:
+    """The place of the caret nearest to the pixel column `x` in a box's text."""
+    size = max(round(_TEXT * unit), 7)
+    start, visible = _window(box.text, box.caret, place.width - 2 * _PAD * unit, size)
+    left = place.left + _PAD * unit
+    ends = [left + text_width(visible[:end], size) for end in range(len(visible) + 1)]
+    return start + min(range(len(ends)), key=lambda end: abs(ends[end] - x))
+
+
+@lru_cache(maxsize=128)
+def thumbnail(model: Model, viewport: Viewport, unit: float, theme: Theme) -> tuple[Mark, ...]:
+    """A small picture of a model that does not change any more: rods, supports and particles."""
+    camera = Camera(viewport=viewport)
+    camera.fit(drawn_positions(model), _THUMBNAIL_MARGIN * unit)
+    sheet = measure(model, View(camera=camera, pixel_ratio=unit), theme)
+    draw_supports(sheet, support_sides(model.particles.fixed, crowding(sheet)))
+    draw_rods(sheet)
+    draw_particles(sheet)
+    return tuple(sheet.marks)

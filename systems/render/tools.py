@@ -1,0 +1,102 @@
+"""Tools: what is being drawn or dragged, over the picture of the model."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.view import Preview
+from systems.render.clip import bounds, clip_segments
+from systems.render.marks import Fills, Mark, Panel, Points, Stamps, Strokes, Text
+from systems.render.sheet import Sheet
+from systems.render.theme import Colour, faded
+from systems.render.typography import line_height, text_width
+
+_WIDTH = 2.5  # points, of lines
+_COILS = 9  # of the spring that pulls
+
+Pixel = NDArray[np.float64]
+
+
+def draw_preview(sheet: Sheet) -> list[Mark]:
+    """The rod, arrow, spring or box that a person draws just now, with its value at the end."""
+    preview = sheet.view.preview
+    if preview is None:
+        return []
+    start, end = sheet.view.camera.to_pixels([preview.start, preview.end])
+    if not np.isfinite([start, end]).all():
+        return []
+    drawn = _KINDS[preview.kind](sheet, start, end)
+    return [*drawn, *(_label(sheet, preview, end) if preview.label else [])]
+
+
+def _rod(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
+    colour = sheet.theme.hover
+    dot = Stamps("disc", np.array([start, end]), 4.0 * sheet.unit, sheet.unit, colour, colour)
+    return [*_lines(sheet, np.array([start, end]), colour), dot]
+
+
+def _force(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
+    return _arrow(sheet, start, end, sheet.theme.force)
+
+
+def _velocity(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
+    return _arrow(sheet, start, end, sheet.theme.running)
+
+
+def _pull(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
+    """A spring to the pointer: straight at both ends, coils between."""
+    colour, u = sheet.theme.force, sheet.unit
+    along = end - start
+    length = float(np.hypot(*along))
+    hook = Stamps("disc", end[None], 4.0 * u, u, colour, colour)
+    if length < 12.0 * u:
+        return [hook]
+    share = np.concatenate([[0.0], np.linspace(0.2, 0.8, 2 * _COILS), [1.0]])
+    side = np.where(np.arange(len(share)) % 2, 1.0, -1.0) * 5.0 * u
+    side[[0, 1, -2, -1]] = 0.0
+    normal = np.array([along[1], -along[0]]) / length
+    return [*_lines(sheet, start + share[:, None] * along + side[:, None] * normal, colour, 1.5), hook]
+
+
+def _box(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
+    low, high = bounds(sheet.viewport)
+    (x0, y0), (x1, y1) = np.clip([start, end], low - 10.0, high + 10.0)
+    corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]])
+    colour = sheet.theme.hover
+    return [Fills(corners[None, :4], faded(colour, 0.1)), *_lines(sheet, corners, faded(colour, 0.8), 1.0)]
+
+
+def _arrow(sheet: Sheet, start: Pixel, end: Pixel, colour: Colour) -> list[Mark]:
+    along = end - start
+    length = float(np.hypot(*along))
+    if length < 1.0:
+        return []
+    forward = along / length
+    across = np.array([forward[1], -forward[0]])
+    head = min(12.0 * sheet.unit, length)
+    neck = end - head * forward
+    point = np.array([end, neck + 0.5 * head * across, neck - 0.5 * head * across])
+    return [*_lines(sheet, np.array([start, neck + 0.2 * head * forward]), colour), Fills(point[None], colour)]
+
+
+def _lines(sheet: Sheet, points: Points, colour: Colour, width: float = _WIDTH) -> list[Mark]:
+    """Lines through points (n, 2), as far as they can be seen."""
+    start, end, _ = clip_segments(points[:-1], points[1:], *bounds(sheet.viewport))
+    return [Strokes(start, end, width * sheet.unit, colour)] if len(start) else []
+
+
+def _label(sheet: Sheet, preview: Preview, at: Pixel) -> list[Mark]:
+    """The value beside the end, inside the viewport."""
+    u, v, theme = sheet.unit, sheet.viewport, sheet.theme
+    text, size = preview.label.replace("-", "−"), sheet.font(13.0)
+    width, height = text_width(text, size, "semibold") + 14.0 * u, line_height(size) + 6.0 * u
+    left = float(np.clip(at[0] + 14.0 * u, v.left, max(v.left + v.width - width, v.left)))
+    top = float(np.clip(at[1] - 14.0 * u - height, v.top, max(v.top + v.height - height, v.top)))
+    return [
+        Panel(left, top, width, height, 5.0 * u, faded(theme.panel, 0.94), theme.line),
+        Text(text, left + 7.0 * u, top + height / 2, size, theme.text, "semibold"),
+    ]
+
+
+_KINDS = {"rod": _rod, "force": _force, "velocity": _velocity, "pull": _pull, "box": _box}

@@ -1,0 +1,233 @@
+"""Force method: hyperstatic forces from three displacements, by first-order theory about original positions.
+
+Set 1 is the real structure under the real load, set 2 the base structure (without the static unknown) under
+the real load, set 3 the base structure under a unit force alone. Superposition is exact in this theory.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import qr
+from scipy.sparse import csc_matrix, diags
+
+from components.model import Model
+from components.particle import Particle
+from components.rod import Rod
+from systems.statics.equations import Array, Structure
+from systems.statics.explain import describe_motion
+from systems.statics.external import external_forces
+from systems.statics.factor import Factor, soft_modes
+
+_KEPT = 1e6  # weight of supports against rods when redundants are chosen: rods are released first
+_RANK = 1e-9  # relative size below which a pivot is zero
+
+
+class ForceMethodError(ValueError):
+    """A static unknown that cannot be used; the message names it, the reason and the remedy."""
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A static unknown: the force of a rod, or of a support in one direction (0: x, 1: y)."""
+
+    element: Rod | Particle
+    axis: int | None = None
+
+    @property
+    def name(self) -> str:
+        """As on the command line: "AC", or "A.y"."""
+        return self.element.name if self.axis is None else f"{self.element.name}.{'xy'[self.axis]}"
+
+
+@dataclass(frozen=True)
+class LinearState:
+    """Displacements (m, (n, 2)) and axial forces (kN, (rods,)) by first-order theory."""
+
+    displacement: Array
+    axial_force: Array
+
+
+@dataclass(frozen=True)
+class Solution:
+    """The force method for m unknowns at once.
+
+    delta_real, delta_base: (m,), m; delta_unit: (m, m), m/kN, column j under unit force j; force: (m,), kN.
+    real, base: sets 1 and 2; units: set 3 of each unknown, under its unit force.
+    """
+
+    unknowns: tuple[Unknown, ...]
+    delta_real: Array
+    delta_base: Array
+    delta_unit: Array
+    force: Array
+    real: LinearState
+    base: LinearState
+    units: tuple[LinearState, ...]
+
+    @property
+    def superposed(self) -> LinearState:
+        """Set 2 + Σ p × set 3, which equals set 1."""
+        displacement, axial_force = self.base.displacement.copy(), self.base.axial_force.copy()
+        for unknown, force, unit in zip(self.unknowns, self.force.tolist(), self.units, strict=True):
+            displacement += force * unit.displacement
+            axial_force += force * unit.axial_force
+            if isinstance(unknown.element, Rod):
+                axial_force[unknown.element.row] = force
+        return LinearState(displacement, axial_force)
+
+
+def find_unknown(model: Model, name: str) -> Unknown:
+    """The unknown called "AC" (a rod) or "A.y" (a support). Raises ForceMethodError."""
+    if name in model.rods:
+        return Unknown(model.rods[name])
+    particle, _, axis = name.rpartition(".")
+    if particle in model.particles and axis in ("x", "y"):
+        element = model.particles[particle]
+        if not element.fixed["xy".index(axis)]:
+            raise ForceMethodError(
+                f"{particle} is free along {axis}, so there is no reaction to release there."
+            )
+        return Unknown(element, "xy".index(axis))
+    supports = [f"{p.name}.{a}" for p in model.particles for a, held in zip("xy", p.fixed, strict=True) if held]
+    choices = [*model.rods.names, *supports]
+    if name in model.particles:
+        raise ForceMethodError(f"'{name}' is a particle; say which constraint, such as {name}.x or {name}.y.")
+    raise ForceMethodError(model.missing("rods and constraints", name, choices))
+
+
+class _Linear:
+    """First-order theory of a model with some unknowns released (masses and loads stay)."""
+
+    def __init__(self, model: Model, released: Sequence[Unknown] = ()) -> None:
+        whole = Structure.of(model)
+        unknown_directions, along = whole.unknown.copy(), whole.stiffness / whole.rest_length
+        for unknown in released:
+            if unknown.axis is None:
+                along[unknown.element.row] = 0.0
+            else:
+                unknown_directions[unknown.element.row, unknown.axis] = True
+        self.structure = structure = replace(whole, unknown=unknown_directions)
+        self.model = model
+        self._along = along
+        response = structure.respond(np.zeros_like(whole.position), model.rods.plastic_strain)
+        self._prestress = along * response.elongation - np.where(along > 0.0, whole.stiffness, 0.0) * (
+            model.rods.plastic_strain
+        )
+        self._compatibility = structure.compatibility(response)
+        matrix = csc_matrix(self._compatibility.T @ diags(along) @ self._compatibility)
+        self._factor = Factor(matrix)
+        modes = soft_modes(matrix, structure.weight)
+        if modes.shape[1]:
+            motion = describe_motion(model, np.array([structure.spread(mode) for mode in modes.T]))
+            raise ForceMethodError(self._mechanism(released, motion))
+
+    @staticmethod
+    def _mechanism(released: Sequence[Unknown], motion: str) -> str:
+        if not released:
+            return f"The structure is a mechanism already ({motion} can move); support or brace it first."
+        names = ", ".join(unknown.name for unknown in released)
+        return (
+            f"Without {names} the structure is a mechanism: {motion} can move."
+            " It is not a static unknown; choose a redundant rod or constraint."
+        )
+
+    def under(self, force: Array, *, prestressed: bool) -> LinearState:
+        """The state under forces (n, 2); `prestressed`: with what the rods' lack of fit adds."""
+        initial = self._prestress if prestressed else np.zeros_like(self._prestress)
+        right = self.structure.gather(force) - self._compatibility.T @ initial
+        moved = self._factor.solve(right)
+        axial = self._along * (self._compatibility @ moved) + initial
+        return LinearState(self.structure.spread(moved), axial)
+
+
+def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
+    """Δ_real = Δ₀ + Σ Δ₁ p, for one unknown p = (Δ_real − Δ₀) / Δ₁. Raises ForceMethodError.
+
+    Rod: Δ is the change of distance between its ends (apart +), the unit pair pulls them together, p > 0 is
+    tension. Support: Δ and p along +x or +y, p is the force on the structure.
+
+    Several unknowns are solved with what is known of Δ_real: a support does not move, a rod's Δ is
+    p L₀/EA less its lack of fit. Then they are unique even where the base structure has fewer rods than
+    there are unknowns, and Δ₁ alone is singular.
+    """
+    load = external_forces(model).at(1.0)
+    real = _Linear(model).under(load, prestressed=True)
+    released = _Linear(model, unknowns)
+    base = released.under(load, prestressed=True)
+    units = tuple(released.under(unit_force(model, unknown), prestressed=False) for unknown in unknowns)
+    delta_real = np.array([_delta(model, unknown, real) for unknown in unknowns])
+    delta_base = np.array([_delta(model, unknown, base) for unknown in unknowns])
+    delta_unit = np.array([[_delta(model, unknown, unit) for unit in units] for unknown in unknowns])
+    delta_unit = delta_unit.reshape(len(unknowns), len(unknowns))
+    own, unstrained = _flexibility(model, unknowns)
+    force = np.linalg.solve(delta_unit - np.diag(own), unstrained - delta_base)
+    return Solution(tuple(unknowns), delta_real, delta_base, delta_unit, force, real, base, units)
+
+
+def _flexibility(model: Model, unknowns: Sequence[Unknown]) -> tuple[Array, Array]:
+    """Of every released element: its own L₀/EA (m/kN), and its Δ (m) when it is without force."""
+    own, unstrained = np.zeros(len(unknowns)), np.zeros(len(unknowns))
+    for index, unknown in enumerate(unknowns):
+        if isinstance(unknown.element, Rod):
+            rod = unknown.element
+            own[index] = rod.rest_length / rod.stiffness
+            unstrained[index] = rod.rest_length * (1.0 + rod.plastic_strain) - rod.original_length
+    return own, unstrained
+
+
+def unit_force(model: Model, unknown: Unknown) -> Array:
+    """1 kN along a released constraint, or a pair of 1 kN that pulls a released rod's ends together."""
+    force = np.zeros((model.particles.count, 2))
+    if unknown.axis is not None:
+        force[unknown.element.row, unknown.axis] = 1.0
+        return force
+    first, second = model.rods.between[unknown.element.row]
+    axis = _axis(model, unknown)
+    force[first] += axis
+    force[second] -= axis
+    return force
+
+
+def _axis(model: Model, unknown: Unknown) -> Array:
+    row = unknown.element.row
+    axis: Array = model.rods.difference[row] / model.rods.original_length[row]
+    return axis
+
+
+def _delta(model: Model, unknown: Unknown, state: LinearState) -> float:
+    if unknown.axis is not None:
+        return float(state.displacement[unknown.element.row, unknown.axis])
+    first, second = model.rods.between[unknown.element.row]
+    return float((state.displacement[second] - state.displacement[first]) @ _axis(model, unknown))
+
+
+def redundants(model: Model) -> list[Unknown]:
+    """Unknowns whose release leaves an isostatic structure, by pivoted QR of the equilibrium matrix.
+
+    Rods before supports. As many as the degree of static indeterminacy; none if it is isostatic.
+    """
+    structure = Structure.of(model)
+    used = np.zeros(model.particles.count, dtype=bool)
+    used[structure.ends] = True
+    supports = np.argwhere(structure.fixed & used[:, None])
+    columns = np.zeros((2 * model.particles.count, model.rods.count + len(supports)))
+    axis = structure.difference / structure.original_length[:, None]
+    for row, ((first, second), along) in enumerate(zip(structure.ends, axis, strict=True)):
+        columns[2 * first : 2 * first + 2, row] = along
+        columns[2 * second : 2 * second + 2, row] = -along
+    for index, (row, direction) in enumerate(supports):
+        columns[2 * row + direction, model.rods.count + index] = _KEPT
+    factor, order = qr(columns, mode="r", pivoting=True)
+    sizes = np.abs(np.diag(factor))
+    rank = int((sizes > _RANK * sizes.max(initial=0.0) / _KEPT).sum())
+    found = []
+    for column in sorted(order[rank:].tolist()):
+        if column < model.rods.count:
+            found.append(Unknown(model.rods[column]))
+        else:
+            row, direction = supports[column - model.rods.count].tolist()
+            found.append(Unknown(model.particles[row], direction))
+    return found
