@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 from components.commands import Assign, Command, Group
+from components.field import Role
 from components.model import Model
 from game.moment import Moment
 from game.simulation import Simulation
@@ -48,6 +49,7 @@ class History:
         self._done: list[Entry] = []
         self._undone: list[Entry] = []
         self._run: Run | None = None
+        self._run_revision = -1
         self._key: Hashable | None = None
         self._clock: Moment | None = None  # before the command that is being executed
         model.before_change = self._before_change
@@ -94,11 +96,11 @@ class History:
 
     # --- runs ----------------------------------------------------------------------------------------
 
-    def begin_run(self, *, single: bool = False) -> Moment:
-        """Time begins to pass; returns the moment at which it did."""
+    def begin_run(self, *, single: bool = False) -> None:
+        """Time begins to pass."""
         if self._run is None:
             self._run = Run(self._simulation.moment(), single)
-        return self._run.before
+            self._run_revision = self._model.newest(Role.STATE)
 
     def end_run(self) -> None:
         """Time stops; what passed since begin_run is one entry, if anything did."""
@@ -111,7 +113,7 @@ class History:
                 run = replace(run, before=last.before)
                 self._done.pop()
             self._add(run)
-        elif self._simulation.armed != run.before.armed:
+        elif self._model.newest(Role.STATE) != self._run_revision:
             self._simulation.resume(run.before)  # it only got ready to run
 
     # --- going through the log -------------------------------------------------------------------------

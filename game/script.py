@@ -4,7 +4,7 @@ The first line is a header, {"format": "pinjoint session", "version": 1, "model"
 name, a path relative to the script, or a whole document; left out: an empty model). Every further line
 does one thing:
 
-    {"press": "space"}                          a key
+    {"press": "space"}                          a key; "over": [x, y] first moves the pointer there (m)
     {"click": [1.0, 1.0]}                       at a point of the model (m); "button": "ctrl+click"
     {"drag": [[0, 0], [1, 1]]}                  between points of the model (m); "button"
     {"type": "200000"}   {"box": "stiffness"}   typing, and selecting a box by its title
@@ -116,6 +116,8 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
         session.view.fit(session.model)
     if "at" in rest:
         _advance_to(session, int(rest.pop("at")))
+    if "over" in rest:
+        session.point(*map(float, rest.pop("over")))
     button, pixel = rest.pop("button", "click"), rest.pop("pixel", None)
     if len(rest) > 1:
         raise ValueError(f"a line does one thing, this one says {', '.join(rest)}; split it.")
@@ -187,6 +189,8 @@ def read(session: Session, path: str) -> Any:
         return getattr(session, head)
     if head == "energy":
         return session.energy.as_dict()[rest]
+    if head == "force_method":
+        return _of_force_method(session, rest)
     if head == "count":
         return len(session.model.tables[rest])
     if head not in session.model.tables:
@@ -200,6 +204,20 @@ def read(session: Session, path: str) -> Any:
         raise LookupError(session.model.missing(f"quantities of {head}", field, table.fields))
     value = getattr(table[name] if name else table[0], field)
     return value if component is None else value[component]
+
+
+def _of_force_method(session: Session, quantity: str) -> Any:
+    """A quantity of the force method's guide: part, unknown, delta_real, force, …"""
+    guide = getattr(session.scenes.active, "guide", None)
+    if guide is None:
+        raise LookupError("the force method is not going on; press K in pause first.")
+    if quantity == "unknown":
+        return guide.unknown.name if guide.unknown else None
+    if quantity in ("part", "message", "exact_force"):
+        return getattr(guide, quantity)
+    if guide.solution is None:
+        raise LookupError("nothing is released yet; pick an unknown in part 2 first.")
+    return float(getattr(guide.solution, quantity).ravel()[0])
 
 
 # --- recording -------------------------------------------------------------------------------------------

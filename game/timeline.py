@@ -44,6 +44,11 @@ class Timeline:
         """The earliest step that one can go back to."""
         return min(self._moments, default=self._now)
 
+    @property
+    def kept(self) -> int:
+        """How many moments are kept."""
+        return len(self._moments)
+
     # --- recording -------------------------------------------------------------------------------------
 
     def begin(self) -> None:

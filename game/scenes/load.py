@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 from components.form import Form, Tile
 from game import library, models
+from game.desk import ModelFile
 from game.scenes.files import FileScene, example, saved_tiles, tile
 from game.spares import spare_name
 
 if TYPE_CHECKING:
     from game.session import Session
 
+WELCOME = "Welcome to Pinjoint. What would you like to begin with?"
 NEW = "New, empty model"
 EXAMPLES = "Examples"
 LEFT_BEHIND = "Unsaved work, recovered"
@@ -33,9 +35,13 @@ class Load(FileScene):
         self.welcome = False
 
     def make_form(self, session: Session) -> Form:
-        new = tile("", NEW, "draw your own", "", None, "An empty plane, to draw particles and rods on.")
-        tiles = [new, *_left_behind(session), *saved_tiles(), *_examples()]
-        return self.new_form("Pinjoint" if self.welcome else "Load", "", tiles)
+        saved, examples = saved_tiles(), _examples()
+        beside = saved[0] if saved else examples[0]
+        new = tile(beside["section"], NEW, "draw your own", "", None, "An empty plane to draw on.")
+        tiles = [*_left_behind(session), new, *saved, *examples]
+        form = self.new_form(WELCOME if self.welcome else "Load", "", tiles)
+        form.boxes[0].note = "type to search, or click a picture"
+        return form
 
     def exit(self, session: Session) -> None:
         super().exit(session)
@@ -61,13 +67,15 @@ class Load(FileScene):
 
     def _open(self, session: Session, source: Any) -> None:
         try:
-            session.open_here(source)
+            if session.spares is not None and source in session.spares.left():
+                session.adopt(models.load(source), ModelFile(None, spare_name(source)))
+                session.spares.take_over(source, session.desk)
+            else:
+                session.open_here(source)
         except models.ModelError as error:
             self.say(str(error))
-            return
-        if session.spares is not None and source in session.spares.left():
-            session.spares.take_over(source, session.desk)
-        session.scenes.request("pause")
+        else:
+            session.scenes.request("pause")
 
     def changed(self, session: Session) -> None:
         """Show the tiles whose titles or names contain every word that was typed."""

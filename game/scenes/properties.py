@@ -83,8 +83,11 @@ class Properties(FormScene):
     def focus(self, session: Session) -> tuple[Model, View]:
         """The model beside the boxes."""
         rest, view = self._split(session)[0], session.view
-        camera = replace(view.camera, viewport=rest) if rest is not None else view.camera
-        return session.model, replace(view, camera=camera, status=replace(view.status, hint=""))
+        camera = view.camera
+        if rest is not None:  # what was seen in the whole window still is
+            scale = camera.scale * rest.width / camera.viewport.width
+            camera = replace(camera, viewport=rest, scale=scale)
+        return session.model, replace(view, camera=camera, keys=[], status=replace(view.status, hint=""))
 
     def click_beside(self, session: Session, pixel: Vector) -> None:
         """A click on another element shows that one's properties, once these are applied."""

@@ -104,9 +104,9 @@ class Discs:
 
     def _reserve_grid(self, layers: int) -> None:
         n = len(self.rows)
-        buckets = 1 << int(np.ceil(np.log2(max(2 * n * layers, 16))))
+        buckets = 1 << int(np.ceil(np.log2(max(4 * n * layers, 16))))
         self.heads = np.full(buckets, -1, dtype=np.int64)
-        self.entries = np.zeros((n * layers, 3), dtype=np.int64)
+        self.entries = np.zeros((4 * n * layers, 3), dtype=np.int64)
 
     def _reserve_contacts(self, size: int) -> None:
         self.links = np.zeros((size, 2), dtype=np.int64)

@@ -53,18 +53,20 @@ def judge(measures, account, dt, shadow, ahead, loads_are_over):
     shadow: 1 if the integrator conserves kinetic − (h²/8) fᵀM⁻¹f + elastic, else 0. ahead: what varying
         loads will supply in the next step (J); after a jump they have moved the mass but done no work yet.
 
-    Diverged: energy came from nowhere. Beyond the stable step Verlet conserves its energy too, while the
-    second term grows past the elastic energy, and both past all that was supplied. Rest: REQUIREMENTS' residual and a kinetic energy to match it,
-    relative to the present forces or, in a model that swings out to nothing, to a small part of the
-    largest ever.
+    Diverged: energy came from nowhere, more than a share of all that was supplied (or, where nothing is
+    conserved, of what one step can move). Beyond the stable step Verlet conserves its energy too, while the
+    second term grows past the elastic energy, and both past all that was supplied.
+    Rest: REQUIREMENTS' residual and a kinetic energy to match it, relative to the present forces or, in a
+    model that swings out to nothing, to a small part of the largest ever.
     """
     kinetic, power_norm, elastic, potential = measures[0], measures[1], measures[2], measures[3]
     residual, largest, round_off = measures[4], measures[5], measures[6]
     supplied = account[0] + potential - account[5]
     deficit = shadow * dt * dt / 8.0 * power_norm
+    wobble = (1 - shadow) * dt * dt * power_norm
     created = conserved(measures, account, dt, shadow) - account[8]
     account[6] = max(account[6], largest)
-    account[7] = max(account[7], abs(account[4]), abs(account[0]), abs(supplied), ahead)
+    account[7] = max(account[7], abs(account[4]), abs(account[0]), abs(supplied), ahead, wobble)
     if not created <= DIVERGENCE_SHARE * account[7] + SMALLEST_ENERGY:
         return 3
     if min(max(kinetic, elastic), deficit - elastic) > INSTABILITY_SHARE * account[7] + SMALLEST_ENERGY:

@@ -20,9 +20,9 @@ LOW = 330.0  # points: a viewport less high does without explanations
 TITLE, BOX, BELOW = 18.0, 26.0, 14.0  # points: title above a box, the box, what is said below it
 SECTION = 28.0
 COLUMN_GAP = 14.0
-HEADING = 80.0  # points, where a low viewport has the box beside the heading
+HEADING = 104.0  # points, where a low viewport has the box beside the heading
 NARROW = 150.0  # points, a box less wide does not share its row
-TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.62
+TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
 
 Row = str | list[Box] | list[Tile]
 
@@ -46,7 +46,8 @@ class Place:
 class FormLayout:
     """Where everything is.
 
-    unit: pixels per point. left, right: of all that is written. header: baseline of the heading.
+    unit: pixels per point. left, right: of all that is written. header, heading_width: the middle of the
+    heading's line, and the room for it.
     message, top, bottom: the middle of the message's line; between which the rows are; footer: the upper
     end of what is said at the bottom. first, shown, count: rows of which the first is shown, how many
     are, and there are.
@@ -57,6 +58,7 @@ class FormLayout:
     left: float
     right: float
     header: float
+    heading_width: float
     message: float
     top: float
     bottom: float
@@ -103,7 +105,9 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         room = min(width - beside_heading, 420.0 * u)
         fixed = [Place(box, left + beside_heading, top, room, BOX * u) for box in form.boxes]
         top += (BOX + 22.0) * u
-    layout = FormLayout(v, u, left, left + width, header, top - 11.0 * u, top, bottom)
+    beside = low and bool(fixed)
+    heading_width = (HEADING - 8.0) * u if beside else width
+    layout = FormLayout(v, u, left, left + width, header, heading_width, top - 11.0 * u, top, bottom)
     return _with_rows(form, layout, fixed)
 
 
@@ -124,6 +128,8 @@ def _with_rows(form: Form, layout: FormLayout, fixed: list[Place]) -> FormLayout
         places += _placed(row, layout.left, top, width, height, u)
         top += height
         shown += 1
+    if shown > 1 and isinstance(rows[first + shown - 1], str):  # a heading of nothing that is seen
+        places.pop()
     return replace(layout, first=first, shown=shown, count=len(rows), places=places)
 
 

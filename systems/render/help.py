@@ -3,17 +3,32 @@
 from __future__ import annotations
 
 import math
+from typing import Protocol
 
+from components.camera import Viewport
+from components.view import View
 from systems.render.marks import Mark, Panel, Text
-from systems.render.sheet import Sheet
-from systems.render.theme import faded
+from systems.render.theme import Theme, faded
 from systems.render.typography import line_height, shortened, text_width
 
 _PAD, _GAP = 22.0, 26.0  # points: inside the card, between columns
 _SIZES = (13.0, 12.0, 11.0, 10.0, 9.0)  # points, the first that fits
 
 
-def draw_help(sheet: Sheet) -> list[Mark]:
+class Drawn(Protocol):
+    """What is drawn in one viewport: a model's sheet, or a form."""
+
+    view: View
+    theme: Theme
+    unit: float
+
+    @property
+    def viewport(self) -> Viewport: ...
+
+    def font(self, points: float) -> int: ...
+
+
+def draw_help(sheet: Drawn) -> list[Mark]:
     """Keys and what they do, in as many columns as it takes; over everything else."""
     keys = sheet.view.keys
     if not keys:
@@ -30,7 +45,7 @@ def draw_help(sheet: Sheet) -> list[Mark]:
 class _Card:
     """The help at one size of type."""
 
-    def __init__(self, sheet: Sheet, keys: list[tuple[str, str]], points: float) -> None:
+    def __init__(self, sheet: Drawn, keys: list[tuple[str, str]], points: float) -> None:
         self.sheet, self.keys, self.u = sheet, [(_shown(key), title) for key, title in keys], sheet.unit
         self.size = sheet.font(points)
         self.step = 1.15 * line_height(self.size)

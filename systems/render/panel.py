@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -12,8 +13,9 @@ from components.form import Form, Tile
 from components.model import Model
 from components.view import View, drawn_positions
 from systems.render.form_layout import CAPTION, LOW, FormLayout, Place, lay_out
-from systems.render.marks import Fills, Mark, Panel, Picture, Rectangles, Text
-from systems.render.sheet import measure
+from systems.render.help import draw_help
+from systems.render.marks import Fills, Mark, Panel, Picture, Rectangles, Strokes, Text
+from systems.render.sheet import FEW, Sheet, measure
 from systems.render.structure import draw_particles, draw_rods
 from systems.render.supports import crowding, draw_supports, support_sides
 from systems.render.theme import Colour, Theme, faded
@@ -21,14 +23,15 @@ from systems.render.typography import shortened, text_width, wrapped
 
 _TEXT = 13.0  # points, of what is in a box
 _PAD = 8.0  # points between a box's edge and its text
-_THUMBNAIL_MARGIN = 30.0  # points, room for supports
+_THUMBNAIL_MARGIN = 24.0  # points, room for supports
+_SMALLER = 0.6  # symbols in a thumbnail, compared with those in a model
 
 
 def compose_form(form: Form, view: View, theme: Theme) -> Picture:
     """A form as marks in the pixels of the view's viewport. Reads the form, changes nothing."""
     layout = lay_out(form, view.camera.viewport, view.pixel_ratio)
     writer = _Writer(form, view, theme, layout)
-    marks = [*writer.header(), *writer.rows(), *writer.footer(), *writer.scroll_bar()]
+    marks = [*writer.header(), *writer.rows(), *writer.footer(), *writer.scroll_bar(), *draw_help(writer)]
     return Picture(layout.viewport, theme.form, marks)
 
 
@@ -36,14 +39,18 @@ class _Writer:
     """Makes the marks of one form."""
 
     def __init__(self, form: Form, view: View, theme: Theme, layout: FormLayout) -> None:
-        self.form, self.view, self.theme, self.layout, self.u = form, view, theme, layout, layout.unit
+        self.form, self.view, self.theme, self.layout, self.unit = form, view, theme, layout, layout.unit
         self.selected, self.chosen = form.selected, form.chosen
         under = layout.at(view.pointer) if view.pointer is not None else None
         self.hovered = under
 
+    @property
+    def viewport(self) -> Viewport:
+        return self.layout.viewport
+
     def font(self, points: float) -> int:
         """A font size in whole pixels."""
-        return max(round(points * self.u), 7)
+        return max(round(points * self.unit), 7)
 
     # --- what stands in fixed places -------------------------------------------------------------
 
@@ -52,7 +59,7 @@ class _Writer:
         layout, heading = self.layout, self.form.heading
         size, small = self.font(19.0), self.font(12.0)
         room = layout.right - layout.left
-        text = shortened(heading.text, room, size, "semibold")
+        text = shortened(heading.text, layout.heading_width, size, "semibold")
         marks: list[Mark] = [Text(text, layout.left, layout.header, size, self.theme.form_text, "semibold")]
         if heading.message:
             message = shortened(heading.message, room, small)
@@ -64,11 +71,11 @@ class _Writer:
         layout, size, v = self.layout, self.font(12.0), self.layout.viewport
         width, bottom = layout.right - layout.left, v.top + v.height
         hint = shortened(self.view.status.hint, width, size)
-        marks: list[Mark] = [Text(hint, layout.left, bottom - 13.0 * self.u, size, self.theme.form_muted)]
-        if v.height >= LOW * self.u:
+        marks: list[Mark] = [Text(hint, layout.left, bottom - 13.0 * self.unit, size, self.theme.form_muted)]
+        if v.height >= LOW * self.unit:
             lines = wrapped(self._explanation(), width, size)
             for number, line in enumerate(_at_most(lines, 2, width, size)):
-                y = bottom - 48.0 * self.u + number * 1.1 * size * 1.15
+                y = bottom - (50.0 - 16.0 * number) * self.unit
                 marks.append(Text(line, layout.left, y, size, self.theme.form_text))
         return marks
 
@@ -83,9 +90,9 @@ class _Writer:
         layout = self.layout
         if layout.shown >= layout.count:
             return []
-        v, width = layout.viewport, max(round(3.0 * self.u), 2)
+        v, width = layout.viewport, max(round(3.0 * self.unit), 2)
         track = layout.bottom - layout.top
-        length = max(track * layout.shown / layout.count, 16.0 * self.u)
+        length = max(track * layout.shown / layout.count, 16.0 * self.unit)
         last = layout.count - layout.shown
         top = layout.top + (track - length) * min(layout.first / last, 1.0)
         box = [v.left + v.width - 2 * width, round(top), width, round(length)]
@@ -107,7 +114,7 @@ class _Writer:
         return marks
 
     def _box(self, place: Place, box: Box) -> list[Mark]:
-        u, theme, size = self.u, self.theme, self.font(11.5)
+        u, theme, size = self.unit, self.theme, self.font(11.5)
         above, below = place.top - 10.0 * u, place.top + place.height + 8.0 * u
         marks: list[Mark] = []
         if above > self.layout.header:
@@ -126,7 +133,7 @@ class _Writer:
 
     def _frame(self, place: Place, selected: bool, hovered: bool) -> list[Mark]:
         """The white box, red when selected."""
-        theme, u, radius = self.theme, self.u, 4.0 * self.u
+        theme, u, radius = self.theme, self.unit, 4.0 * self.unit
         box = _grown(place, 0.0, radius, theme.box)
         if selected:
             tint = _grown(place, 0.0, radius, faded(theme.selected, 0.14))
@@ -135,7 +142,7 @@ class _Writer:
 
     def _contents(self, place: Place, box: Box) -> list[Mark]:
         """Text, caret or mark, and the note at the right while nothing was typed."""
-        u, theme, size = self.u, self.theme, self.font(_TEXT)
+        u, theme, size = self.unit, self.theme, self.font(_TEXT)
         left, middle = place.left + _PAD * u, place.top + place.height / 2
         room = place.width - 2 * _PAD * u - (12.0 * u if box.accepts == WORD else 0.0)
         marks: list[Mark] = []
@@ -150,14 +157,15 @@ class _Writer:
         marks.append(Text(visible, left, middle, size, theme.box_text))
         note_size = self.font(11.0)
         if box.note and not box.changed and width + text_width(box.note, note_size) + 10.0 * u <= room:
-            marks.append(Text(box.note, left + room, middle, note_size, theme.box_muted, anchor="right"))
+            x, anchor = (left + room, "right") if box.text else (left + 2.0 * u, "left")
+            marks.append(Text(box.note, x, middle, note_size, theme.box_muted, anchor=anchor))
         if box.accepts == WORD:
             marks.append(_turning(place.left + place.width - 14.0 * u, middle, u, theme.box_muted))
         return marks
 
     def _tile(self, place: Place, tile: Tile) -> list[Mark]:
         """A picture of the model, its title and its caption."""
-        u, theme = self.u, self.theme
+        u, theme = self.unit, self.theme
         height = place.height - CAPTION * u
         card = Place(tile, place.left, place.top, place.width, height)
         radius = 6.0 * u
@@ -165,26 +173,34 @@ class _Writer:
         if tile is self.chosen or tile is self.hovered:
             colour = theme.selected if tile is self.chosen else theme.hover
             marks.append(_grown(card, 3.0 * u, radius + 2.0 * u, colour))
-        marks.append(_grown(card, 0.0, radius, theme.background))
+        marks.append(replace(_grown(card, 0.0, radius, theme.background), outline=theme.line))
         if tile.picture is not None:
             viewport = Viewport(round(card.left), round(card.top), round(card.width), round(card.height))
             marks += thumbnail(tile.picture, viewport, u, theme)
         elif tile.source is None:
             middle = card.left + card.width / 2, card.top + card.height / 2
             marks.append(Text("+", *middle, self.font(44.0), theme.muted, anchor="centre"))
-        title, caption = self.font(12.5), self.font(11.0)
-        text = shortened(tile.title, place.width, title, "semibold")
-        marks.append(Text(text, place.left, card.top + height + 13.0 * u, title, theme.form_text, "semibold"))
-        text = shortened(tile.caption, place.width, caption)
-        marks.append(Text(text, place.left, card.top + height + 28.0 * u, caption, theme.form_muted))
+        return [*marks, *self._legend(tile, place.left, card.top + height, place.width)]
+
+    def _legend(self, tile: Tile, left: float, top: float, width: float) -> list[Mark]:
+        """The title in at most two lines, and the caption if one is enough."""
+        u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
+        lines = _at_most(wrapped(tile.title, width, size, "semibold"), 2, width, size, "semibold")
+        marks: list[Mark] = [
+            Text(line, left, top + (13.0 + 15.5 * number) * u, size, theme.form_text, "semibold")
+            for number, line in enumerate(lines)
+        ]
+        if len(lines) == 1:
+            caption = shortened(tile.caption, width, small)
+            marks.append(Text(caption, left, top + 28.0 * u, small, theme.form_muted))
         return marks
 
 
-def _at_most(lines: list[str], most: int, width: float, size: int) -> list[str]:
+def _at_most(lines: list[str], most: int, width: float, size: int, weight: str = "regular") -> list[str]:
     """The first lines, the last of them ending in an ellipsis if there are more."""
     if len(lines) <= most:
         return lines
-    return [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), width, size)]
+    return [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), width, size, weight)]
 
 
 def _grown(place: Place, by: float, radius: float, colour: Colour) -> Panel:
@@ -224,8 +240,24 @@ def thumbnail(model: Model, viewport: Viewport, unit: float, theme: Theme) -> tu
     """A small picture of a model that does not change any more: rods, supports and particles."""
     camera = Camera(viewport=viewport)
     camera.fit(drawn_positions(model), _THUMBNAIL_MARGIN * unit)
-    sheet = measure(model, View(camera=camera, pixel_ratio=unit), theme)
+    sheet = measure(model, View(camera=camera, pixel_ratio=_SMALLER * unit), theme)
     draw_supports(sheet, support_sides(model.particles.fixed, crowding(sheet)))
     draw_rods(sheet)
     draw_particles(sheet)
-    return tuple(sheet.marks)
+    return (*sheet.marks, *_velocities(sheet))
+
+
+def _velocities(sheet: Sheet) -> list[Mark]:
+    """Arrows of one length in the directions in which particles move."""
+    velocity = sheet.model.particles.velocity
+    moving = np.flatnonzero((velocity != 0.0).any(axis=1))
+    if not 0 < len(moving) <= FEW:
+        return []
+    along = velocity[moving] / np.hypot(*velocity[moving].T)[:, None] * [1.0, -1.0]
+    across = along[:, ::-1] * [-1.0, 1.0]
+    u = sheet.unit
+    start = sheet.centres[moving] + along * sheet.radii[moving, None]
+    tip, neck = start + 40.0 * u * along, start + 30.0 * u * along
+    heads = np.stack([tip, neck + 6.0 * u * across, neck - 6.0 * u * across], axis=1)
+    colour = sheet.theme.force
+    return [Strokes(start, neck, 2.0 * u, colour), Fills(heads, colour)]

@@ -12,14 +12,15 @@ ENUMERATED = 10  # rods up to which all sets are tried if pivoting goes in circl
 PIVOTS = 200
 
 
-def yielding_set(matrix: Array, growth: Array) -> Flags | None:
+def yielding_set(matrix: Array, growth: Array, guess: Flags) -> Flags | None:
     """The set A that solves γ ≥ 0, w = M γ − g ≥ 0, γᵀw = 0, with γ = 0 outside A and w = 0 in it.
 
     g is how fast the force of each rod (k,) would exceed its strength if none yielded, M γ how much of that
     yielding at the rates γ takes away, M symmetric. None if there is no such set, or none was found.
-    Principal pivoting on the least index [K. G. Murty, 1974], which ends if M is positive definite.
+    Principal pivoting on the least index [K. G. Murty, 1974], which ends from any guess if M is positive
+    definite.
     """
-    chosen = np.zeros(len(growth), dtype=bool)
+    chosen = guess.copy()
     for _ in range(PIVOTS):
         wrong = _violations(matrix, growth, chosen)
         if not wrong.any():

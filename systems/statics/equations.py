@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,7 @@ from components.model import Model
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Rows = NDArray[np.intp]
-Matrix = Array | csc_matrix  # full up to DENSE unknowns, else sparse
+Matrix: TypeAlias = Array | csc_matrix  # full up to DENSE unknowns, else sparse
 
 DENSE = 100  # unknowns up to which full matrices are faster
 
@@ -226,8 +227,8 @@ class Structure:
     @cached_property
     def _dense_pattern(self) -> tuple[Rows, Rows]:
         """Which of the rods' 16 entries count, and where each goes in the flattened matrix."""
-        number = np.full(self.unknown.size, -1)
-        number[self.index] = np.arange(self.size)
+        number = np.full(self.unknown.size, -1, dtype=np.intp)
+        number[self.index] = np.arange(self.size, dtype=np.intp)
         own = number.reshape(-1, 2)[self.ends].reshape(-1, 4)
         row = np.repeat(own, 4, axis=1).ravel()
         column = np.tile(own, (1, 4)).ravel()

@@ -53,9 +53,14 @@ def _direction(motions: Array) -> str:
     return f"along ({x:.2f}, {y:.2f})"
 
 
-def there(model: Model, moved: Array) -> str:
-    """Where a field of displacements (m) took the particle that moved most: "B by (0, −1.7) m"."""
+def moved(model: Model, before: Array, after: Array) -> str:
+    """Who moved most between two fields of displacements (m), and where it is now."""
     names = model.particles.column("name")
-    row = int(np.hypot(moved[:, 0], moved[:, 1]).argmax())
-    x, y = moved[row]
-    return f"{names[row]} by ({x:.4g}, {y:.4g}) m"
+    change = after - before
+    row = int(np.hypot(change[:, 0], change[:, 1]).argmax())
+    return f"{names[row]} by {_pair(change[row])} m, to the displacement {_pair(after[row])} m"
+
+
+def _pair(vector: Array) -> str:
+    shown = np.where(np.abs(vector) < 1e-9 * np.abs(vector).max(), 0.0, vector)
+    return f"({shown[0]:.5g}, {shown[1]:.5g})"

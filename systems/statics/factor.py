@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.linalg.lapack import dsytrf, dsytrs
-from scipy.sparse import csc_matrix, diags
+from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from systems.statics.equations import Array, Matrix
@@ -23,6 +25,7 @@ class Factor:
     """
 
     def __init__(self, matrix: Matrix) -> None:
+        self._solve: Callable[[Array], Array] = np.zeros_like
         self.exists, self.negative = True, 0
         if isinstance(matrix, np.ndarray):
             self._factor_full(matrix)
@@ -34,7 +37,6 @@ class Factor:
     def _factor_full(self, matrix: Array) -> None:
         """Bunch and Kaufman's pivoting; its 2 × 2 pivots have one eigenvalue of either sign."""
         if matrix.shape[0] == 0:
-            self._solve = np.zeros_like
             return
         factors, swaps, info = dsytrf(matrix, lower=1)
         self.exists = info == 0
@@ -74,7 +76,9 @@ def regular(matrix: Matrix, weight: Array, share: float = NO_STIFFNESS) -> Facto
     """Factor of K + share × weight: definite if every motion is resisted by more than −share."""
     if isinstance(matrix, np.ndarray):
         return Factor(matrix + np.diag(share * weight))
-    return Factor(csc_matrix(matrix + diags(share * weight, format="csc")))
+    shifted = matrix.copy()
+    shifted.setdiag(matrix.diagonal() + share * weight)
+    return Factor(shifted)
 
 
 def lowest_mode(matrix: Matrix, weight: Array) -> tuple[float, Array]:
@@ -113,4 +117,5 @@ def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None) -> A
 def _start(size: int, count: int) -> Array:
     """Fixed vectors with a part in every direction, the same in every run."""
     numbers = np.arange(1, size * count + 1) * 0.6180339887498949
-    return (np.modf(numbers)[0] - 0.5).reshape(count, size).T.copy()
+    vectors: Array = (np.modf(numbers)[0] - 0.5).reshape(count, size).T.copy()
+    return vectors

@@ -26,6 +26,7 @@ EXACT_EVENTS = 500  # rods up to which every yield ends an increment; larger: sl
 HALF = 0.5  # share of an increment to try after it failed
 RESOLUTION = 1 / 32  # of the change of load, to which yields are told apart in larger structures
 EVENT = 1e-8  # of the change of load, to which a yield is located
+REVERSAL = 1e-5  # increment to which the end of yielding is located; the error goes with its square
 SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
 NARROWINGS = 42  # halvings that locate a loss of stability; in larger structures:
 FEW_NARROWINGS = 14
@@ -77,9 +78,16 @@ class Step:
 
 
 class Path:
-    """The equilibria of a structure under force + t × change (fields of kN), 0 ≤ t ≤ 1."""
+    """The equilibria of a structure under force + t × change (fields of kN), 0 ≤ t ≤ 1.
 
-    def __init__(self, structure: Structure, force: Array, change: Array) -> None:
+    passes_limits: go on where stability is lost, the load growing or falling, instead of looking for
+    another way to yield that is stable.
+    """
+
+    def __init__(
+        self, structure: Structure, force: Array, change: Array, *, passes_limits: bool = False
+    ) -> None:
+        self.passes_limits = passes_limits
         self.structure = structure
         self.force = force
         self.change = change
@@ -106,28 +114,62 @@ class Path:
 
     # --- directions --------------------------------------------------------------------------------
 
-    def tangent(self, point: Point, onward: Array | None = None) -> Tangent:
-        """The direction in which the path goes on; onward: how the unknowns changed so far.
+    def tangent(self, point: Point, onward: Array | None = None, before: Tangent | None = None) -> Tangent:
+        """The direction in which the path goes on from a point.
 
-        Of the rods at a strength those flow whose elongation goes on in that direction.
+        onward: how the unknowns changed so far; before: the tangent then. Of the rods at a strength those
+        flow whose elongation goes on in that direction.
         """
-        structure, response = self.structure, point.response
-        limited = structure.at_limit(response)
+        limited = self.structure.at_limit(point.response)
+        nothing = np.zeros_like(limited)
+        kept = before.flowing & limited if before is not None else nothing
+        found = self._direction(point.response, kept, onward)
+        if self._agrees(point.response, found, limited) and (found.factor.definite or self.passes_limits):
+            return found
+        if self.passes_limits:
+            found = self._direction(point.response, limited, onward)
+            return replace(found, consistent=self._agrees(point.response, found, limited))
+        return self._stable_tangent(point.response, limited, kept, onward)
+
+    def _stable_tangent(
+        self, response: Response, limited: Flags, guess: Flags, onward: Array | None
+    ) -> Tangent:
+        """The direction in which t grows and the equilibria are stable, if there is one."""
         elastic = self._direction(response, np.zeros_like(limited), onward)
-        if not limited.any() or not elastic.stable:
+        if not elastic.stable:
             return elastic
-        growth = structure.elongation_rate(elastic.rate, response) * np.sign(response.axial_force)
+        growth = self._growth(response, elastic)
         grows = limited & (growth > 0.0)
         if not grows.any():
             return elastic
         if not self.exact_events:
             return self._flow_by_trial(response, limited, grows, onward)
-        flowing = self._flow_exactly(response, limited, growth, elastic.factor)
+        flowing = self._flow_exactly(response, limited, growth, elastic.factor, guess)
         if flowing is not None:
             return self._direction(response, flowing, onward)
         return replace(self._direction(response, grows, onward), consistent=False)
 
-    def _flow_exactly(self, response: Response, limited: Flags, growth: Array, elastic: Factor) -> Flags | None:
+    def _direction(self, response: Response, flowing: Flags, onward: Array | None) -> Tangent:
+        structure = self.structure
+        factor = regular(structure.tangent(response, flowing), structure.weight)
+        rate = factor.solve(self.push) if factor.exists else np.zeros(structure.size)
+        forward = factor.definite or onward is None or float(rate @ onward) >= 0.0
+        return Tangent(rate, flowing, factor, 1.0 if forward else -1.0)
+
+    def _growth(self, response: Response, tangent: Tangent) -> Array:
+        """How fast rods elongate along the path, in the direction of their force."""
+        rate = self.structure.elongation_rate(tangent.sense * tangent.rate, response)
+        growth: Array = rate * np.sign(response.axial_force)
+        return growth
+
+    def _agrees(self, response: Response, tangent: Tangent, limited: Flags) -> bool:
+        """True if of the rods at a strength just those that flow go on growing."""
+        grows = limited & (self._growth(response, tangent) > 0.0)
+        return tangent.factor.exists and np.array_equal(grows, tangent.flowing)
+
+    def _flow_exactly(
+        self, response: Response, limited: Flags, growth: Array, elastic: Factor, guess: Flags
+    ) -> Flags | None:
         """Of the rods at a strength those that flow, or None if there is no such set."""
         structure = self.structure
         sign = np.sign(response.axial_force)[limited]
@@ -135,7 +177,7 @@ class Path:
         pull = structure.compatibility(response, np.flatnonzero(limited)).toarray() * sign[:, None]
         softening = pull @ elastic.solve(np.ascontiguousarray(pull.T))
         matrix = np.diag(stiffness) - stiffness[:, None] * softening * stiffness
-        chosen = yielding_set(0.5 * (matrix + matrix.T), stiffness * growth[limited])
+        chosen = yielding_set(0.5 * (matrix + matrix.T), stiffness * growth[limited], guess[limited])
         if chosen is None:
             return None
         flowing = np.zeros_like(limited)
@@ -146,22 +188,13 @@ class Path:
         self, response: Response, limited: Flags, flowing: Flags, onward: Array | None
     ) -> Tangent:
         """In a large structure: let rods flow and stop until the set stays, or nearly."""
-        sign = np.sign(response.axial_force)
         for _ in range(ACTIVE_SET_ROUNDS):
             found = self._direction(response, flowing, onward)
-            rate = self.structure.elongation_rate(found.sense * found.rate, response)
-            grows = limited & (sign * rate > 0.0)
+            grows = limited & (self._growth(response, found) > 0.0)
             if np.array_equal(grows, flowing):
                 break
             flowing = grows
         return found
-
-    def _direction(self, response: Response, flowing: Flags, onward: Array | None) -> Tangent:
-        structure = self.structure
-        factor = regular(structure.tangent(response, flowing), structure.weight)
-        rate = factor.solve(self.push) if factor.exists else np.zeros(structure.size)
-        forward = factor.definite or onward is None or float(rate @ onward) >= 0.0
-        return Tangent(rate, flowing, factor, 1.0 if forward else -1.0)
 
     def stable_without(self, point: Point, flowing: Flags) -> bool:
         """True if the point is stable when only these rods flow."""
@@ -181,7 +214,9 @@ class Path:
 
         An increment ends where a rod begins to yield; one that fails is halved.
         """
-        trial, failed = min(increment, self._until_event(point, tangent)), False
+        far = LARGEST_MOVE / max(self.structure.move(tangent.rate, point.response.length), 1e-300)
+        nearest = min(self._until_event(point, tangent), 0.99 * far * self.stretch(tangent))
+        trial, failed = min(increment, nearest), False
         smallest = SMALLEST * self.stretch(tangent)
         while trial > smallest:
             found = self.attempt(point, tangent, trial)
@@ -200,8 +235,6 @@ class Path:
         if last:
             dt = 1.0 - point.t
         predicted = dt * tangent.rate
-        if structure.move(predicted, point.response.length) > LARGEST_MOVE:
-            return HALF
         guess = point.displacement + structure.spread(predicted)
         found = self.correct(point, guess, point.t + dt, None if last else tangent)
         if found is not None and found.t > 1.0:
@@ -212,8 +245,8 @@ class Path:
         kink = self._kink(point, tangent, found, dt)
         if kink < 1.0:
             return kink
-        following = self.tangent(found, change)
-        if self._reversed(tangent, found, following, dt):
+        following = self.tangent(found, change, tangent)
+        if self._reversed(tangent, found, following, increment):
             return HALF
         fine = self._went_along(point, tangent, found, following, predicted, change)
         yielded = not np.array_equal(found.response.flowing, tangent.flowing)
@@ -295,22 +328,31 @@ class Path:
         return float(wait.min(initial=np.inf)) * self.stretch(tangent)
 
     def _kink(self, point: Point, tangent: Tangent, found: Point, dt: float) -> float:
-        """Share of an increment after which the first rod yielded in it; 1 if at its end or not at all."""
-        new = found.response.flowing & ~tangent.flowing
+        """Share of an increment after which the first rod yielded in it; 1 if at its end or not at all.
+
+        The force on the way is taken as quadratic, from its values at both ends and its rate at the start.
+        """
+        structure, before, after = self.structure, point.response, found.response
+        new = after.flowing & ~tangent.flowing & ~structure.at_limit(before)
         if not self.exact_events or not new.any():
             return 1.0
-        structure = self.structure
-        limit = found.response.axial_force[new]
-        before = point.response.axial_force[new]
-        passed = found.response.elastic_force[new] - before
-        was_there = structure.at_limit(point.response)[new]
-        share = np.where(was_there, 1.0, (limit - before) / np.where(passed != 0.0, passed, 1.0))
+        sign = np.sign(after.axial_force[new])
+        stiffness = (structure.stiffness / structure.rest_length)[new]
+        margin = sign * (after.axial_force - before.axial_force)[new]
+        linear = sign * stiffness * structure.elongation_rate(dt * tangent.rate, before)[new]
+        quadratic = sign * (after.elastic_force - before.axial_force)[new] - linear
+        root = np.sqrt(np.maximum(linear**2 + 4.0 * quadratic * margin, 0.0))
+        share = np.where(
+            linear >= 0.0,
+            2.0 * margin / np.maximum(linear + root, np.finfo(float).tiny),
+            (root - linear) / (2.0 * np.maximum(quadratic, np.finfo(float).tiny)),
+        )
         first = float(share.min())
-        return first if (1.0 - first) * abs(dt) > EVENT else 1.0
+        return min(first, 0.99) if (1.0 - first) * abs(dt) > EVENT else 1.0
 
-    def _reversed(self, tangent: Tangent, found: Point, following: Tangent, dt: float) -> bool:
+    def _reversed(self, tangent: Tangent, found: Point, following: Tangent, increment: float) -> bool:
         """True if a rod stopped flowing well within the increment."""
-        if not self.exact_events or abs(dt) <= 1e-6:
+        if not self.exact_events or increment <= REVERSAL:
             return False
         stopped = tangent.flowing & ~(found.response.flowing & following.flowing)
         return bool(stopped.any())

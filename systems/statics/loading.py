@@ -10,7 +10,7 @@ import numpy as np
 from components.model import Model
 from systems.statics.equations import Array, Flags
 from systems.statics.events import Event, NoEquilibrium
-from systems.statics.explain import describe_motion, rod_names, there
+from systems.statics.explain import describe_motion, moved, rod_names
 from systems.statics.factor import lowest_mode, soft_modes
 from systems.statics.follow import LARGEST_MOVE, Path, Point, Tangent
 from systems.statics.relax import RUNAWAY, relax
@@ -158,7 +158,7 @@ class Loading:
 
     def _jump(self, beyond: Tangent) -> Tangent:
         """From the last stable point move on to the next stable equilibrium, and report what happened."""
-        path, structure, critical = self.path, self.path.structure, self.point
+        path, critical = self.path, self.point
         self.jumps += 1
         if self.jumps > MOST_JUMPS:
             raise self._lost()
@@ -194,11 +194,12 @@ class Loading:
             raise self._lost()
         else:
             motion = relaxed.point.displacement - self.point.displacement
-            flowing = plastic.flowing if plastic else relaxed.point.response.flowing
-            raise self._collapse(flowing, self.path.structure.spread(nudge) if plastic else motion)
+            if plastic is not None and nudge is not None:
+                raise self._collapse(plastic.flowing, self.path.structure.spread(nudge))
+            raise self._collapse(relaxed.point.response.flowing, motion)
 
     def _note_jump(self, kind: str, critical: Point, mode: Array) -> None:
-        moved = self.point.displacement - critical.displacement
+        where = moved(self.model, critical.displacement, self.point.displacement)
         yielded = np.flatnonzero(self.point.plastic_strain != critical.plastic_strain)
         if kind == "bifurcation":
             what = "Bifurcation: the equilibrium became unstable"
@@ -207,10 +208,7 @@ class Loading:
             what = "Snap-through: the structure passed its unstable position"
             after = ""
         rods = f" {_sentence(rod_names(self.model, yielded))} yielded on the way." if len(yielded) else ""
-        message = (
-            f"{what} {self._at(critical.t)} and moved on to the next stable one,"
-            f" {there(self.model, moved)}.{after}{rods}"
-        )
+        message = f"{what} {self._at(critical.t)} and went on to the next stable one, {where}.{after}{rods}"
         names = self.model.rods.column("name")
         event_rods = tuple(str(names[row]) for row in yielded)
         motion = _unit(self.path.structure.spread(mode))

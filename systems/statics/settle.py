@@ -30,7 +30,7 @@ class StaticState:
     """The state at one load factor, in m, kN and J: the particles' fields are (n, 2), the rods' (rods,).
 
     reaction: the supports' force in constrained directions, 0 elsewhere. residual: the largest unbalanced
-    force over the largest force. dissipated_plastic: since settling began. status: "equilibrium",
+    force over the largest force so far. dissipated_plastic: since settling began. status: "equilibrium",
     "mechanism", "collapse" or "limit reached"; if not the first, all values are those of the last good
     state on the way. events: what happened on the way from the state before.
     """
@@ -112,7 +112,7 @@ class _Settling:
         self.structure = Structure.of(model)
         self.external = external_forces(model)
         self.events = [Event("note", 0.0, note) for note in self.external.notes]
-        self.factor = 0.0
+        self.factor, self.largest = 0.0, 0.0
         at_rest = Path(self.structure, self._nothing, self._nothing)
         self.point = at_rest.start(model.particles.displacement.copy(), model.rods.plastic_strain.copy())
         self.load = self._holding()
@@ -181,7 +181,8 @@ class _Settling:
     def _state(self, status: str, message: str) -> StaticState:
         structure, response = self.structure, self.point.response
         unbalanced = structure.internal(response) - self.load
-        largest = max(float(np.abs(values).max(initial=0.0)) for values in (self.load, response.axial_force))
+        for values in (self.load, response.axial_force):
+            self.largest = max(self.largest, float(np.abs(values).max(initial=0.0)))
         free = np.abs(np.where(structure.fixed, 0.0, unbalanced)).max(initial=0.0)
         told = [message] if message else [e.message for e in self.events if e.kind in TOLD]
         elastic = response.axial_force**2 * structure.rest_length / structure.stiffness
@@ -194,7 +195,7 @@ class _Settling:
             length=response.length,
             yielding=structure.at_limit(response),
             reaction=np.where(structure.fixed, unbalanced, 0.0),
-            residual=float(free) / largest if largest > 0.0 else 0.0,
+            residual=float(free) / self.largest if self.largest > 0.0 else 0.0,
             elastic_energy=500.0 * float(elastic.sum()),
             dissipated_plastic=self.point.dissipated,
             status=status,

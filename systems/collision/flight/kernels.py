@@ -12,7 +12,7 @@ import math
 
 from systems.collision.disc import AX, AY, EPOCH, GX, GY, RADIUS, UX, UY, VX, VY, WX, WY
 from systems.collision.gap.kernels import place_noise, relative_motion
-from systems.collision.grid.kernels import enclose, enter, layer_of, leave, level_of, neighbours
+from systems.collision.grid.kernels import enclose, enter, layer_of, leave, level_of, neighbours, place_box
 from systems.collision.impact.kernels import IMPULSE, INITIAL, MOTION, NX, NY, respond, separation_speed
 from systems.collision.queue.kernels import drop_first, is_void
 from systems.collision.state import (
@@ -162,7 +162,11 @@ def _gather(
         a = members[MEMBER, m]
         near = 0
         if not is_held(discs, a):
-            near = neighbours(a, boxes, layer, levels, counts[LAYERS], numbers[CELL], heads, entries, found)
+            left, bottom, right, top = place_box(a, discs, now)
+            near = neighbours(
+                a, left, bottom, right, top,
+                boxes, layer, levels, counts[LAYERS], numbers[CELL], heads, entries, found,
+            )  # fmt: skip
         for k in range(near):
             b = found[k]
             place = members[PLACE, b]
@@ -285,7 +289,10 @@ def _expect_anew(
         i = members[MEMBER, m]
         if discs[i, EPOCH] != numbers[NOW] or is_held(discs, i):
             continue
-        near = neighbours(i, boxes, layer, levels, counts[LAYERS], numbers[CELL], heads, entries, found)
+        near = neighbours(
+            i, boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3],
+            boxes, layer, levels, counts[LAYERS], numbers[CELL], heads, entries, found,
+        )  # fmt: skip
         for k in range(near):
             j = found[k]
             again = members[PLACE, j] >= 0 and j < i and discs[j, EPOCH] == numbers[NOW]

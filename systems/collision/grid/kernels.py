@@ -1,14 +1,14 @@
 """A hierarchical hash grid of boxes: which discs can meet before the present window ends.
 
-Every disc has a box around its path until the window's end, and belongs to the finest layer whose cells are at
-least as large as the box. It is entered there as native, by the cell of its box's centre, and as guest in all
-coarser layers, so that two boxes that overlap are in adjacent cells of the coarser one's layer, whatever their
-sizes; a very large or very fast disc costs no more than a look at all others.
+Every disc has a box around its path until the window's end, and belongs to the finest layer whose cells are
+larger than the box. It is entered as native into the one to four cells of that layer that its box overlaps,
+and as guest into those of all coarser layers. Two boxes that overlap then share a cell of the coarser one's
+layer, whatever their sizes: a very large or very fast disc costs no more than a look at all others.
 
 boxes: shape (n, 4): left, bottom, right, top, m. layer: the layer of each disc, shape (n,). levels: the cells
-of layer k have the size cell × 2^levels[k]; ascending. Entry disc × layers + layer of `entries`, shape
-(capacity, 3), holds the entries after and before it in its bucket (−1: none) and the hash of its cell; heads
-are the first entries of the buckets, a power of two of them.
+of layer k have the size cell × 2^levels[k]; ascending. Entries 4 (disc × layers + layer) to + 3 of `entries`,
+shape (capacity, 3), hold the entries after and before them in their bucket (−1: none) and the hash of their
+cell; heads are the first entries of the buckets, a power of two of them.
 """
 
 import math
@@ -19,7 +19,7 @@ from systems.kernels import compiled
 
 NONE = -1
 AFTER, BEFORE, KEY = 0, 1, 2
-FARTHEST_CELL = 2.0**40  # cells from the origin; farther out cells grow, so that they stay whole numbers
+FARTHEST_CELL = 2.0**40  # cells from the origin; farther out cells grow, so that they can be told apart
 COARSEST = 63
 MARGIN = 1e-13  # of a disc's coordinates, added to its box: above what counts as touching
 
@@ -51,6 +51,16 @@ def enclose(i, discs, boxes, now, end):
 
 
 @compiled
+def place_box(i, discs, now):
+    """Box around what a disc covers now."""
+    s = now - discs[i, EPOCH]
+    x = discs[i, OX] + (discs[i, UX] + s * (discs[i, VX] + 0.5 * s * discs[i, AX]))
+    y = discs[i, OY] + (discs[i, UY] + s * (discs[i, VY] + 0.5 * s * discs[i, AY]))
+    around = discs[i, RADIUS] + MARGIN * extent(discs, i, now)
+    return x - around, y - around, x + around, y + around
+
+
+@compiled
 def box_size(i, boxes):
     """The longer side of a disc's box."""
     return max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1])
@@ -60,7 +70,7 @@ def box_size(i, boxes):
 def level_of(i, boxes, cell):
     """The finest level (0: cells of size `cell`, then doubling) that suits the box of a disc."""
     away = max(abs(boxes[i, 0] + boxes[i, 2]), abs(boxes[i, 1] + boxes[i, 3]))
-    size = max(box_size(i, boxes), 0.5 * away / FARTHEST_CELL)
+    size = 1.001 * max(box_size(i, boxes), 0.5 * away / FARTHEST_CELL)  # a box overlaps two cells, not three
     if size <= cell:
         return 0
     mantissa, exponent = math.frexp(size / cell)
@@ -81,7 +91,7 @@ def _key(cx, cy, kind):
     """Mixes a cell and 2 × layer (+ 1 for guests) into 64 bits."""
     h = cx * 0x9E3779B97F4A7C1 + cy * 0xC2B2AE3D27D4EB4 + kind * 0x165667B19E3779F
     h = (h ^ ((h >> 29) & 0x7FFFFFFFF)) * 0xBF58476D1CE4E5B
-    return h ^ ((h >> 32) & 0xFFFFFFFF)
+    return (h ^ ((h >> 32) & 0xFFFFFFFF)) & 0x7FFFFFFFFFFFFFFF  # not negative: NONE is no key
 
 
 @compiled
@@ -92,67 +102,71 @@ def _inverse_size(cell, level):
 @compiled
 def enter(i, boxes, layer, levels, layers, cell, heads, entries):
     """Enter a disc into its layer and all coarser ones."""
-    x, y = 0.5 * (boxes[i, 0] + boxes[i, 2]), 0.5 * (boxes[i, 1] + boxes[i, 3])
     for k in range(layer[i], layers):
         inverse = _inverse_size(cell, levels[k])
-        guest = 1 if k > layer[i] else 0
-        key = _key(math.floor(x * inverse), math.floor(y * inverse), 2 * k + guest)
-        bucket = key & (heads.shape[0] - 1)
-        entry = i * layers + k
-        first = heads[bucket]
-        entries[entry, KEY] = key
-        entries[entry, BEFORE] = NONE
-        entries[entry, AFTER] = first
-        if first != NONE:
-            entries[first, BEFORE] = entry
-        heads[bucket] = entry
+        left, right = math.floor(boxes[i, 0] * inverse), math.floor(boxes[i, 2] * inverse)
+        bottom, top = math.floor(boxes[i, 1] * inverse), math.floor(boxes[i, 3] * inverse)
+        kind = 2 * k + (1 if k > layer[i] else 0)
+        for q in range(4):
+            entry = 4 * (i * layers + k) + q
+            cx, cy = left + q // 2, bottom + q % 2
+            if cx <= right and cy <= top:
+                _insert(entry, _key(cx, cy, kind), heads, entries)
+            else:
+                entries[entry, KEY] = NONE
+
+
+@compiled
+def _insert(entry, key, heads, entries):
+    bucket = key & (heads.shape[0] - 1)
+    first = heads[bucket]
+    entries[entry, KEY] = key
+    entries[entry, BEFORE] = NONE
+    entries[entry, AFTER] = first
+    if first != NONE:
+        entries[first, BEFORE] = entry
+    heads[bucket] = entry
 
 
 @compiled
 def leave(i, layer, layers, heads, entries):
     """Take a disc out of the grid."""
-    for k in range(layer[i], layers):
-        entry = i * layers + k
-        previous, following = entries[entry, BEFORE], entries[entry, AFTER]
-        if previous == NONE:
-            heads[entries[entry, KEY] & (heads.shape[0] - 1)] = following
-        else:
-            entries[previous, AFTER] = following
-        if following != NONE:
-            entries[following, BEFORE] = previous
+    for entry in range(4 * (i * layers + layer[i]), 4 * (i + 1) * layers):
+        key = entries[entry, KEY]
+        if key != NONE:
+            previous, following = entries[entry, BEFORE], entries[entry, AFTER]
+            if previous == NONE:
+                heads[key & (heads.shape[0] - 1)] = following
+            else:
+                entries[previous, AFTER] = following
+            if following != NONE:
+                entries[following, BEFORE] = previous
 
 
 @compiled
-def _collect(i, key, boxes, layers, heads, entries, found, count):
-    """Add the discs of one cell whose boxes overlap that of disc i."""
-    left, bottom, right, top = boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3]
-    entry = heads[key & (heads.shape[0] - 1)]
-    while entry != NONE:
-        if entries[entry, KEY] == key:
-            j = entry // layers
-            apart = boxes[j, 0] > right or boxes[j, 2] < left or boxes[j, 1] > top or boxes[j, 3] < bottom
-            if not apart and j != i and count < found.shape[0]:
-                found[count] = j
-                count += 1
-        entry = entries[entry, AFTER]
-    return count
-
-
-@compiled
-def neighbours(i, boxes, layer, levels, layers, cell, heads, entries, found):
-    """Discs whose boxes overlap that of disc i, each once, into `found`, shape (n,); returns how many."""
+def neighbours(i, left, bottom, right, top, boxes, layer, levels, layers, cell, heads, entries, found):
+    """Discs other than i whose boxes overlap a part of that of i, each once, into `found`; returns how many."""
     count = 0
-    x, y = 0.5 * (boxes[i, 0] + boxes[i, 2]), 0.5 * (boxes[i, 1] + boxes[i, 3])
-    size = box_size(i, boxes)
     for k in range(layer[i], layers):
         inverse = _inverse_size(cell, levels[k])
-        reach = 0.501 * (size * inverse + 1.0)  # in cells; the excess covers rounding
-        left, right = math.floor(x * inverse - reach), math.floor(x * inverse + reach)
-        bottom, top = math.floor(y * inverse - reach), math.floor(y * inverse + reach)
-        guests = k == layer[i] and k > 0
-        for cx in range(left, right + 1):
-            for cy in range(bottom, top + 1):
-                count = _collect(i, _key(cx, cy, 2 * k), boxes, layers, heads, entries, found, count)
-                if guests:
-                    count = _collect(i, _key(cx, cy, 2 * k + 1), boxes, layers, heads, entries, found, count)
+        for cx in range(math.floor(left * inverse), math.floor(right * inverse) + 1):
+            for cy in range(math.floor(bottom * inverse), math.floor(top * inverse) + 1):
+                for guests in range(2 if k == layer[i] and k > 0 else 1):
+                    key = _key(cx, cy, 2 * k + guests)
+                    entry = heads[key & (heads.shape[0] - 1)]
+                    while entry != NONE:
+                        j = entry // (4 * layers)
+                        x, y = max(boxes[j, 0], left), max(boxes[j, 1], bottom)
+                        if (
+                            x <= min(boxes[j, 2], right)
+                            and y <= min(boxes[j, 3], top)
+                            and j != i
+                            and math.floor(x * inverse) == cx  # of the cells both overlap, count one
+                            and math.floor(y * inverse) == cy
+                            and entries[entry, KEY] == key
+                            and count < found.shape[0]
+                        ):
+                            found[count] = j
+                            count += 1
+                        entry = entries[entry, AFTER]
     return count

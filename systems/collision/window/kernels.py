@@ -8,7 +8,7 @@ comes out.
 first, partners, bonds: pairs that do not collide; those of disc i are partners[first[i] : first[i + 1]].
 """
 
-from systems.collision.disc import AX, AY, EPOCH, RADIUS, VX, VY, WX, WY
+from systems.collision.disc import AX, AY, EPOCH, OX, OY, RADIUS, UX, UY, VX, VY, WX, WY
 from systems.collision.gap.kernels import NEVER, first_approach, relative_motion, speed_noise
 from systems.collision.grid.kernels import (
     COARSEST,
@@ -42,7 +42,7 @@ DONE, QUEUE_FULL, GRID_FULL = int(Reason.DONE), int(Reason.QUEUE_FULL), int(Reas
 FREE, JOINED, OVERLAPPING = 0, 1, 2  # bonds: none; never collide; do not collide before they have separated
 
 LONGEST_WINDOW, SHORTEST_WINDOW = 2.0**20, 2.0**-200  # s
-BOX_COST = 12.0  # of renewing a disc's box, relative to that of looking at one neighbour (measured)
+BOX_COST = 2.5  # of renewing a disc's box, relative to that of looking at one neighbour (measured)
 CROWD = 64  # neighbours per disc; a window with more is opened anew with a shorter one
 SAMPLE = 128  # discs that decide the size of the grid's cells
 
@@ -123,17 +123,17 @@ def open_window(
     counts[RENEW] = 1
     _choose_length(discs, numbers, counts)
     while True:
+        area = _area(discs, numbers, numbers[WINDOW])
+        crowd = NEVER if area <= 2.0 * _area(discs, numbers, 0.0) else CROWD * discs.shape[0]
         reason, pairs = _fill(
-            discs, changes, boxes, layer, levels, heads, entries, first, partners, bonds, times, meetings, found,
-            numbers, counts,
+            crowd, discs, changes, boxes, layer, levels, heads, entries, first, partners, bonds, times, meetings,
+            found, numbers, counts,
         )  # fmt: skip
         if reason != DONE:
             return reason
-        window = numbers[WINDOW]
-        area = _area(discs, numbers, window)
-        if pairs <= CROWD * discs.shape[0] or area <= 2.0 * _area(discs, numbers, 0.0):
+        if pairs <= crowd:
             break
-        numbers[WINDOW] = max(0.25 * window, SHORTEST_WINDOW)
+        numbers[WINDOW] = max(0.25 * numbers[WINDOW], SHORTEST_WINDOW)
     numbers[CROWDING] = max(pairs, 0.05 * discs.shape[0]) / area
     numbers[OPENED] = numbers[NOW]
     counts[STRIKES_BEFORE] = counts[STRIKES]
@@ -143,35 +143,27 @@ def open_window(
 
 @compiled
 def _fill(
-    discs,
-    changes,
-    boxes,
-    layer,
-    levels,
-    heads,
-    entries,
-    first,
-    partners,
-    bonds,
-    times,
-    meetings,
-    found,
-    numbers,
-    counts,
-):
-    """Boxes, grid and queue of a window; returns a Reason and how many pairs of boxes overlap."""
+    crowd, discs, changes, boxes, layer, levels, heads, entries, first, partners, bonds, times, meetings, found,
+    numbers, counts,
+):  # fmt: skip
+    """Boxes, grid and queue of a window. Returns a Reason and how many boxes overlap; gives up above `crowd`."""
     numbers[END] = numbers[NOW] + numbers[WINDOW]
     for i in range(discs.shape[0]):
         enclose(i, discs, boxes, numbers[NOW], numbers[END])
     _layer(boxes, layer, levels, numbers, counts)
-    if discs.shape[0] * counts[LAYERS] > entries.shape[0]:
+    if 4 * discs.shape[0] * counts[LAYERS] > entries.shape[0]:
         return GRID_FULL, 0
     heads[:] = NONE
     counts[QUEUED] = 0
     pairs = 0
+    layers = counts[LAYERS]
     for i in range(discs.shape[0]):
-        layers = counts[LAYERS]
-        near = neighbours(i, boxes, layer, levels, layers, numbers[CELL], heads, entries, found)
+        if pairs > crowd:
+            break
+        near = neighbours(
+            i, boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3],
+            boxes, layer, levels, layers, numbers[CELL], heads, entries, found,
+        )  # fmt: skip
         for k in range(near):
             if not expect(
                 i, found[k], discs, changes, first, partners, bonds, times, meetings, numbers, counts
@@ -218,6 +210,7 @@ def _choose_length(discs, numbers, counts):
     steps = 1
     if numbers[WINDOW] == 0.0:
         numbers[WINDOW] = 1.0
+        numbers[CROWDING] = 0.5 * discs.shape[0] / _spread(discs)
         steps = 300
     for _ in range(steps):
         window = numbers[WINDOW]
@@ -228,6 +221,17 @@ def _choose_length(discs, numbers, counts):
             numbers[WINDOW] = min(2.0 * window, LONGEST_WINDOW)
         if numbers[WINDOW] == window:
             return
+
+
+@compiled
+def _spread(discs):
+    """Area (m²) of a box around all discs, in the first estimate of how crowded they are."""
+    left, bottom, right, top = NEVER, NEVER, -NEVER, -NEVER
+    for i in range(discs.shape[0]):
+        x, y, r = discs[i, OX] + discs[i, UX], discs[i, OY] + discs[i, UY], discs[i, RADIUS]
+        left, right = min(left, x - r), max(right, x + r)
+        bottom, top = min(bottom, y - r), max(top, y + r)
+    return (right - left) * (top - bottom)
 
 
 # --- layers of the grid ---------------------------------------------------------------------------------

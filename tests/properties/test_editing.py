@@ -1,0 +1,137 @@
+"""Editing by random actions: nothing crashes, the model stays sound, undo and redo are exact."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from hypothesis import HealthCheck, settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
+
+from components.field import Role
+from components.model import Model
+from game import Session
+from systems.input.bindings import BINDINGS, LIVE
+
+EMPTY = {"format": "pinjoint model", "version": 1}
+FRAME = 1.0 / 60.0
+
+Print = dict[str, Any]
+
+
+def contents(model: Model) -> Print:
+    """Everything that a model holds and that is not computed, bit for bit."""
+    found: Print = {}
+    for table in model.tables.values():
+        found[table.name] = table.entities.tolist()
+        for field in table.fields_in(Role.DOCUMENT, Role.STATE):
+            column = table.column(field.name)
+            found[f"{table.name}.{field.name}"] = (
+                column.tolist() if column.dtype == object else column.tobytes()
+            )
+    return found
+
+
+def check_sound(model: Model) -> None:
+    """The rules that every model keeps, whatever was done to it."""
+    particles, rods, loads = model.particles, model.rods, model.loads
+    for table in (particles, rods, loads, model.grids):
+        assert len(set(table.names)) == table.count == len(table.handles)
+        assert [handle.row for handle in table] == list(range(table.count))
+        for field in table.fields_in(Role.DOCUMENT, Role.STATE):
+            column = table.column(field.name)
+            if field.dtype is float and not field.nullable:
+                assert np.isfinite(column).all(), (table.name, field.name)
+    ends = rods.between.astype(np.int64)
+    assert (ends < particles.count).all()
+    assert (ends[:, 0] != ends[:, 1]).all()
+    assert len({frozenset(pair) for pair in ends.tolist()}) == rods.count
+    assert (loads.on < particles.count).all()
+    assert (rods.rest_length > 0.0).all()
+    assert (particles.mass > 0.0).all()
+    assert (particles.velocity[particles.fixed] == 0.0).all()
+    assert int(model.grids.shown.sum()) <= 1
+
+
+class Editing(RuleBasedStateMachine):
+    """A person who does anything, on a small area so that things meet."""
+
+    places = st.tuples(st.integers(-4, 4), st.integers(-4, 4)).map(lambda p: (0.5 * p[0], 0.5 * p[1]))
+
+    @initialize(model=st.sampled_from([EMPTY, "isostatic", "collision_i"]))
+    def open(self, model: Any) -> None:
+        self.session = Session.open(model)
+        self.session.view.camera.scale = 100.0
+        self.start = contents(self.session.model)
+
+    @rule(at=places, key=st.sampled_from("plcfv"))
+    def point_and_press(self, at: tuple[float, float], key: str) -> None:
+        self.session.point(*at)
+        self.session.press(key)
+
+    @rule(key=st.sampled_from(sorted({b.key for b in BINDINGS if set(b.scenes) & set(LIVE)} - set("sdk"))))
+    def press(self, key: str) -> None:
+        if key not in ("return", "ctrl+o", "ctrl+s", "ctrl+n", "drag middle"):
+            self.session.press(key)
+
+    @rule(at=places, button=st.sampled_from(["click", "ctrl+click"]))
+    def click(self, at: tuple[float, float], button: str) -> None:
+        self.session.click(*at, button)
+
+    @rule(start=places, end=places, button=st.sampled_from(["click", "click", "ctrl+click"]))
+    def drag(self, start: tuple[float, float], end: tuple[float, float], button: str) -> None:
+        self.session.drag(start, end, button)
+
+    @rule(start=places, end=places)
+    def grab(self, start: tuple[float, float], end: tuple[float, float]) -> None:
+        self.session.grab(*start)
+        self.session.drag_to(*end)
+
+    @rule(count=st.integers(1, 4))
+    def frames(self, count: int) -> None:
+        for _ in range(count):
+            self.session.frame(FRAME)
+
+    @rule(steps=st.integers(-300, 300))
+    def step(self, steps: int) -> None:
+        self.session.leave_gesture()
+        self.session.step(steps)
+
+    @rule(key=st.sampled_from(["ctrl+z", "ctrl+z", "ctrl+y"]))
+    def go_through_the_log(self, key: str) -> None:
+        self.session.press(key)
+
+    @invariant()
+    def sound(self) -> None:
+        if hasattr(self, "session"):
+            check_sound(self.session.model)
+
+    def teardown(self) -> None:
+        if not hasattr(self, "session"):
+            return
+        session = self.session
+        session.leave_gesture()
+        if session.scene == "simulation":
+            session.press("space")
+        while session.redo():  # what was taken back and not replaced by anything else
+            pass
+        end = contents(session.model)
+        entries = 0
+        while session.undo():
+            check_sound(session.model)
+            entries += 1
+        assert contents(session.model) == self.start
+        for _ in range(entries):
+            assert session.redo()
+        assert contents(session.model) == end
+        assert not session.redo()
+
+
+TestEditing = Editing.TestCase
+TestEditing.settings = settings(
+    max_examples=500,
+    stateful_step_count=40,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
+)

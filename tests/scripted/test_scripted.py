@@ -1,0 +1,92 @@
+"""Scripted sessions: they are played in the real scenes with the real keys, and replay to the same bits."""
+
+from __future__ import annotations
+
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from components.field import Role
+from game import Session
+from game.cli import main
+from game.script import Recorder, Script, ScriptError
+
+SCRIPTS = sorted(Path(__file__).parent.glob("*.jsonl"))
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.stem)
+def test_session(path: Path) -> None:
+    script = Script(path)
+    assert [str(failure) for failure in script.play(script.open())] == []
+
+
+def test_an_expectation_that_fails_says_what_where_expected_and_got(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "wrong.jsonl"
+    path.write_text(
+        '{"format": "pinjoint session", "version": 1, "model": "isostatic"}\n'
+        '{"run": "rest"}\n{"expect": "rods.AB.axial_force ≈ -29 ± 0.1"}\n',
+        encoding="utf-8",
+    )
+    assert main(["play", str(path)]) == 1
+    said = capsys.readouterr()
+    assert "line 3: expected rods.AB.axial_force ≈ -29 ± 0.1, got -28.34" in said.err
+    assert "1 expectations failed" in said.out
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ('{"pres": "k"}', r"line 2: there is no 'pres'"),
+        ('{"press": "k", "run": 1}', "line 2: a line does one thing"),
+        ('{"expect": "rods.AB"}', "is no expectation"),
+        ('{"expect": "rods.AX.strain = 0"}', "did you mean"),
+        ("[1]", "line 2: write an object"),
+        ("{", "line 2: this is not JSON"),
+    ],
+)
+def test_wrong_lines_are_explained(tmp_path: Path, line: str, words: str) -> None:
+    path = tmp_path / "wrong.jsonl"
+    header = '{"format": "pinjoint session", "version": 1, "model": "isostatic"}\n'
+    path.write_text(header + line + "\n", encoding="utf-8")
+    with pytest.raises(ScriptError, match=words):
+        script = Script(path)
+        script.play(script.open())
+
+
+def test_a_recording_replays_to_the_same_bits(tmp_path: Path) -> None:
+    """Frames of irregular length while recording; the replay takes the same steps between the same inputs."""
+    session = Session.open("hyperstatic")
+    file = io.StringIO()
+    Recorder(session, file, "hyperstatic")
+    random = np.random.default_rng(7)
+    session.press("i")
+    session.press("space")
+    for _ in range(20):
+        session.frame(float(random.uniform(0.005, 0.03)))
+    session.click(1.5, 0.75)
+    session.press("delete")
+    for _ in range(20):
+        session.frame(float(random.uniform(0.005, 0.03)))
+    session.press("escape")
+    session.press("p", (250.0, 130.0))
+    path = tmp_path / "recorded.jsonl"
+    path.write_text(file.getvalue(), encoding="utf-8")
+    assert all(json.loads(line) for line in file.getvalue().splitlines())
+
+    script = Script(path)
+    replayed = script.open()
+    script.play(replayed)
+    assert _bits(replayed) == _bits(session)
+
+
+def _bits(session: Session) -> dict[str, bytes]:
+    return {
+        f"{table.name}.{field.name}": repr(table.column(field.name).tolist()).encode()
+        for table in session.model.tables.values()
+        for field in table.fields_in(Role.DOCUMENT, Role.STATE)
+    }

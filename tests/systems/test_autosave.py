@@ -1,0 +1,292 @@
+"""Autosave: unsaved work outlives a killed program, no file is ever damaged, and a clean end leaves nothing."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from components.model import Model
+from components.particle import Particle
+from components.rod import spawn_rods
+from game import Session, library, models
+from game.desk import ModelFile
+from game.scenes.files import FileScene
+from game.spares import LAST_SESSION, SpareKeeper, spare_name
+from tests.reference.models import triangle
+
+ROOT = Path(__file__).parents[2]
+INTERVAL = 0.2  # s between spares in these tests
+
+# A window (without a display) in which somebody never stops editing; it tells each value once it is set.
+WINDOW = """
+import sys, time
+from game import models
+from game.app import App
+from game.desk import ModelFile
+from game.spares import SpareKeeper
+app = App(models.load(sys.argv[1]), ModelFile(None, "work"), SpareKeeper(interval=float(sys.argv[2])))
+value = 1000.0
+while not app.input.closed:
+    value += 1.0
+    app.session.rods[0].stiffness = value
+    app.frame(0.01)
+    print(value, flush=True)
+"""
+
+
+@pytest.fixture(autouse=True)
+def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path / "data"))
+    return tmp_path / "data"
+
+
+@contextmanager
+def window(model: Path, interval: float = INTERVAL) -> Iterator[subprocess.Popen[str]]:
+    """A running window in another process, killed at the end if it still runs."""
+    environment = os.environ | {"SDL_VIDEODRIVER": "dummy", "SDL_AUDIODRIVER": "dummy"}
+    command = [sys.executable, "-c", WINDOW, str(model), str(interval)]
+    process = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True)
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+def values_until(process: subprocess.Popen[str], seconds: float) -> list[tuple[float, float]]:
+    """(when, value) of what a window told in so many seconds after its first word."""
+    assert process.stdout is not None
+    told: list[tuple[float, float]] = []
+    for line in process.stdout:
+        if line[0].isdigit():
+            told.append((time.monotonic(), float(line)))
+            if told[-1][0] - told[0][0] > seconds:
+                return told
+    raise AssertionError("The window ended by itself.")
+
+
+def lattice(side: int) -> Model:
+    """About 2 × side² rods in squares."""
+    model = Model()
+    xy = np.array([(x, y) for y in range(side) for x in range(side)], dtype=float)
+    model.create(Particle, len(xy), position=xy)
+    row = np.arange(side * side).reshape(side, side)
+    across = np.stack([row[:, :-1].ravel(), row[:, 1:].ravel()], axis=1)
+    spawn_rods(model, np.concatenate([across, np.stack([row[:-1].ravel(), row[1:].ravel()], axis=1)]))
+    return model
+
+
+@pytest.fixture
+def model_file(tmp_path: Path) -> Path:
+    models.save(models.parse(triangle()), tmp_path / "model.json")
+    return tmp_path / "model.json"
+
+
+def kept(keeper: SpareKeeper, session: Session) -> None:
+    """Let frames pass until everything is written."""
+    for _ in range(200):
+        keeper.process(session.frame(0.0))
+        if all(desk.spare is not None and desk.spare.exists() for desk in session.desks if desk.unsaved):
+            return
+        time.sleep(0.01)
+    raise AssertionError("Unsaved work was not written within 2 s.")
+
+
+def gone(session: Session, data: Path) -> None:
+    """Let frames pass until there are no spares."""
+    for _ in range(200):
+        session.frame(0.0)
+        if not list((data / "autosave").glob("*.json")):
+            return
+        time.sleep(0.01)
+    raise AssertionError("What was saved still had a spare after 2 s.")
+
+
+# --- a program that is killed ------------------------------------------------------------------------
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
+def test_a_killed_window_loses_at_most_the_last_moments(model_file: Path) -> None:
+    with window(model_file) as process:
+        told = values_until(process, 1.5)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    (left,) = SpareKeeper().left()
+    recovered = models.load(left)
+    value = recovered.rods[0].stiffness
+    when = next(when for when, told_value in told if told_value >= value)
+    assert told[-1][0] - when < INTERVAL + 0.5
+    assert spare_name(left) == "work"
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
+def test_no_moment_of_being_killed_damages_a_file(tmp_path: Path, data: Path) -> None:
+    models.save(lattice(40), tmp_path / "large.json")
+    rng = np.random.default_rng(7)
+    for kills in range(1, 4):
+        with window(tmp_path / "large.json", interval=0.0) as process:  # writes without a pause
+            values_until(process, 0.5 + 0.3 * rng.random())
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+        files = list((data / "autosave").glob("[!.]*.json"))
+        assert len(files) == kills
+        for file in files:
+            recovered = models.load(file)
+            assert recovered.rods.count == 2 * 40 * 39
+
+
+def test_closing_the_window_leaves_nothing_but_the_last_session(
+    model_file: Path, data: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    pygame = pytest.importorskip("pygame")
+    from game.app import App
+
+    keeper = SpareKeeper(interval=0.0)
+    app = App(models.load(model_file), ModelFile(None, "work"), keeper)
+    app.session.rods[0].stiffness = 5.0
+    kept(keeper, app.session)
+    assert list((data / "autosave").glob("*.json"))
+    pygame.event.post(pygame.event.Event(pygame.QUIT))
+    app.run()
+    assert list((data / "autosave").iterdir()) == []
+    last = models.load(data / "models" / f"{LAST_SESSION}.json")
+    assert last.rods[0].stiffness == 5.0
+
+
+# --- what is kept, and when --------------------------------------------------------------------------
+
+
+def test_what_is_saved_needs_no_spare(data: Path) -> None:
+    keeper = SpareKeeper(interval=0.0)
+    session = Session.open(triangle(), [keeper])
+    session.frame(0.0)
+    assert not list((data / "autosave").glob("*.json"))
+    session.rods["AB"].stiffness = 5.0
+    kept(keeper, session)
+    session.save_as(data / "a.json")
+    gone(session, data)
+    keeper.close(session.desks)
+    assert not (data / "models").exists()
+
+
+def test_every_model_with_unsaved_work_has_its_spare(data: Path) -> None:
+    keeper = SpareKeeper(interval=0.0)
+    session = Session.open(triangle(), [keeper])
+    session.rods["AB"].stiffness = 5.0
+    session.open_here("isostatic")
+    session.rods["AB"].stiffness = 7.0
+    kept(keeper, session)
+    files = (data / "autosave").glob("*.json")
+    found = [models.load(file) for file in files]
+    assert sorted(model.rods["AB"].stiffness for model in found) == [5.0, 7.0]
+    keeper.close(session.desks)
+
+
+def test_a_spare_is_written_at_most_every_few_seconds(data: Path) -> None:
+    keeper = SpareKeeper(interval=60.0)
+    session = Session.open(triangle(), [keeper])
+    session.rods["AB"].stiffness = 5.0
+    kept(keeper, session)
+    (spare,) = (data / "autosave").glob("*.json")
+    for value in range(6, 30):
+        session.rods["AB"].stiffness = float(value)
+        session.frame(0.0)
+    time.sleep(0.05)
+    content = models.load(spare)
+    assert content.rods["AB"].stiffness == 5.0
+    keeper.close(session.desks)
+
+
+def test_ten_thousand_rods_do_not_stop_the_picture() -> None:
+    keeper = SpareKeeper(interval=0.0)
+    session = Session(lattice(71), [])
+    assert session.rods.count > 9900
+    session.rods[0].stiffness = 5.0
+    frame = session.frame(0.0)
+    longest = 0.0
+    for value in range(5):
+        session.rods[0].stiffness = 10.0 + value
+        started = time.perf_counter()
+        keeper.process(frame)
+        longest = max(longest, time.perf_counter() - started)
+        kept(keeper, session)
+    assert longest < 0.1  # it took 0.02 s when this was written
+    keeper.close(session.desks)
+
+
+# --- recovery ----------------------------------------------------------------------------------------
+
+
+def left_behind(data: Path, stiffness: float) -> Path:
+    """What a program that crashed left: a lock that nobody holds any more, and a spare."""
+    folder = data / "autosave"
+    folder.mkdir(parents=True)
+    (folder / "dead.lock").touch()
+    model = models.parse(triangle(stiffness=stiffness))
+    models.save(model, folder / "dead.1.my work.json")
+    return folder / "dead.1.my work.json"
+
+
+def with_spares(keeper: SpareKeeper) -> Session:
+    session = Session.open(triangle(), [keeper])
+    session.spares = keeper
+    return session
+
+
+def test_what_was_left_behind_is_offered_first_and_opened(data: Path) -> None:
+    left = left_behind(data, 5.0)
+    keeper = SpareKeeper(interval=0.0)
+    session = with_spares(keeper)
+    session.press("d")
+    scene = session.scenes.active
+    assert isinstance(scene, FileScene)
+    tile = scene.form.tiles[0]
+    assert (tile.section, tile.title) == ("Unsaved work, recovered", "my work")
+    session.press("down")
+    session.press("return")
+    assert session.rods["AB"].stiffness == 5.0
+    assert session.desk.unsaved
+    assert session.file == ModelFile(None, "my work"), "Ctrl+S asks for a name"
+    session.rods["AB"].stiffness = 6.0
+    kept(keeper, session)
+    assert left.exists(), "until it is saved it can be recovered again"
+    session.press("s")
+    session.press("return")
+    gone(session, data)
+    keeper.close(session.desks)
+    assert list((data / "autosave").iterdir()) == []
+
+
+def test_what_was_not_opened_is_offered_again(data: Path) -> None:
+    left = left_behind(data, 5.0)
+    keeper = SpareKeeper()
+    keeper.close(with_spares(keeper).desks)
+    assert left.exists()
+    assert SpareKeeper().left() == [left]
+
+
+def test_unsaved_work_of_a_running_program_is_not_offered(model_file: Path, data: Path) -> None:
+    with window(model_file) as process:
+        values_until(process, 0.6)
+        assert list((data / "autosave").glob("*.json"))
+        keeper = SpareKeeper()
+        assert keeper.left() == []
+        keeper.close([])
+        assert list((data / "autosave").glob("*.json"))
+
+
+def test_scripts_write_nothing(data: Path) -> None:
+    session = Session.open(triangle())
+    session.rods["AB"].stiffness = 5.0
+    session.frame(5.0)
+    assert not data.exists()

@@ -1,0 +1,513 @@
+"""Properties: boxes from Fields, typing into them, and all of them applied at once."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+
+from components.box import Box
+from components.camera import Viewport
+from components.field import same
+from components.particle import Particle
+from components.tags import Selected
+from game import Session
+from game.scenes.properties import Properties
+from systems.render.form_layout import FormLayout
+from systems.render.marks import Text
+from systems.render.picture import compose
+from systems.render.theme import load_theme
+from systems.render.typography import text_width
+from tests.reference.models import model, particle, triangle
+
+SIZES = [(320, 240), (400, 800), (640, 480), (1000, 720), (1366, 768), (3840, 2160)]
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session.open(triangle(tensile_strength=215))
+
+
+def open_of(session: Session, *names: str) -> Properties:
+    """The properties of elements by name, as a person opens them."""
+    tables = [session.particles, session.rods]
+    session.select(*(table[name] for name in names for table in tables if name in table))
+    session.press("return")
+    scene = session.scenes.active
+    assert isinstance(scene, Properties)
+    return scene
+
+
+def box_of(session: Session, title: str) -> Box:
+    scene = session.scenes.active
+    assert isinstance(scene, Properties)
+    return next(box for box in scene.form.boxes if box.title == title)
+
+
+def entered(session: Session, title: str, text: str) -> Box:
+    """Select a box, type into it and accept it."""
+    session.click_box(title)
+    session.type(text)
+    session.press("return")
+    return box_of(session, title)
+
+
+def layout_of(session: Session) -> FormLayout:
+    scene = session.scenes.active
+    assert isinstance(scene, Properties)
+    return scene.layout(session)
+
+
+# --- what is shown -----------------------------------------------------------------------------------
+
+
+def test_a_rod_has_the_boxes_that_the_thesis_names(session: Session) -> None:
+    scene = open_of(session, "AB")
+    assert session.scene == "properties"
+    assert scene.form.heading.text == "rod AB"
+    shown = {
+        "rest length": "141.421356",
+        "tensile strength": "215",
+        "compressive strength": "unlimited",
+        "stiffness": "164640",
+        "damping coefficient": "100",
+        "density": "0.0615",
+        "force diagram scale": "1",
+    }
+    assert shown.items() <= session.boxes.items()
+    units = {box.title: box.unit for box in scene.form.boxes}
+    assert units["rest length"] == "cm"
+    assert units["density"] == "kg/cm"
+    assert units["damping coefficient"] == "kN·s/m"
+
+
+def test_a_particle_has_the_boxes_that_the_thesis_names(session: Session) -> None:
+    open_of(session, "B")
+    for title in ("displacement", "original position", "applied force", "applied acceleration", "velocity"):
+        assert {f"{title} x", f"{title} y"} <= session.boxes.keys()
+    assert session.boxes["original position x"] == "100"
+    assert session.boxes["applied force y"] == "-160"
+    assert session.boxes["constrained x"] == "no"
+    assert session.boxes["radius"] == "5"
+    together = {"displacement scale": "1", "coefficient of restitution": "1", "time step": "automatic"}
+    assert together.items() <= session.boxes.items()
+
+
+def test_nothing_selected_is_the_environment_and_all_settings(session: Session) -> None:
+    scene = open_of(session)
+    assert scene.form.heading.text == "Environment"
+    assert {box.section for box in scene.form.boxes} == {"Environment", "All particles", "All rods"}
+    assert {"force x", "acceleration y", "drag", "integrator", "force diagram scale"} <= session.boxes.keys()
+
+
+def test_a_grid_has_its_spacing(session: Session) -> None:
+    session.press("g")
+    grid = session.model.grids[0]
+    session.select(grid)
+    session.press("return")
+    entered(session, "spacing x", "25")
+    session.press("escape")
+    assert grid.spacing == (0.25, 0.5)
+
+
+@pytest.mark.parametrize("names", [("B",), ("AB",), (), ("A", "B", "AB")])
+def test_boxes_are_alphabetical_in_their_section(session: Session, names: tuple[str, ...]) -> None:
+    scene = open_of(session, *names)
+    for _, boxes in itertools.groupby(scene.form.boxes, lambda box: box.section):
+        titles = [box.title for box in boxes]
+        assert titles == sorted(titles)
+
+
+def test_every_field_that_a_person_can_set_has_a_box(session: Session) -> None:
+    scene = open_of(session, "B")
+    targets = {box.target for box in scene.form.boxes}
+    for field in Particle.__dict__.values():
+        if getattr(field, "dtype", None) is float and field.role.value != "derived":
+            axes = ("x", "y") if field.shape else ("",)
+            assert {f"particles.{field.name}{'.' * bool(axis)}{axis}" for axis in axes} <= targets
+
+
+def test_a_mass_that_follows_from_the_rods_is_shown_and_said_to_be_automatic(session: Session) -> None:
+    open_of(session, "B")
+    box = box_of(session, "mass")
+    assert float(box.text) == pytest.approx(session.particles["B"].mass, rel=1e-8)
+    assert box.note == "automatic"
+
+
+# --- typing ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("typed", "text"),
+    [
+        ("200000", "200000"),
+        ("2a0 0k", "200"),
+        ("1.5.2", "1.52"),
+        ("1e5", "1e5"),
+        ("2,5", "2.5"),
+        ("--3", "-3"),
+        ("e", ""),
+        ("5-", "5"),
+    ],
+)
+def test_a_number_takes_what_can_become_a_number(session: Session, typed: str, text: str) -> None:
+    open_of(session, "AB")
+    session.click_box("stiffness")
+    session.press("backspace")
+    session.type(typed)
+    assert session.boxes["stiffness"] == text
+
+
+def test_return_accepts_and_deselects_and_leaving_applies(session: Session) -> None:
+    scene = open_of(session, "AB")
+    session.click_box("stiffness")
+    session.type("200000")
+    assert scene.form.selected is box_of(session, "stiffness")
+    session.press("return")
+    assert scene.form.selected is None
+    assert session.rods["AB"].stiffness == 164640.0, "not before leaving"
+    session.press("escape")
+    assert session.scene == "pause"
+    assert session.rods["AB"].stiffness == 200000.0
+
+
+def test_escape_restores_what_the_box_held(session: Session) -> None:
+    scene = open_of(session, "AB")
+    entered(session, "stiffness", "5")
+    session.click_box("stiffness")
+    session.type("7")
+    session.press("escape")
+    assert session.scene == "properties"
+    assert session.boxes["stiffness"] == "5"
+    assert scene.form.selected is None
+
+
+def test_an_empty_box_leaves_its_value(session: Session) -> None:
+    open_of(session, "AB")
+    session.click_box("stiffness")
+    session.press("backspace")
+    session.press("return")
+    assert session.boxes["stiffness"] == ""
+    session.press("escape")
+    assert session.rods["AB"].stiffness == 164640.0
+
+
+def test_what_was_not_typed_keeps_its_bits() -> None:
+    odd = 0.1 + 0.2
+    session = Session.open(model([particle("A", odd, -0.0, velocity=[1 / 3, 1e-300])], []))
+    before = {name: session.particles.column(name).copy() for name in session.particles.fields}
+    session.select(session.particles["A"])
+    session.press("return")
+    session.press("escape")
+    assert all(same(column, session.particles.column(name)) for name, column in before.items())
+    assert not session.history.can_undo
+
+
+@pytest.mark.parametrize(
+    ("title", "text", "field", "value"),
+    [
+        ("radius", "7", "radius", 0.07),
+        ("original position x", "33", "position", (0.33, 1.0)),
+        ("displacement y", "-0.1", "displacement", (0.0, -0.001)),
+        ("constrained x", "1", "fixed", (True, False)),
+        ("constrained y", "yes", "fixed", (False, True)),
+        ("mass", "2.5", "mass", 2.5),
+        ("applied force x", "-1.5e2", "force", (-150.0, -160.0)),
+    ],
+)
+def test_a_number_is_taken_in_the_unit_shown(
+    session: Session, title: str, text: str, field: str, value: object
+) -> None:
+    open_of(session, "B")
+    entered(session, title, text)
+    session.press("escape")
+    assert getattr(session.particles["B"], field) == value
+
+
+def test_density_is_per_centimetre(session: Session) -> None:
+    open_of(session, "AB")
+    entered(session, "density", "0.07")
+    session.press("escape")
+    assert session.rods["AB"].density == 7.0
+
+
+def test_a_mass_can_be_given_back_to_the_rods(session: Session) -> None:
+    lumped = session.particles["B"].mass
+    session.particles["B"].mass = 2.0
+    open_of(session, "B")
+    assert session.boxes["mass"] == "2"
+    assert entered(session, "mass", "a").text == "automatic"
+    session.press("escape")
+    assert session.particles["B"].mass == lumped
+
+
+def test_switches_take_words_digits_and_clicks(session: Session) -> None:
+    scene = open_of(session, "B")
+    assert [entered(session, "collisions", typed).text for typed in ("0", "1", "n", "y")] == [
+        "no",
+        "yes",
+        "no",
+        "yes",
+    ]
+    session.view.camera.viewport = Viewport(0, 0, 1000, 1000)
+    place = layout_of(session).place_of(box_of(session, "collisions"))
+    assert place is not None
+    session.press("click", (place.left + 5, place.top + 5))
+    assert session.boxes["collisions"] == "no"
+    assert scene.form.selected is box_of(session, "collisions")
+
+
+def test_the_integrator_is_one_of_the_known(session: Session) -> None:
+    open_of(session)
+    assert entered(session, "integrator", "taylor2").text == "taylor2"
+    session.click_box("integrator")
+    session.type("xx9")
+    assert session.boxes["integrator"] == "taylor2"
+    seen = set()
+    for _ in range(10):
+        session.press("down")
+        seen.add(session.boxes["integrator"])
+    assert {"automatic", "velocity_verlet", "taylor2"} <= seen
+    session.type("taylor2")
+    session.press("return")
+    session.press("escape")
+    assert session.settings.integrator == "taylor2"
+
+
+def test_tab_goes_round_all_boxes_and_back(session: Session) -> None:
+    scene = open_of(session, "AB")
+    count = len(scene.form.boxes)
+    visited = []
+    for _ in range(count + 1):
+        session.press("tab")
+        assert scene.form.selected is not None
+        visited.append(scene.form.selected.row)
+    assert visited == [*range(count), 0]
+    session.press("shift+tab")
+    assert scene.form.selected is scene.form.boxes[count - 1]
+
+
+def test_the_caret_edits_in_the_middle(session: Session) -> None:
+    open_of(session, "AB")
+    session.click_box("stiffness")
+    for key in ("left", "right", "right", "backspace"):
+        session.press(key)
+    session.type("99")
+    session.press("delete")
+    assert session.boxes["stiffness"] == "199640"
+
+
+def test_text_goes_through_the_clipboard(session: Session) -> None:
+    open_of(session, "AB")
+    session.click_box("stiffness")
+    session.press("ctrl+c")
+    session.click_box("damping coefficient")
+    session.press("ctrl+v")
+    assert session.boxes["damping coefficient"] == "164640"
+    session.clipboard = "1 234,5 kN"
+    session.press("ctrl+a")
+    session.press("ctrl+v")
+    assert session.boxes["damping coefficient"] == "1234.5"
+    session.press("ctrl+x")
+    assert session.boxes["damping coefficient"] == ""
+    assert session.clipboard == "1234.5"
+
+
+# --- what is refused ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("element", "title", "text", "reason"),
+    [
+        ("AB", "stiffness", "0", "must be greater than 0 kN"),
+        ("AB", "stiffness", "-", "must be a number"),
+        ("AB", "rest length", "-3", "must be greater than 0 cm"),
+        ("AB", "damping coefficient", "-1", "must be at least 0 kN·s/m"),
+        ("AB", "density", "1e999", "must be a finite number"),
+        ("AB", "name", "BC", "there is a rod 'BC' already"),
+        ("B", "coefficient of restitution", "1.5", "must be at most 1"),
+        ("B", "time step", "1e", "must be a number"),
+    ],
+)
+def test_a_bad_value_is_refused_with_the_reason(
+    session: Session, element: str, title: str, text: str, reason: str
+) -> None:
+    scene = open_of(session, element)
+    before = scene.form.boxes[0].elements[0].world.revision
+    box = entered(session, title, text)
+    assert box.problem == reason
+    assert scene.form.selected is box, "Return does not accept it"
+    session.click_box("force diagram scale" if element == "AB" else "radius")
+    session.press("escape")
+    session.press("escape")
+    assert session.scene == "pause"
+    assert session.model.revision == before, "the old value stays"
+    assert reason in session.notice
+    assert title in session.notice
+
+
+def test_what_contradicts_another_property_is_refused_and_the_rest_is_applied(session: Session) -> None:
+    open_of(session, "A")
+    entered(session, "velocity y", "3")
+    entered(session, "mass", "4")
+    session.press("escape")
+    assert session.particles["A"].velocity == (0.0, 0.0)
+    assert session.particles["A"].mass == 4.0
+    assert "constrained in y" in session.notice
+
+
+def test_freeing_a_direction_and_moving_in_it_go_together(session: Session) -> None:
+    open_of(session, "A")
+    entered(session, "velocity y", "3")
+    entered(session, "constrained y", "0")
+    session.press("escape")
+    assert session.particles["A"].velocity == (0.0, 3.0)
+    assert session.notice == ""
+
+
+# --- several at once, undo, runs -----------------------------------------------------------------------
+
+
+def test_several_elements_are_edited_together(session: Session) -> None:
+    scene = open_of(session, "A", "B", "C")
+    assert scene.form.heading.text == "3 particles"
+    assert session.boxes["applied force x"] == ""
+    assert box_of(session, "applied force x").note == "mixed"
+    assert session.boxes["displacement x"] == "0"
+    assert "name" not in session.boxes
+    entered(session, "applied force x", "5")
+    session.press("escape")
+    assert [p.force for p in session.particles] == [(5.0, 0.0), (5.0, -160.0), (5.0, 0.0)]
+
+
+def test_all_boxes_are_one_step_to_undo(session: Session) -> None:
+    open_of(session, "AB")
+    entered(session, "stiffness", "5")
+    entered(session, "density", "5")
+    entered(session, "name", "first rod")
+    session.press("escape")
+    assert session.rods["first rod"].density == 500.0
+    session.undo()
+    assert (session.rods["AB"].stiffness, session.rods["AB"].density) == (164640.0, 6.15)
+    assert not session.history.can_undo
+    session.redo()
+    assert session.rods["first rod"].stiffness == 5.0
+
+
+def test_properties_of_a_run_return_to_it(session: Session) -> None:
+    session.press("space")
+    assert session.scene == "simulation"
+    session.select(session.rods["AB"])
+    session.press("return")
+    assert session.scene == "properties"
+    entered(session, "damping coefficient", "7")
+    session.press("escape")
+    assert session.scene == "simulation"
+    assert session.rods["AB"].damping == 7.0
+    session.press("space")
+    session.press("return")
+    session.press("escape")
+    assert session.scene == "pause"
+
+
+def test_looking_at_properties_does_not_change_a_run() -> None:
+    states = []
+    for looks in (False, True):
+        session = Session.open(triangle())
+        session.run(steps=500)
+        if looks:
+            open_of(session, "B")
+            session.press("tab")
+            session.press("escape")
+            session.press("escape")
+        session.run(steps=500)
+        states.append(session.particles.displacement.copy())
+    assert same(*states)
+
+
+def test_a_click_on_another_element_shows_that_one(session: Session) -> None:
+    scene = open_of(session, "AB")
+    session.view.camera.viewport = Viewport(0, 0, 1000, 720)
+    entered(session, "stiffness", "5")
+    session.click(2.0, 0.0)
+    assert session.scene == "properties"
+    assert scene.form.heading.text == "particle C"
+    assert session.rods["AB"].stiffness == 5.0
+    assert session.model.tagged(Selected) == [session.particles["C"]]
+
+
+# --- where it is -------------------------------------------------------------------------------------
+
+
+def rectangles(texts: list[Text]) -> list[tuple[str, float, float, float, float]]:
+    """Every text with the rectangle (left, top, right, bottom) of its letters."""
+    found = []
+    for mark in texts:
+        width = text_width(mark.text, mark.size, mark.weight)
+        left = mark.x - {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * width
+        found.append((mark.text, left, mark.y - mark.size / 2, left + width, mark.y + mark.size / 2))
+    return found
+
+
+def overlapping(boxes: list[tuple[str, float, float, float, float]]) -> list[tuple[str, str]]:
+    return [
+        (a[0], b[0])
+        for a, b in itertools.combinations(boxes, 2)
+        if a[1] < b[3] and b[1] < a[3] and a[2] < b[4] and b[2] < a[4]
+    ]
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("names", [("B",), ("AB",), (), ("A", "B", "AB", "BC")])
+def test_nothing_overlaps_and_everything_can_be_scrolled_to(
+    session: Session, size: tuple[int, int], names: tuple[str, ...]
+) -> None:
+    session.view.camera.viewport = Viewport(0, 0, *size)
+    session.view.pixel_ratio = 2.0 if size[0] > 2000 else 1.0
+    scene = open_of(session, *names)
+    for box in scene.form.boxes:
+        box.problem = "must be something else than what it is, whatever that may be"
+    seen: set[int] = set()
+    for _ in range(len(scene.form.boxes) + 3):
+        layout = layout_of(session)
+        session.update_view()
+        world, view = scene.stages(session)[-1]
+        picture = compose(world, view, load_theme())
+        texts = rectangles([mark for mark in picture.marks if isinstance(mark, Text)])
+        assert overlapping(texts) == []
+        v = picture.viewport
+        for text, left, top, right, bottom in texts:
+            assert v.left <= left <= right <= v.left + v.width, text
+            assert v.top <= top <= bottom <= v.top + v.height, text
+        places = [("", p.left, p.top, p.left + p.width, p.top + p.height) for p in layout.places]
+        assert overlapping(places) == []
+        seen |= {place.item.row for place in layout.places if isinstance(place.item, Box)}
+        session.press("wheel down")
+    assert seen == set(range(len(scene.form.boxes)))
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_tab_scrolls_to_the_box_and_a_click_there_selects_it(session: Session, size: tuple[int, int]) -> None:
+    session.view.camera.viewport = Viewport(0, 0, *size)
+    scene = open_of(session, "B")
+    for _ in scene.form.boxes:
+        session.press("tab")
+        box = scene.form.selected
+        assert box is not None
+        place = layout_of(session).place_of(box)
+        assert place is not None
+        session.press("escape")
+        session.press("click", (place.left + place.width / 2, place.top + place.height / 2))
+        assert scene.form.selected is box
+
+
+def test_the_window_keeps_its_size_and_the_model_is_seen_beside(session: Session) -> None:
+    session.view.camera.viewport = Viewport(0, 0, 1000, 720)
+    open_of(session, "B")
+    (_, beside), (_, form) = session.stages
+    widths = beside.camera.viewport.width, form.camera.viewport.width
+    assert sum(widths) == 1000
+    assert session.view.camera.viewport == Viewport(0, 0, 1000, 720)
+    pixels = beside.camera.to_pixels(session.particles.position)
+    assert (pixels[:, 0] >= beside.camera.viewport.left).all()
+    assert (pixels[:, 0] <= beside.camera.viewport.left + widths[0]).all()
