@@ -130,7 +130,7 @@ def test_the_table_shows_every_element_with_units(solved: Model) -> None:
         "time 0.3 s, 1200 steps of 0.00025 s, integrator velocity_verlet",
         "computed in 0.012 s, compiled in 1.5 s",
     ]
-    assert "At time 0.3 s, load factor 0.5" in lines
+    assert "At load factor 0.5" in lines
     titles = next(n for n, line in enumerate(lines) if line.startswith("particle "))
     assert lines[titles].split("  ")[-1] == "mass"
     assert lines[titles + 1].split() == ["m", "m", "mm", "mm", "m/s", "m/s", "kN", "kN", "kg"]
