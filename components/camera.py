@@ -28,6 +28,11 @@ class Viewport:
         x, y = pixel
         return self.left <= x < self.left + self.width and self.top <= y < self.top + self.height
 
+    @property
+    def middle(self) -> Vector:
+        """The pixel in the middle."""
+        return self.left + self.width / 2.0, self.top + self.height / 2.0
+
 
 @dataclass
 class Camera:
@@ -40,8 +45,7 @@ class Camera:
     @property
     def middle(self) -> Vector:
         """The pixel in the middle of the viewport."""
-        v = self.viewport
-        return v.left + v.width / 2.0, v.top + v.height / 2.0
+        return self.viewport.middle
 
     def to_pixels(self, points: ArrayLike) -> NDArray[np.float64]:
         """Model points (m), shape (..., 2), as pixels."""
@@ -68,14 +72,23 @@ class Camera:
         """Move the picture by so many pixels (right, down)."""
         self.centre = (self.centre[0] - pixels[0] / self.scale, self.centre[1] + pixels[1] / self.scale)
 
-    def fit(self, points: NDArray[np.float64], margin: float = 110.0) -> None:
-        """Show all points, shape (n, 2), with a margin in pixels (less where the viewport is small)."""
+    def fit(self, points: NDArray[np.float64], margin: float = 110.0, within: Viewport | None = None) -> None:
+        """Show all points, shape (n, 2), with a margin in pixels (less where there is little room).
+
+        within: the part of the viewport to show them in, if not all of it.
+        """
+        room = within or self.viewport
         points = points[np.isfinite(points).all(axis=1)]
         if len(points) == 0:
             self.centre, self.scale = (0.0, 0.0), DEFAULT_SCALE
-            return
+        else:
+            self._fit(points, margin, room)
+        (x, y), (there_x, there_y) = self.middle, room.middle
+        self.pan((there_x - x, there_y - y))
+
+    def _fit(self, points: NDArray[np.float64], margin: float, within: Viewport) -> None:
         low, high = points.min(axis=0), points.max(axis=0)
-        size = np.array([self.viewport.width, self.viewport.height], dtype=np.float64)
+        size = np.array([within.width, within.height], dtype=np.float64)
         room = np.maximum(size - 2.0 * np.minimum(margin, 0.2 * size), 1.0)
         extent = np.maximum(high - low, 1e-9)
         scale = float((room / extent).min())

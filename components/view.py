@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from components.camera import Camera
+from components.camera import Camera, Viewport
 from components.field import Vector
 from components.model import Model
+from components.toolbar import Toolbar
 
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
 
@@ -61,7 +62,9 @@ class View:
     legend: show the meaning of colours. help: show what can be pressed (`keys`: (key, meaning)).
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
     caption: lines at the top: what this is, and facts about it. page: text that is shown instead.
-    tool: "rod", "force" or "velocity" while clicks and drags make one, or "". preview: what is being drawn.
+    tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
+    preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
+    theme: the name of its colours.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -77,10 +80,26 @@ class View:
     preview: Preview | None = None
     caption: tuple[str, ...] = ()
     page: Page | None = None
+    toolbar: Toolbar = field(default_factory=Toolbar)
+    theme: str = "light"
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model."""
-        self.camera.fit(drawn_positions(model), MARGIN * self.pixel_ratio)
+        self.camera.fit(drawn_positions(model), MARGIN * self.pixel_ratio, self.canvas)
+
+    @property
+    def strip(self) -> Viewport:
+        """The part of the viewport that the toolbar takes; of no width where it is hidden."""
+        window = self.camera.viewport
+        if not self.legend:
+            return Viewport(window.left, window.top, 0, window.height)
+        return self.toolbar.strip(window, self.pixel_ratio)
+
+    @property
+    def canvas(self) -> Viewport:
+        """The part of the viewport that is left for the model."""
+        window, taken = self.camera.viewport, self.strip.width
+        return Viewport(window.left + taken, window.top, window.width - taken, window.height)
 
 
 def drawn_positions(model: Model) -> NDArray[np.float64]:

@@ -92,6 +92,7 @@ class World:
         self.row_of_entity: NDArray[np.int64] = np.full(64, -1, dtype=np.int64)
         self.tables: dict[str, Table[Any]] = {}
         self.tags_revision = 0
+        self._tagged: dict[type, tuple[Any, dict[str, NDArray[np.intp]]]] = {}  # found at these revisions
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}
         self._derived_at: dict[Derivation, int] = {}  # revision at which it was last up to date
@@ -155,8 +156,10 @@ class World:
         if not handles:
             return
         table = self.tables[handles[0].table]
-        rows = np.array([self.row(handle) for handle in handles], dtype=np.intp)
         first = self.describe(handles[0])
+        rows = self.row_of_entity[[handle.entity for handle in handles]]
+        for row in np.flatnonzero(rows < 0)[:1].tolist():
+            self.row(handles[row])  # raises
         field = self._settable(table, field_name, first)
         column = self._checked(field, values, len(handles), lambda row: self.describe(handles[row]))
         if field.name == "name":
@@ -421,11 +424,37 @@ class World:
         if esper.try_remove_component(handle.entity, tag) is not None:
             self.tags_revision = self.next_revision()
 
+    def tag_only(self, handles: Iterable[Handle], tag: type) -> None:
+        """Let exactly these entities carry a mark."""
+        self.activate()
+        wanted = {handle.entity for handle in handles if handle.exists}
+        present = {entity for entity, _ in esper.get_component(tag)}
+        for entity in present - wanted:
+            esper.remove_component(entity, tag)
+        for entity in wanted - present:
+            esper.add_component(entity, tag())
+        if wanted != present:
+            self.tags_revision = self.next_revision()
+
     def tagged(self, tag: type) -> list[Handle]:
         """Handles of the existing entities with a mark, in order of creation."""
-        self.activate()
-        marked = sorted(entity for entity, _ in esper.get_component(tag))
-        return [self.handle(entity) for entity in marked if self.row_of_entity[entity] >= 0]
+        found = [
+            table.handles[row]
+            for table in self.tables.values()
+            for row in self.tagged_rows(tag, table.name).tolist()
+        ]
+        return sorted(found, key=lambda handle: handle.entity)
+
+    def tagged_rows(self, tag: type, table: str) -> NDArray[np.intp]:
+        """Rows of the entities of one table with a mark, ascending."""
+        now = (self.tags_revision, max(t.structure for t in self.tables.values()))
+        at, rows = self._tagged.get(tag, (None, {}))
+        if at != now:
+            self.activate()
+            marked = np.array([entity for entity, _ in esper.get_component(tag)], dtype=np.int64)
+            rows = {t.name: np.flatnonzero(np.isin(t.entities, marked)) for t in self.tables.values()}
+            self._tagged[tag] = (now, rows)
+        return rows[table]
 
     def handle(self, entity: int) -> Handle:
         """The handle of an existing entity. Raises LookupError."""

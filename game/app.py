@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import os
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pygame
 
-from components.camera import Viewport
+from components.camera import Camera, Viewport
 from components.model import Model
+from components.toolbar import Toolbar
+from components.view import View
 from game.desk import ModelFile
+from game.preferences import DEFAULT_THEME, preferred_theme, remember_theme
 from game.scenes.load import Load
 from game.script import Recorder
 from game.session import Session
@@ -33,13 +37,19 @@ class NoDisplay(RuntimeError):
     """There is nowhere to open a window; the message is the reason."""
 
 
-def open_window(model: Model, file: ModelFile, record: tuple[str | None, Any] = (None, None)) -> None:
+def open_window(
+    model: Model,
+    file: ModelFile,
+    record: tuple[str | None, Any] = (None, None),
+    theme: str | None = None,
+) -> None:
     """Show a model until the person closes the window; a model without a name: what there is. Raises NoDisplay.
 
     record: the file to write what the person does to, if any, and the model as the script names it.
+    theme: the name of its colours; None: those that the person chose last.
     """
     path, source = record
-    app = App(model, file, _spares())
+    app = App(model, file, _spares(), theme or preferred_theme())
     if path is not None:
         with open(path, "w", encoding="utf-8") as script:
             Recorder(app.session, script, source)
@@ -66,7 +76,7 @@ class App:
         model: Model,
         file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
         spares: SpareKeeper | None = None,
-        theme: str = "light",
+        theme: str = DEFAULT_THEME,
     ) -> None:
         os.environ.setdefault("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
         try:
@@ -77,11 +87,12 @@ class App:
         self.window.minimum_size = SMALLEST_SIZE
         pygame.key.set_repeat(400, 40)
         self.input = PygameInput()
-        self.render = PygameRender(self.window.get_surface(), load_theme(theme))
+        self.render = PygameRender(self.window.get_surface())
         systems: list[System] = [self.input, Hover(), *([spares] if spares else []), self.render]
-        self.session = Session(model, systems, file=file)
+        self.session = Session(model, systems, View(theme=theme), file)
         self.session.window = self
         self.session.spares = self.spares = spares
+        self._theme = theme
         self._follow_size()
         self.session.view.fit(model)
         self._full_screen = False
@@ -111,6 +122,7 @@ class App:
         self._follow_size()
         self._follow_title()
         self.session.frame(elapsed)
+        self._follow_theme()
         if self.render.drawn:
             self.window.flip()
 
@@ -131,6 +143,12 @@ class App:
         title = f"{'• ' if session.desk.unsaved else ''}{name} – Pinjoint" if name else "Pinjoint"
         if title != self.window.title:
             self.window.title = title
+
+    def _follow_theme(self) -> None:
+        """Keep what the person chooses for the next time."""
+        if self.session.view.theme != self._theme:
+            self._theme = self.session.view.theme
+            remember_theme(self._theme)
 
     def copied(self) -> str:
         """The text on the system's clipboard."""
@@ -167,10 +185,9 @@ def _unused(path: Path) -> Path:
 def render_png(session: Session, path: str, size: tuple[int, int], theme: str = "light") -> None:
     """Draw a session to a PNG file, without a display. Raises OSError if it cannot be written."""
     surface = pygame.Surface(size, depth=32)
-    view = session.view
-    view.camera.viewport = Viewport(0, 0, *size)
-    view.fit(session.model)
     session.update_view()
+    view = replace(session.view, camera=Camera(viewport=Viewport(0, 0, *size)), toolbar=Toolbar())
+    view.fit(session.model)
     Canvas().draw(surface, compose(session.model, view, load_theme(theme)))
     with open(path, "wb") as file:
         pygame.image.save(surface, file, path if path.lower().endswith((".png", ".jpg", ".bmp")) else ".png")

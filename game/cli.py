@@ -19,6 +19,7 @@ from game.overrides import OverrideError, apply_override
 from game.report import FOUND, run_at, run_static, run_until_rest
 from game.results import as_csv, as_json, as_table
 from game.session import DEFAULT_LIMIT, Session
+from systems.render.theme import theme_names
 
 ANSWERED, NOT_ANSWERED, BAD_INPUT, NO_DISPLAY = 0, 1, 2, 3
 
@@ -45,8 +46,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # standard output is for results
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        command = words[0] if words and words[0] in _COMMANDS else "open"
-        return _COMMANDS[command](words[1:] if command in words[:1] else words)
+        command = words[0] if words and words[0] in COMMANDS else "open"
+        return COMMANDS[command](words[1:] if command in words[:1] else words)
     except (Refusal, models.ModelError, OverrideError, FieldError, script.ScriptError) as error:
         print(f"pinjoint: {error}", file=sys.stderr)
         return getattr(error, "status", BAD_INPUT)
@@ -69,6 +70,7 @@ def _open(words: Sequence[str]) -> int:
     )
     parser.add_argument("model", nargs="?", help="a model file, or the name of a bundled model")
     parser.add_argument("--record", metavar="FILE", help="write what you do to a script for: pinjoint play")
+    parser.add_argument("--theme", choices=theme_names(), help="colours; default: those that were used last")
     parser.add_argument("--version", action="version", version=f"pinjoint {__version__}")
     options = parser.parse_args(words)
     source = options.model or script.EMPTY
@@ -78,7 +80,7 @@ def _open(words: Sequence[str]) -> int:
     except ImportError as error:
         raise Refusal(f"The window needs pygame-ce, which cannot be imported: {error}.", NO_DISPLAY) from None
     try:
-        open_window(model, file, record=(options.record, source))
+        open_window(model, file, (options.record, source), options.theme)
     except OSError as error:
         raise Refusal(
             f"{options.record} cannot be written: {error.strerror}. Choose another --record."
@@ -261,7 +263,7 @@ def _render(words: Sequence[str]) -> int:
     parser.add_argument("--until-rest", action="store_true", help="run until at rest first")
     parser.add_argument("--at", type=_positive, metavar="T", help="run to this time (s) first")
     parser.add_argument("--diagrams", action="store_true", help="show all force diagrams")
-    parser.add_argument("--theme", default="light", help="light, dark, …")
+    parser.add_argument("--theme", choices=theme_names(), default="light", help="colours")
     parser.add_argument("--limit", type=_positive, default=DEFAULT_LIMIT, help=argparse.SUPPRESS)
     options = parser.parse_args(words)
     width, height = _size(options.size)
@@ -316,7 +318,7 @@ def _bench(words: Sequence[str]) -> int:
     return ANSWERED
 
 
-_COMMANDS = {
+COMMANDS = {
     "open": _open,
     "run": _run,
     "render": _render,

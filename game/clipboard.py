@@ -1,4 +1,4 @@
-"""Clipboard: elements as the text of a model document, and back into a model."""
+"""Clipboard: elements as a model of their own, as the text of its document, and back."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from typing import Any
 
 import msgspec
+import numpy as np
+from numpy.typing import NDArray
 
 from components.field import Role, Vector
 from components.load import Load
@@ -14,33 +16,64 @@ from components.particle import Particle
 from components.rod import Rod
 from components.table import Table
 from components.world import Handle
-from game.document import FORMAT, VERSION, ModelError, document, parse
+from game.document import ModelError, document, parse
 from game.models import laid_out
-from systems.edit.moving import movable
+from systems.edit.moving import movable, rows_of
 from systems.edit.refusal import Refusal
 
+Rows = NDArray[np.int64]
 
-def copied(model: Model, handles: Iterable[Handle]) -> str:
-    """The selected particles and rods with the ends of rods and the loads on them. Raises Refusal."""
+
+def part(model: Model, handles: Iterable[Handle]) -> Model:
+    """A model of the selected particles and rods, the ends of those rods, and the loads on them.
+
+    Raises Refusal if there are none.
+    """
     chosen = list(handles)
-    particles = movable(model, chosen)
-    if not particles:
+    particles = rows_of(model, movable(model, chosen))
+    if not len(particles):
         raise Refusal("Nothing is selected that can be copied; click a particle or a rod first.")
-    whole = document(model)
-    names = {particle.name for particle in particles}
-    rods = {handle.name for handle in chosen if isinstance(handle, Rod)}
-    part = {
-        "format": FORMAT,
-        "version": VERSION,
-        "particles": [element for element in whole["particles"] if element["name"] in names],
-        "rods": [element for element in whole.get("rods", []) if element["name"] in rods],
-        "loads": [element for element in whole.get("loads", []) if element["on"] in names],
-    }
-    return laid_out(part, depth=2)
+    rods = rows_of(model, [handle for handle in chosen if isinstance(handle, Rod)])
+    loads = np.flatnonzero(np.isin(model.loads.on, particles))
+    new_row = np.zeros(model.particles.count, dtype=np.int64)
+    new_row[particles] = np.arange(len(particles))
+    made = Model()
+    for kind, rows in ((Particle, particles), (Rod, rods), (Load, loads)):
+        made.create(kind, len(rows), **_columns(model, kind, rows, new_row))
+        _keep_foreign(made, model, kind, rows)
+    return made
+
+
+def paste(model: Model, source: Model, offset: Vector) -> list[Handle]:
+    """New particles, rods and loads like those of `source`, moved by an offset (m), as one edit.
+
+    Names that are taken are replaced by free ones. Returns the particles and rods.
+    """
+    made: list[Handle] = []
+    new_row = model.particles.count + np.arange(source.particles.count)
+    with model.transaction("paste"):
+        for kind in (Particle, Rod, Load):
+            rows = np.arange(source.tables[kind.table].count)
+            columns = _columns(source, kind, rows, new_row)
+            columns["name"] = _free_names(model.tables[kind.table], columns["name"])
+            if kind is Particle:
+                columns["position"] = columns["position"] + offset
+            new = model.create(kind, len(rows), **columns)
+            _keep_foreign(model, source, kind, rows)
+            made += new if kind is not Load else []
+    return made
+
+
+def written(part: Model) -> str:
+    """A part as the text of a model document."""
+    try:
+        return laid_out(document(part), depth=2)
+    except ModelError as error:
+        raise Refusal(f"This cannot be copied: {error}") from None
 
 
 def parsed(text: str) -> Model:
-    """The elements of such a text, as a model of their own. Raises Refusal if it is none."""
+    """The part that such a text describes. Raises Refusal if it is none."""
     try:
         source = parse(msgspec.json.decode(text))
     except (ModelError, msgspec.DecodeError):
@@ -50,30 +83,16 @@ def parsed(text: str) -> Model:
     return source
 
 
-def paste(model: Model, source: Model, offset: Vector) -> list[Handle]:
-    """New particles, rods and loads like those of `source`, moved by an offset (m), as one edit.
-
-    Names that are taken are replaced by free ones. Returns the particles and rods.
-    """
-    first = model.particles.count
-    made: list[Handle] = []
-    with model.transaction("paste"):
-        for kind in (Particle, Rod, Load):
-            columns = _columns(source, kind)
-            if kind is Particle:
-                columns["position"] = columns["position"] + offset
-            for reference in columns.keys() & {"between", "on"}:
-                columns[reference] = columns[reference] + first
-            columns["name"] = _free_names(model.tables[kind.table], source.tables[kind.table].names)
-            new = model.create(kind, source.tables[kind.table].count, **columns)
-            _keep_foreign(model, new, source, source.tables[kind.table].handles)
-            made += new if kind is not Load else []
-    return made
-
-
-def _columns(source: Model, kind: type[Handle]) -> dict[str, Any]:
-    table = source.tables[kind.table]
-    return {field.name: table.column(field.name).copy() for field in table.fields_in(Role.DOCUMENT, Role.STATE)}
+def _columns(model: Model, kind: type[Handle], rows: Rows, new_row: Rows) -> dict[str, Any]:
+    """What some rows hold, by Field; references to particles renumbered."""
+    table = model.tables[kind.table]
+    columns: dict[str, Any] = {
+        field.name: table.column(field.name)[rows] for field in table.fields_in(Role.DOCUMENT, Role.STATE)
+    }
+    for reference in columns.keys() & {"between", "on"}:
+        columns[reference] = new_row[columns[reference]]
+    columns["name"] = columns["name"].tolist()
+    return columns
 
 
 def _free_names(table: Table[Any], names: list[str]) -> list[str]:
@@ -83,7 +102,9 @@ def _free_names(table: Table[Any], names: list[str]) -> list[str]:
     return [next(fresh) if name in table else name for name in names]
 
 
-def _keep_foreign(model: Model, new: list[Any], source: Model, originals: list[Any]) -> None:
-    for copy, original in zip(new, originals, strict=True):
-        if original.entity in source.foreign:
-            model.foreign[copy.entity] = source.foreign[original.entity]
+def _keep_foreign(model: Model, source: Model, kind: type[Handle], rows: Rows) -> None:
+    """What belongs to mods goes along with the copies, which are the last of their table."""
+    originals, copies = source.tables[kind.table].handles, model.tables[kind.table].handles
+    for row, copy in zip(rows.tolist(), copies[len(copies) - len(rows) :], strict=True):
+        if originals[row].entity in source.foreign:
+            model.foreign[copy.entity] = source.foreign[originals[row].entity]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -30,19 +30,25 @@ class ModelFile:
 class Desk:
     """A model and all that belongs to it while it is open.
 
-    beginning: the state from which time began to pass. spare: where unsaved work is kept against a crash.
+    beginning: the state from which time began to pass. saved: the revision of what its file holds.
+    spare: where unsaved work is kept against a crash.
     """
 
     def __init__(self, model: Model, schedule: Schedule, pull: Pull, file: ModelFile) -> None:
         self.model = model
+        self._pull = pull
         self.simulation = Simulation(model, schedule)
         self.timeline = Timeline(self.simulation, pull)
-        self.history = History(model, self.simulation, on_edit=self.timeline.clear)
+        self.history = History(model, self.simulation, on_edit=self._edited)
         self.live = Live(self.simulation)
         self.beginning: Snapshot | None = None
         self.file = file
         self.spare: Path | None = None
-        self.saved = self.newest
+        self.saved = self._last_edit = model.revision
+
+    def _edited(self) -> None:
+        self._last_edit = self.model.revision
+        self.timeline.clear()
 
     @property
     def newest(self) -> int:
@@ -51,13 +57,63 @@ class Desk:
 
     @property
     def unsaved(self) -> bool:
-        """True if something changed, or time passed, since the model was opened or saved."""
-        return self.newest > self.saved
+        """True if a person changed the model since it was opened or saved, or let time pass in one of theirs."""
+        return self.edited or (self.file.path is not None and self.newest > self.saved)
+
+    def leave(self) -> None:
+        """Its time stops, nothing of it is held any more, and what only helps to step back is forgotten."""
+        if self._pull.hand is not None:
+            self.timeline.hold(None)
+        self.history.end_run()
+        self.timeline.clear()
 
     @property
     def edited(self) -> bool:
         """True if a person changed the model since it was opened or saved."""
-        return self.model.newest(Role.DOCUMENT) > self.saved
+        return self._last_edit > self.saved
+
+
+class Desks:
+    """The open models, one of them in use; those with unsaved work wait to be gone back to."""
+
+    def __init__(self, model: Model, schedule: Schedule, pull: Pull, file: ModelFile) -> None:
+        self._schedule = schedule
+        self._pull = pull
+        self._desks = [Desk(model, schedule, pull, file)]
+        self._at = 0
+
+    def __iter__(self) -> Iterator[Desk]:
+        return iter(tuple(self._desks))
+
+    def __len__(self) -> int:
+        return len(self._desks)
+
+    @property
+    def current(self) -> Desk:
+        """The one in use."""
+        return self._desks[self._at]
+
+    def add(self, model: Model, file: ModelFile) -> None:
+        """Use a new desk with this model; the one in use until now stays if it has unsaved work."""
+        self.current.leave()
+        if not self.current.unsaved:
+            del self._desks[self._at]
+        self._desks.append(Desk(model, self._schedule, self._pull, file))
+        self._at = len(self._desks) - 1
+
+    def can_move(self, by: int) -> bool:
+        """True if there is a desk before (-1) or after (1) this one."""
+        return 0 <= self._at + by < len(self._desks)
+
+    def move(self, by: int) -> str:
+        """Use the desk before (-1) or after (1) this one; returns what that undoes or repeats, or ""."""
+        target = self._at + by
+        if not self.can_move(by):
+            return ""
+        self.current.leave()
+        opened = self._desks[max(self._at, target)].file.name
+        self._at = target
+        return f"opening {opened or 'a new model'}"
 
 
 def file_of(source: str | Path | Mapping[str, Any]) -> ModelFile:

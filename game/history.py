@@ -66,8 +66,9 @@ class History:
     def _record(self, inverse: Command) -> None:
         assert self._clock is not None
         edit, self._clock = Edit(inverse, self._clock, self._key), None
-        run = self._run
-        self.end_run()
+        run, self._run = self._run, None
+        if run is not None and not self._add_run(run):
+            edit = replace(edit, clock=run.before)
         if self._key is not None and self._done and _key_of(self._done[-1]) == self._key:
             edit = merged(self._done.pop(), edit)
         self._add(edit)
@@ -105,16 +106,19 @@ class History:
     def end_run(self) -> None:
         """Time stops; what passed since begin_run is one entry, if anything did."""
         run, self._run = self._run, None
-        if run is None:
-            return
-        if self._model.clock.steps != run.before.steps:
-            last = self._done[-1] if self._done else None
-            if run.single and isinstance(last, Run) and last.single:
-                run = replace(run, before=last.before)
-                self._done.pop()
-            self._add(run)
-        elif self._model.newest(Role.STATE) != self._run_revision:
+        if run is not None and not self._add_run(run) and self._model.newest(Role.STATE) != self._run_revision:
             self._simulation.resume(run.before)  # it only got ready to run
+
+    def _add_run(self, run: Run) -> bool:
+        """Enter a run in the log; False if no time passed in it."""
+        if self._model.clock.steps == run.before.steps:
+            return False
+        last = self._done[-1] if self._done else None
+        if run.single and isinstance(last, Run) and last.single:
+            run = replace(run, before=last.before)
+            self._done.pop()
+        self._add(run)
+        return True
 
     # --- going through the log -------------------------------------------------------------------------
 

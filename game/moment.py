@@ -15,12 +15,20 @@ class Moment:
     state: all of it, or of the clock only where nothing else can have changed since.
     armed: the energy account and the step size fit the document.
     before_edit: measures of the state before edits that are not accounted for yet.
+    stable_step, warning: of the simulation then.
     """
 
     state: Snapshot
     steps: int
     armed: bool
     before_edit: Column | None
+    stable_step: float
+    warning: str
+
+    @property
+    def whole(self) -> bool:
+        """True if it keeps all of the state."""
+        return "particles" in self.state.entities
 
     @property
     def size(self) -> int:

@@ -223,9 +223,9 @@ class Writer:
         for b in self.rod_rates:
             lines += [f"part = {self._apply(b, 'r')}", "damping_force += part"]
             if powers:
-                lines.append(_rod_power(b, "part"))
-        if powers:
-            lines += [_rod_power(b, self._apply(b, "r")) for b in self.working]
+                lines.append(f"power_{b.slot} {'-' if b.account == 'work' else '+'}= part * rate")
+        if powers and self.working:
+            lines.append("power_0 -= (axial_force - stored_force) * rate")
         return lines + _scatter("resisting", "damping_force")
 
     def _resist(self) -> str:
@@ -245,7 +245,8 @@ class Writer:
             needed = {parameter for b in (*self.rod_rates, *self.working) for parameter in b.parameters}
             rods = ["nx = direction[r, 0]", "ny = direction[r, 1]"]
             if self.working or needed & {"elongation", "axial_force"}:
-                rods = [*self._geometry(), *self._axial_force()]
+                stored = [*self._axial_force(without=self.working), "stored_force = axial_force"]
+                rods = [*self._geometry(), *(stored if self.working else []), *self._axial_force()]
             body += self._rod_loop([*rods, *self._rate_forces(powers=True)])
         body += [f"power[{slot}] = power_{slot}" for slot in range(len(ACCOUNTS))]
         return "\n".join([*lines, *_indent(1, body)])
@@ -340,10 +341,6 @@ class Writer:
         """A driver's source with the model's columns in place of *columns."""
         source = textwrap.dedent(inspect.getsource(function)).replace("*columns", self._columns_text())
         return f"@{decorator}\n" + source.replace(f"def {function.__name__}(", f"def {name}(", 1)
-
-
-def _rod_power(b: Bound, force: str) -> str:
-    return f"power_{b.slot} {'-' if b.account == 'work' else '+'}= {force} * rate"
 
 
 def _particle_power(b: Bound) -> str:

@@ -25,18 +25,21 @@ from game import models
 from game.actions import ACTIONS, WHILE_DRAWING
 from game.catalogue import step_systems
 from game.clock import FrameClock
-from game.desk import Desk, ModelFile, file_of
+from game.desk import Desk, Desks, ModelFile, file_of
 from game.gestures import TOOL_HINTS, Gesture
 from game.history import History
 from game.scenes import Scenes, Stage, all_scenes
 from game.schedule import Schedule
 from game.simulation import Energy, Simulation
 from game.timeline import Timeline
+from game.toolbar import toolbar_of
 from systems.base import Phase, StopReason, System
 from systems.edit.pull import Pull
 from systems.edit.refusal import Refusal
-from systems.input.bindings import LIVE, TEXT, action_for, help_lines
+from systems.input.bindings import LIVE, PANELS, TEXT, action_for, help_lines
 
+CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
+ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
 COMPILING = "Preparing the step program for this kind of model; a few seconds, only the first time."
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
 
@@ -98,11 +101,9 @@ class Session:
     ) -> None:
         self.pull = Pull()
         self.schedule = Schedule([*step_systems(), self.pull, *systems])
-        self.desks = [Desk(model, self.schedule, self.pull, file)]
-        self._at = 0  # the desk in use; undo goes back to those before it
+        self.desks = Desks(model, self.schedule, self.pull, file)
         self.scenes = Scenes(all_scenes())
-        self.view = view or View()
-        self.view.fit(model)
+        self.view: View = view or View()
         self.gesture: Gesture | None = None
         self._clipboard = ""
         self.notice = ""
@@ -110,6 +111,8 @@ class Session:
         self.on_press: Callable[[str, Vector | None], None] | None = None  # a recorder listens here
         self.spares: Spares | None = None  # unsaved work is kept in them, in a window
         self._keyed = ""  # the scene in which a key was pressed last
+        self._offer_tools()
+        self.view.fit(model)
 
     @classmethod
     def open(cls, source: str | Path | Mapping[str, Any], systems: Iterable[System] = ()) -> Session:
@@ -121,7 +124,7 @@ class Session:
     @property
     def desk(self) -> Desk:
         """The model that is open, with its run, its log and its file."""
-        return self.desks[self._at]
+        return self.desks.current
 
     @property
     def file(self) -> ModelFile:
@@ -130,13 +133,14 @@ class Session:
 
     def save(self, path: str | Path) -> None:
         """Write the model, with its present state, to a file."""
+        self.simulation.account_for_edits()
         models.save(self.model, Path(path))
 
     def save_as(self, path: Path) -> None:
         """Write the model to a file that is its own from now on. Raises ModelError."""
-        models.save(self.model, path)
+        self.save(path)
         self.desk.file = ModelFile(path, path.stem)
-        self.desk.saved = self.desk.newest
+        self.desk.saved = self.model.revision
         self.notice = f"Saved as '{path.stem}'."
 
     def open_here(self, source: str | Path | Mapping[str, Any] | None) -> None:
@@ -147,21 +151,12 @@ class Session:
             self.adopt(models.load(source), file_of(source))
 
     def adopt(self, model: Model, file: ModelFile = ModelFile()) -> None:  # noqa: B008
-        """Go on with another model. One with unsaved work stays on its desk; undo goes back to it."""
-        self._leave_desk()
-        if not self.desk.unsaved:
-            del self.desks[self._at]
-        self.desks.append(Desk(model, self.schedule, self.pull, file))
-        self._sit_at(len(self.desks) - 1)
-
-    def _leave_desk(self) -> None:
+        """Go on with another model. Unsaved work stays open; undo goes back to it."""
         self.leave_gesture()
-        if self.pull.hand is not None:
-            self.timeline.hold(None)
-        self.history.end_run()
+        self.desks.add(model, file)
+        self._begin_at_desk()
 
-    def _sit_at(self, desk: int) -> None:
-        self._at = desk
+    def _begin_at_desk(self) -> None:
         self.view.fit(self.model)
         if self.scene == "simulation":
             self.history.begin_run()
@@ -291,11 +286,12 @@ class Session:
 
     def restart(self) -> None:
         """Go back to the beginning of time, keeping all edits. Can be undone."""
-        if self.desk.beginning is None or self._at_beginning:
+        if self.desk.beginning is None or self.at_beginning:
             return
         self.history.end_run()
         self.history.begin_run()
         self.desk.beginning.restore(self.model)
+        self.model.writable("particles.velocity")[self.particles.fixed] = 0.0  # supported since
         self.simulation.start_anew()
         self.timeline.clear()
         self.history.end_run()
@@ -327,33 +323,41 @@ class Session:
         return self.desk.live.find_pace()
 
     def _note_beginning(self) -> None:
-        if self._at_beginning:
+        if self.at_beginning:
             self.desk.beginning = Snapshot.take(self.model)
 
     @property
-    def _at_beginning(self) -> bool:
+    def at_beginning(self) -> bool:
+        """True if no time has passed, or restarting took it back."""
         beginning = self.desk.beginning
         return beginning is None or self.model.clock.steps == beginning.columns["clock.steps"][0]
 
     # --- editing -----------------------------------------------------------------------------------
 
+    @property
+    def can_undo(self) -> bool:
+        """True if there is something to take back."""
+        return self.history.can_undo or self.desks.can_move(-1)
+
+    @property
+    def can_redo(self) -> bool:
+        """True if there is something to repeat."""
+        return self.history.can_redo or self.desks.can_move(1)
+
     def undo(self) -> str:
         """Take back the last edit or run, or the opening of the model; returns what it was, or ""."""
-        if not self.history.can_undo and self._at > 0:
-            return self._go_to_desk(self._at - 1)
-        return self._through_log(self.history.undo())
+        return self._through_log(self.history.undo()) if self.history.can_undo else self._to_desk(-1)
 
     def redo(self) -> str:
         """Repeat what was taken back; returns what it was, "" if there is nothing."""
-        if not self.history.can_redo and self._at + 1 < len(self.desks):
-            return self._go_to_desk(self._at + 1)
-        return self._through_log(self.history.redo())
+        return self._through_log(self.history.redo()) if self.history.can_redo else self._to_desk(1)
 
-    def _go_to_desk(self, desk: int) -> str:
-        opened = self.desks[max(desk, self._at)].file.name or "a new model"
-        self._leave_desk()
-        self._sit_at(desk)
-        return f"opening {opened}"
+    def _to_desk(self, by: int) -> str:
+        self.leave_gesture()
+        opening = self.desks.move(by)
+        if opening:
+            self._begin_at_desk()
+        return opening
 
     def _through_log(self, title: str) -> str:
         if self.scene == "simulation":
@@ -367,12 +371,7 @@ class Session:
 
     def select(self, *handles: Handle) -> None:
         """Select exactly these elements; none: deselect."""
-        chosen = set(handles)
-        for handle in self.selected:
-            if handle not in chosen:
-                self.model.untag(handle, Selected)
-        for handle in handles:
-            self.model.tag(handle, Selected)
+        self.model.tag_only(handles, Selected)
 
     def name(self, handle: Handle) -> str:
         """An element as a sentence begins with it, such as "Rod AB"."""
@@ -408,6 +407,12 @@ class Session:
         except (Refusal, FieldError) as error:
             self.notice = str(error)
         self.scenes.apply(self)
+        self._offer_tools()
+
+    def _offer_tools(self) -> None:
+        """Let the toolbar show what can be done now; behind a panel it stays as it was."""
+        if self.scene not in PANELS:
+            self.view.toolbar = toolbar_of(self)
 
     def leave_gesture(self) -> None:
         """End what is being drawn or dragged, because something else begins."""
@@ -425,13 +430,21 @@ class Session:
         if key.startswith(TEXT):
             self.type(key.removeprefix(TEXT))
             return
-        name = action_for(self.scene, key)
+        pixel = pixel if pixel is not None else self.pointer
+        name = self._action_at(key, pixel)
         if name is not None:
-            pixel = pixel if pixel is not None else self.pointer
             if self.on_press is not None:
                 self.on_press(key, pixel)
             self.notice = ""
             self.act(name, pixel)
+
+    def _action_at(self, key: str, pixel: Vector) -> str | None:
+        """What a key or button does, with the pointer at a pixel: on the toolbar, clicks do what it offers."""
+        if key not in ON_TOOLBAR or self.scene in PANELS or not self.view.strip.contains(pixel):
+            return action_for(self.scene, key)
+        buttons = self.view.toolbar.buttons(self.view.camera.viewport, self.view.pixel_ratio)
+        hit = (button.tool for button in buttons if button.contains(pixel))
+        return next((tool.action for tool in hit if tool.enabled and key in CLICKS), None)
 
     def type(self, text: str) -> None:
         """Type text into the selected box of properties, save and load."""
@@ -524,8 +537,9 @@ class Session:
 
     @property
     def stages(self) -> Sequence[Stage]:
-        """What the active scene shows: models, each in its view."""
-        return self.scenes.active.stages(self)
+        """What the active scene shows: models, each in its view, and the toolbar if it has one."""
+        stages = list(self.scenes.active.stages(self))
+        return stages if self.scene in PANELS else [*stages, (self.view.toolbar, self.view)]
 
     @property
     def busy(self) -> bool:
@@ -537,6 +551,7 @@ class Session:
         view, scene = self.view, self.scenes.active
         view.preview = self._preview()
         view.heading = scene.heading
+        self._offer_tools()
         view.keys = help_lines(scene.name) if view.help else []
         view.status = Status(
             time=self.time,

@@ -158,14 +158,17 @@ class Simulation:
 
     def moment(self, *tables: str) -> Moment:
         """The present, to return to: the state of these tables (none given: of all)."""
-        steps = self.model.clock.steps
-        return Moment(Snapshot.take(self.model, *tables), steps, self._armed, self._before_edit)
+        state, steps = Snapshot.take(self.model, *tables), self.model.clock.steps
+        return Moment(state, steps, self._armed, self._before_edit, self.stable_step, self.warning)
 
     def resume(self, moment: Moment) -> None:
         """Return to a moment in which the document was as it is now."""
         moment.state.restore(self.model)
         self.forget()
         self._armed, self._before_edit = moment.armed, moment.before_edit
+        if moment.whole:  # else what limits the step is found out anew
+            self._safe = moment.state
+            self.stable_step, self.warning = moment.stable_step, moment.warning
         self._armed_revision = self.model.revision
 
     def wake(self) -> None:

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import sys
 import threading
 import time
 import uuid
+from collections.abc import Iterable
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, cast
 
 import msgspec
 
+from components.field import Column, Role
+from components.model import Model
+from components.table import Table
+from components.world import Handle
 from game import library, models
 from game.desk import Desk
 from game.document import document
@@ -73,44 +79,46 @@ class SpareKeeper(System):
         self._left.remove(path)
         desk.spare = path
         desk.saved = -1
+        self._written[desk] = -1
 
     # --- writing -------------------------------------------------------------------------------------
 
     def process(self, frame: Any) -> None:
         """Write a spare of one model that changed, if it is time to."""
-        now = time.monotonic()
-        if now < self._due or (self._thread is not None and self._thread.is_alive()):
+        if (self._thread is not None and self._thread.is_alive()) or time.monotonic() < self._due:
             return
-        for desk in frame.session.desks:
-            if not desk.unsaved:
-                self._remove(desk)
-            elif self._written.get(desk) != desk.newest:
-                self._write(desk)
-                spent = time.monotonic() - now
-                self._due = now + max(self._interval, spent / SHARE)
-                return
+        desks = [desk for desk in frame.session.desks if desk.unsaved]
+        for desk in self._written.keys() - set(desks):
+            self._remove(desk)
+        changed = (desk for desk in desks if self._written.get(desk) != desk.newest)
+        for desk in itertools.islice(changed, 1):
+            self._write(desk)
 
     def _write(self, desk: Desk) -> None:
         """Take the model as it is now; a thread puts it into the file."""
         if desk.spare is None:
             self._count += 1
             desk.spare = self._folder / f"{self._id}.{self._count}.{desk.file.name}.json"
-        try:
-            content = document(desk.model)
-        except models.ModelError:  # nothing that a file can hold; what was written before stays
-            return
-        finally:
-            self._written[desk] = desk.newest
-        self._thread = threading.Thread(target=_put, args=(desk.spare, content), daemon=True)
+        self._written[desk] = desk.newest
+        still = _Still(desk.model)
+        self._thread = threading.Thread(target=self._put, args=(desk.spare, still), daemon=True)
         self._thread.start()
 
+    def _put(self, path: Path, still: _Still) -> None:
+        began = time.monotonic()
+        # What no file can hold, or a full disk, shall not end the session; saving says what is wrong.
+        with contextlib.suppress(models.ModelError, OSError):
+            models.replace(path, msgspec.json.encode(document(cast(Model, still))))
+        spent = time.monotonic() - began
+        self._due = began + max(self._interval, spent / SHARE)
+
     def _remove(self, desk: Desk) -> None:
+        del self._written[desk]
         if desk.spare is not None:
             desk.spare.unlink(missing_ok=True)
             desk.spare = None
-            self._written.pop(desk, None)
 
-    def close(self, desks: list[Desk]) -> None:
+    def close(self, desks: Iterable[Desk]) -> None:
         """A clean end: no spare stays. Edits that nobody saved are kept as the model "last session"."""
         if self._thread is not None:
             self._thread.join()
@@ -119,7 +127,7 @@ class SpareKeeper(System):
             for desk in edited[-1:]:
                 library.models_folder().mkdir(parents=True, exist_ok=True)
                 models.save(desk.model, library.path_of(LAST_SESSION))
-        for desk in desks:
+        for desk in tuple(self._written):
             self._remove(desk)
         for lock in self._locks:
             path = Path(lock.name)
@@ -128,9 +136,32 @@ class SpareKeeper(System):
                 path.unlink(missing_ok=True)
 
 
-def _put(path: Path, content: dict[str, Any]) -> None:
-    with contextlib.suppress(OSError):  # a full disk shall not end the session; saving will say so
-        models.replace(path, msgspec.json.encode(content))
+class _Still:
+    """What a file holds of a model, as it is now, for `document` to read in another thread."""
+
+    def __init__(self, model: Model) -> None:
+        self.title = model.title
+        self.description = model.description
+        self.foreign = dict(model.foreign)
+        self.tables = {name: _StillTable(table) for name, table in model.tables.items()}
+
+    def describe(self, handle: Handle) -> str:
+        """What kind of element it is."""
+        return handle.noun
+
+
+class _StillTable:
+    def __init__(self, table: Table[Any]) -> None:
+        self.count = table.count
+        self.handles: tuple[Handle, ...] = tuple(table.handles)
+        fields = table.fields_in(Role.DOCUMENT, Role.STATE)
+        self._columns = {field.name: table.column(field.name).copy() for field in fields}
+
+    def __getitem__(self, row: int) -> Handle:
+        return self.handles[row]
+
+    def column(self, name: str) -> Column:
+        return self._columns[name]
 
 
 def _lock(path: Path) -> IO[bytes] | None:

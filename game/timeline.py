@@ -111,9 +111,10 @@ class Timeline:
         """Return to a step between the first and the last that was run; False if it cannot be reached."""
         if not self._moments or steps < self.first:
             return False
-        self._resume(max(at for at in self._moments if at <= steps))
+        start = max(at for at in self._moments if at <= steps)
+        self._resume(start)
         for at, hand in self._hands:
-            if self._now < at < steps:
+            if start < at < steps:
                 self._run_to(at)
                 self._change_hand(hand)
         if self._now < steps - RUN_UP:

@@ -9,7 +9,7 @@ import numpy as np
 from components.field import Vector
 from components.world import Handle
 from game.actions.registry import action
-from game.clipboard import copied, parsed, paste
+from game.clipboard import parsed, part, paste, written
 from systems.edit.placing import snapped
 from systems.edit.rods import delete
 
@@ -21,13 +21,13 @@ BESIDE = 30.0  # points to the right and down, where a duplicate appears
 
 @action("copy")
 def _copy(session: Session, pixel: Vector) -> None:
-    session.clipboard = copied(session.model, session.selected)
+    session.clipboard = written(part(session.model, session.selected))
     session.notice = "Copied; Ctrl+V pastes it at the pointer."
 
 
 @action("cut")
 def _cut(session: Session, pixel: Vector) -> None:
-    session.clipboard = copied(session.model, session.selected)
+    session.clipboard = written(part(session.model, session.selected))
     delete(session.model, session.selected)
     session.notice = "Cut; Ctrl+V pastes it at the pointer."
 
@@ -47,7 +47,7 @@ def _paste(session: Session, pixel: Vector) -> None:
 def _duplicate(session: Session, pixel: Vector) -> None:
     view = session.view
     beside = BESIDE * view.pixel_ratio / view.camera.scale
-    source = parsed(copied(session.model, session.selected))
+    source = part(session.model, session.selected)
     _show(session, paste(session.model, source, snapped(session.model, view, (beside, -beside))), "Duplicated")
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from components.field import Vector
-from game.actions.registry import Action, action
+from game.actions.editing import take_up
+from game.actions.registry import ACTIONS, Action, action
 from game.gestures import TOOLS, BoxSelect, Drawing, Move, PullParticle
 from systems.edit.picking import pick_particle, pick_rod
 from systems.edit.refusal import Refusal
@@ -21,7 +22,7 @@ def _drag(session: Session, pixel: Vector) -> None:
     particle = pick_particle(model, view, pixel)
     tool = session.gesture.tool if isinstance(session.gesture, Drawing) else view.tool
     if tool:
-        _draw_from(session, tool, pixel)
+        _use_at(session, tool, pixel)
     elif particle is not None and session.scene == "simulation":
         session.gesture = PullParticle(session, particle)
     elif session.scene == "pause" and (hit := particle or pick_rod(model, view, pixel)) is not None:
@@ -48,8 +49,14 @@ def _drop(session: Session, pixel: Vector) -> None:
         gesture.drop(session, pixel)
 
 
-def _draw_from(session: Session, tool: str, pixel: Vector) -> None:
-    """Begin at the particle under the pointer; without one, what was begun by a key goes on."""
+def _use_at(session: Session, tool: str, pixel: Vector) -> None:
+    """Begin at the particle under the pointer; without one, what was begun by a key goes on.
+
+    A tool that is done with at once is just used.
+    """
+    if tool not in TOOLS:
+        ACTIONS[tool](session, pixel)
+        return
     particle = pick_particle(session.model, session.view, pixel)
     if particle is not None:
         session.gesture = TOOLS[tool](session, particle)
@@ -69,7 +76,7 @@ def click_with_tool(session: Session, pixel: Vector) -> bool:
     if isinstance(session.gesture, Drawing):
         finish_drawing(session, pixel)
     elif session.view.tool:
-        _draw_from(session, session.view.tool, pixel)
+        _use_at(session, session.view.tool, pixel)
     else:
         return False
     return True
@@ -87,7 +94,7 @@ def _use(tool: str) -> Action:
         if particle is not None:
             session.gesture = TOOLS[tool](session, particle)
         else:
-            session.view.tool = "" if session.view.tool == tool else tool
+            take_up(session, tool)
 
     return use
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from components.field import Vector
 from components.particle import Particle
 from game.actions.registry import action
-from systems.edit.moving import movable, move, nudged
+from systems.edit.moving import movable, move, nudged, rows_of
 from systems.edit.picking import pick_particle
 from systems.edit.placing import place
 from systems.edit.refusal import Refusal
@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 
 @action("place", while_drawing=True)
 def _place(session: Session, pixel: Vector) -> None:
+    """Under the pointer; from the toolbar, with the clicks that follow."""
+    if session.view.strip.contains(pixel):
+        take_up(session, "place")
+        return
     particle = place(session.model, session.view, pixel)
     x, y = particle.position
     session.notice = f"{session.name(particle)}: ({100.0 * x:g}, {100.0 * y:g}) cm"
@@ -40,15 +44,24 @@ def _delete(session: Session, pixel: Vector) -> None:
 
 @action("support")
 def _support(session: Session, pixel: Vector) -> None:
-    """Of the particle under the pointer, or of the selected ones."""
+    """Of the particle under the pointer, or of the selected ones; from the toolbar, of those clicked next."""
     hit = pick_particle(session.model, session.view, pixel)
     chosen = [handle for handle in session.selected if isinstance(handle, Particle)]
     if hit is not None and hit not in chosen:
         chosen = [hit]
+    if not chosen and session.view.strip.contains(pixel):
+        take_up(session, "support")
+        return
     if not chosen:
         raise Refusal("Point at a particle, or select some, to support them.")
     support = next_support(session.model, chosen)
     session.notice = f"{_all_of(session, chosen)}: {support}"
+
+
+def take_up(session: Session, tool: str) -> None:
+    """Let clicks use a tool from now on; if they do already, put it away."""
+    session.leave_gesture()
+    session.view.tool = "" if session.view.tool == tool else tool
 
 
 def _all_of(session: Session, particles: list[Particle]) -> str:
@@ -61,8 +74,8 @@ def nudge(session: Session, direction: Vector, *, far: bool) -> bool:
     particles = movable(model, session.selected)
     if not particles:
         return False
-    rows = [particle.row for particle in particles]
-    positions = nudged(model, session.view, model.particles.position[rows], direction, far=far)
+    present = model.particles.position[rows_of(model, particles)]
+    positions = nudged(model, session.view, present, direction, far=far)
     with session.history.as_one(("nudge", *(particle.entity for particle in particles))):
         move(model, particles, positions)
     x, y = particles[0].position

@@ -49,6 +49,16 @@ def _step(session: Session, steps: int) -> None:
         session.notice = session.simulation.message
 
 
+@action("step")
+def _step_forward(session: Session, pixel: Vector) -> None:
+    _step(session, 1)
+
+
+@action("step back")
+def _step_back(session: Session, pixel: Vector) -> None:
+    _step(session, -1)
+
+
 @action("restart")
 def _restart(session: Session, pixel: Vector) -> None:
     session.restart()

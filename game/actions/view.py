@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING
 
 from components.field import Vector
 from game.actions.registry import action
+from systems.render.theme import load_theme
 
 if TYPE_CHECKING:
     from game.session import Session
 
 
 ZOOM_STEP = 1.2
+THEMES = ("light", "dark", "colour-blind", "colour-blind-dark")  # in the order in which one follows another
 
 
 @action("fit", while_drawing=True)
@@ -32,6 +34,15 @@ def _zoom_out(session: Session, pixel: Vector) -> None:
 @action("toggle legend", while_drawing=True)
 def _toggle_legend(session: Session, pixel: Vector) -> None:
     session.view.legend = not session.view.legend
+
+
+@action("next theme", while_drawing=True)
+def _next_theme(session: Session, pixel: Vector) -> None:
+    """The one after the present one."""
+    view = session.view
+    after = (*THEMES[THEMES.index(view.theme) + 1 :], THEMES[0]) if view.theme in THEMES else THEMES
+    view.theme = after[0]
+    session.notice = f"Theme: {load_theme(view.theme).title}"
 
 
 @action("toggle help", while_drawing=True)

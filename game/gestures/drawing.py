@@ -9,7 +9,7 @@ from components.field import Vector
 from components.particle import Particle
 from components.view import Preview, drawn_positions
 from game.gestures.base import Gesture
-from systems.edit.arrows import arrow_value, usual_force, usual_speed
+from systems.edit.arrows import arrow_end, arrow_value, usual_force, usual_speed
 from systems.edit.picking import pick_particle
 from systems.edit.refusal import Refusal
 from systems.edit.rods import check_ends, distance, join
@@ -30,8 +30,7 @@ class Drawing(Gesture):
         """Where that particle is drawn (m). Raises Refusal if it is gone."""
         if not self.particle.exists:
             raise Refusal("The particle where this began was deleted meanwhile; begin at another one.")
-        x, y = drawn_positions(session.model)[self.particle.row].tolist()
-        return x, y
+        return drawn_at(session, self.particle)
 
 
 class DrawRod(Drawing):
@@ -62,58 +61,74 @@ class DrawRod(Drawing):
             label = f"{distance(self.particle, other):.6g} m"
         except Refusal:
             label = "joined already"
-        return Preview("rod", start, DrawRod(session, other).start(session), label)
+        return Preview("rod", start, drawn_at(session, other), label)
 
 
-class DrawForce(Drawing):
-    """The constant force on a particle, as an arrow from it."""
+class DrawArrow(Drawing):
+    """A vector of a particle, as an arrow from it."""
 
-    tool = "force"
+    title: ClassVar[str]
+    unit: ClassVar[str]
 
     def __init__(self, session: Session, particle: Particle) -> None:
         super().__init__(session, particle)
-        self.hint = f"force on {particle.name}: F or click where its arrow ends     Esc cancel"
+        key = self.tool[0].upper()
+        self.hint = f"{self.tool} of {particle.name}: {key} or click where its arrow ends     Esc cancel"
 
-    def _force(self, session: Session, pixel: Vector) -> Vector:
-        return arrow_value(session.view, self.start(session), pixel, usual_force(session.model))
+    def usual(self, session: Session) -> float:
+        """The size that an arrow of comfortable length stands for."""
+        raise NotImplementedError
+
+    def value(self, session: Session, pixel: Vector) -> Vector:
+        """What the arrow to a pixel stands for."""
+        return arrow_value(session.view, self.start(session), pixel, self.usual(session))
+
+    def told(self, value: Vector) -> str:
+        """A value as it is shown."""
+        return f"({value[0]:g}, {value[1]:g}) {self.unit}"
 
     def drop(self, session: Session, pixel: Vector) -> None:
-        x, y = self.particle.force = self._force(session, pixel)
-        session.notice = f"Force on {self.particle.name}: ({x:g}, {y:g}) kN"
+        value = self.value(session, pixel)
+        session.model.assign([self.particle], self.tool, [value])
+        session.notice = f"{self.title} {self.particle.name}: {self.told(value)}"
 
     def preview(self, session: Session, pixel: Vector) -> Preview | None:
-        x, y = self._force(session, pixel)
-        end = session.view.camera.to_model(pixel)
-        return Preview("force", self.start(session), end, f"({x:g}, {y:g}) kN")
+        value, start = self.value(session, pixel), self.start(session)
+        end = arrow_end(session.view, start, value, self.usual(session))
+        return Preview(self.tool, start, end, self.told(value))
 
 
-class DrawVelocity(Drawing):
-    """The velocity of a particle, as an arrow from it; zero where it is held."""
+class DrawForce(DrawArrow):
+    """The constant force on a particle."""
 
-    tool = "velocity"
+    tool, title, unit = "force", "Force on", "kN"
+
+    def usual(self, session: Session) -> float:
+        return usual_force(session.model)
+
+
+class DrawVelocity(DrawArrow):
+    """The velocity of a particle; zero where it is held."""
+
+    tool, title, unit = "velocity", "Velocity of", "m/s"
 
     def __init__(self, session: Session, particle: Particle) -> None:
         if all(particle.fixed):
             raise Refusal(f"{particle.name} is held in both directions and cannot move; C frees it.")
         super().__init__(session, particle)
-        self.hint = f"velocity of {particle.name}: V or click where its arrow ends     Esc cancel"
 
-    def _velocity(self, session: Session, pixel: Vector) -> Vector:
-        drawn = arrow_value(session.view, self.start(session), pixel, usual_speed(session.model))
+    def usual(self, session: Session) -> float:
+        return usual_speed(session.model)
+
+    def value(self, session: Session, pixel: Vector) -> Vector:
+        x, y = super().value(session, pixel)
         held = self.particle.fixed
-        return 0.0 if held[0] else drawn[0], 0.0 if held[1] else drawn[1]
-
-    def drop(self, session: Session, pixel: Vector) -> None:
-        x, y = self.particle.velocity = self._velocity(session, pixel)
-        session.notice = f"Velocity of {self.particle.name}: ({x:g}, {y:g}) m/s"
-
-    def preview(self, session: Session, pixel: Vector) -> Preview | None:
-        x, y = self._velocity(session, pixel)
-        end = session.view.camera.to_model(pixel)
-        return Preview("velocity", self.start(session), end, f"({x:g}, {y:g}) m/s")
+        return 0.0 if held[0] else x, 0.0 if held[1] else y
 
 
 TOOL_HINTS = {
+    "place": "particles: click where they are to be     Esc done",
+    "support": "supports: click particles, again for the next kind     Esc done",
     "rod": "rods: click two particles, or drag from one to another     L or Esc done",
     "force": "forces: drag an arrow from a particle     F or Esc done",
     "velocity": "velocities: drag an arrow from a particle     V or Esc done",
@@ -121,3 +136,9 @@ TOOL_HINTS = {
 TOOLS: dict[str, type[DrawRod | DrawForce | DrawVelocity]] = {
     kind.tool: kind for kind in (DrawRod, DrawForce, DrawVelocity)
 }
+
+
+def drawn_at(session: Session, particle: Particle) -> Vector:
+    """Where a particle is drawn (m)."""
+    x, y = drawn_positions(session.model)[particle.row].tolist()
+    return x, y

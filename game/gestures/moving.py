@@ -11,7 +11,7 @@ from components.field import FieldError, Vector
 from components.particle import Particle
 from components.view import Preview, drawn_positions
 from game.gestures.base import Gesture
-from systems.edit.moving import movable, move
+from systems.edit.moving import movable, move, rows_of
 from systems.edit.placing import check_free, snapped
 from systems.edit.pull import hand_on
 from systems.edit.refusal import Refusal
@@ -27,13 +27,13 @@ class Move(Gesture):
     hint = "let go to place     Esc put back"
 
     def __init__(self, session: Session, hit: Handle, pixel: Vector) -> None:
-        chosen = session.selected if hit in session.selected else [hit]
+        selected = session.selected
+        chosen = selected if hit in selected else [hit]
         if chosen == [hit]:
             session.select(hit)
         model = session.model
         self._particles = movable(model, chosen)
-        rows = [particle.row for particle in self._particles]
-        self._start = model.particles.position[rows].copy()
+        self._start = model.particles.position[rows_of(model, self._particles)]
         self._leader = 0  # the one that keeps to the grid
         if isinstance(hit, Particle):
             self._leader = self._particles.index(hit)

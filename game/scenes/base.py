@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, ClassVar
 if TYPE_CHECKING:
     from components.form import Form
     from components.model import Model
+    from components.toolbar import Toolbar
     from components.view import View
     from game.session import Session
 
 
-Stage = tuple["Model | Form", "View"]
+Stage = tuple["Model | Form | Toolbar", "View"]
 
 
 class SceneError(ValueError):

@@ -95,6 +95,7 @@ class FileScene(FormScene):
 
     def advance(self, session: Session, elapsed: float) -> None:
         """Read the next picture that is looked for, one a frame so that typing stays fluent."""
+        super().advance(session, elapsed)
         tile = self._next_unread(session)
         if tile is not None:
             self._unread.remove(tile)

@@ -62,14 +62,13 @@ class ForceMethod(Scene):
         """The message, the sets, and the working with the status line."""
         guide, ratio = self.guide, session.view.pixel_ratio
         page = Page(guide.working(), guide.table()) if guide else Page()
-        whole = session.view.camera.viewport
+        whole = session.view.canvas
         head = round(HEAD * ratio)
         foot = min(round((FOOT + ROW * _rows(page)) * ratio), round(0.45 * whole.height))
         self._head.heading = guide.message if guide else self._problem
         self._foot.page = page
         part = f"Part {guide.part} of {PARTS}" if guide else "Not possible"
         self._foot.status = Status(time=None, state=part, hint=self.hint(session))
-        self._foot.keys = session.view.keys
         middle = Viewport(whole.left, whole.top + head, whole.width, max(whole.height - head - foot, 1))
         self._place(self._head, Viewport(whole.left, whole.top, whole.width, head), ratio)
         self._place(self._foot, Viewport(whole.left, middle.top + middle.height, whole.width, foot), ratio)

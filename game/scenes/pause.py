@@ -19,7 +19,7 @@ class Pause(Scene):
 
     def hint(self, session: Session) -> str:
         if session.model.particles.count == 0:
-            return "Open a model:  pinjoint isostatic     F1 shows all keys"
+            return "P new particle     L rod from one to another     D open a model     F1 all keys"
         if session.selected:
-            return "I its forces     Esc deselect     F1 keys"
+            return "Return properties     I its forces     Esc deselect     F1 keys"
         return "Space run     click select     I forces     wheel zoom     F1 keys"

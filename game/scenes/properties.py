@@ -6,17 +6,21 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from components.camera import Viewport
 from components.field import Vector
 from components.form import Form
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
+from components.toolbar import Toolbar
 from components.view import View, drawn_positions
+from components.world import Handle
 from game.scenes.base import Stage
 from game.scenes.form import FormScene
 from systems.edit.picking import pick
-from systems.forms import properties, typing
+from systems.forms import answers, properties, typing
 from systems.render.form_layout import beside
 
 if TYPE_CHECKING:
@@ -36,17 +40,23 @@ class Properties(FormScene):
 
     def enter(self, session: Session) -> None:
         super().enter(session)
-        self._at_left = _is_right(session)
+        self._at_left = _is_right(session, session.selected)
 
     def make_form(self, session: Session) -> Form:
         model, selected = session.model, session.selected
-        form = Form(properties.heading(model, selected), lambda box: properties.problem(model, box))
+        form = Form(properties.heading(model, selected), lambda box: answers.problem(model, box))
         properties.fill(form, model, selected)
         return form
 
     def exit(self, session: Session) -> None:
-        session.notice = " ".join(properties.apply(self.form, session.model)) or session.notice
+        self._apply(session)
+        self._return_to = ("pause",)
         super().exit(session)
+
+    def _apply(self, session: Session) -> None:
+        refused = answers.apply(self.form, session.model)
+        if refused:
+            session.notice = " ".join(sentence[:1].upper() + sentence[1:] for sentence in refused)
 
     def opened_from(self, scene: str) -> None:
         """Leaving goes back to that scene."""
@@ -87,7 +97,8 @@ class Properties(FormScene):
         if rest is not None:  # what was seen in the whole window still is
             scale = camera.scale * rest.width / camera.viewport.width
             camera = replace(camera, viewport=rest, scale=scale)
-        return session.model, replace(view, camera=camera, keys=[], status=replace(view.status, hint=""))
+        status = replace(view.status, hint="")
+        return session.model, replace(view, camera=camera, keys=[], status=status, toolbar=Toolbar())
 
     def click_beside(self, session: Session, pixel: Vector) -> None:
         """A click on another element shows that one's properties, once these are applied."""
@@ -95,17 +106,20 @@ class Properties(FormScene):
             return
         hit = pick(*self.focus(session), pixel)
         if hit is not None and [hit] != session.selected:
-            notice = " ".join(properties.apply(self.form, session.model))
-            session.notice = notice or session.notice
+            self._apply(session)
             session.select(hit)
             self.form = self.make_form(session)
 
 
-def _is_right(session: Session) -> bool:
+def _is_right(session: Session, selected: Sequence[Handle]) -> bool:
     """True if the selected particles and rods are in the right half of the picture."""
-    particles = [h.row for h in session.selected if isinstance(h, Particle)]
-    particles += [row for h in session.selected if isinstance(h, Rod) for row in h.between]
-    if not particles:
+    model, camera = session.model, session.view.camera
+    entities: dict[type, list[int]] = {Particle: [], Rod: []}
+    for handle in selected:
+        if type(handle) in entities:
+            entities[type(handle)].append(handle.entity)
+    ends = model.rods.between[model.row_of_entity[entities[Rod]]].ravel()
+    rows = np.concatenate([model.row_of_entity[entities[Particle]], ends.astype(np.intp)])
+    if len(rows) == 0:
         return False
-    camera = session.view.camera
-    return bool(camera.to_pixels(drawn_positions(session.model)[particles])[:, 0].mean() > camera.middle[0])
+    return bool(camera.to_pixels(drawn_positions(model)[rows])[:, 0].mean() > camera.middle[0])

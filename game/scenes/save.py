@@ -25,7 +25,9 @@ class Save(FileScene):
 
     def make_form(self, session: Session) -> Form:
         self._confirmed = ""
-        return self.new_form("Save", session.file.name, saved_tiles())
+        form = self.new_form("Save", session.file.name, saved_tiles())
+        form.boxes[0].explanation = f"A file in {library.models_folder()}"
+        return form
 
     def choose(self, session: Session, tile: Tile) -> None:
         """A tile's name may be used again, or changed a little."""

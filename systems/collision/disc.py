@@ -12,7 +12,8 @@ RADIUS = 7  # m
 OX, OY = 8, 9  # original position, m
 WX, WY = 10, 11  # inverse mass in each direction, 1/kg; 0 where the disc is held
 GX, GY = 12, 13  # acceleration without contact forces, m/s²
-WIDTH = 14
+STEP = 14  # s; when the forces in its lasting contacts are due again
+WIDTH = 15
 
 EPSILON = 2.220446049250313e-16
 SPEED_NOISE = 16.0 * EPSILON  # of both speeds: a slower approach is round-off

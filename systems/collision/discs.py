@@ -76,7 +76,7 @@ class Discs:
         self.rows[:, disc.RADIUS] = radius
         self.rows[:, disc.EPOCH] = time
         self.numbers = np.zeros(state.NUMBERS)
-        self.numbers[[state.NOW, state.OPENED]] = time
+        self.numbers[state.NOW] = time
         self.numbers[state.RESTITUTION] = restitution
         self.numbers[state.REST_HEIGHT] = rest_height
         self.counts = np.zeros(state.COUNTS, dtype=np.int64)

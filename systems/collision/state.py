@@ -8,10 +8,9 @@ END = 1  # s; of the present window, in which all meetings are foreseen
 WINDOW = 2  # s; length of a window
 CELL = 3  # m; of the finest layer of the grid
 CROWDING = 4  # neighbours found per area of boxes, 1/m²
-OPENED = 5  # s; when the window was opened
-RESTITUTION = 6
-REST_HEIGHT = 7  # of the smaller radius; bounces that would rise less end in contact
-NUMBERS = 8
+RESTITUTION = 5
+REST_HEIGHT = 6  # of the smaller radius; bounces that would rise less end in contact
+NUMBERS = 7
 
 # counts, int64
 QUEUED = 0  # meetings in the queue
@@ -19,10 +18,11 @@ LAYERS = 1  # of the grid
 REPORTED = 2  # impacts in the report
 IMPACTS = 3  # so far, every contact of a joint impact counted
 STRIKES = 4  # so far, a joint impact counted once
-STRIKES_BEFORE = 5  # when the window was opened
-LEVEL = 6  # coarsest level that a disc needed beyond those of the grid
-RENEW = 7  # 1: the window must be opened anew before anything else
-COUNTS = 8
+LEVEL = 5  # coarsest level that a disc needed beyond those of the grid
+RENEW = 6  # 1: the window must be opened anew before anything else
+SPARE = 7  # first unused entry of the table of lasting contacts
+SPARES = 8  # how many are unused
+COUNTS = 9
 
 
 class Reason(IntEnum):
@@ -33,4 +33,4 @@ class Reason(IntEnum):
     REPORT_FULL = 2  # take the reported impacts and go on
     QUEUE_FULL = 3  # enlarge the queue and go on
     GRID_FULL = 4  # enlarge the grid and go on
-    GROUP_FULL = 5  # enlarge the room for the contacts of a group and go on
+    GROUP_FULL = 5  # enlarge the room for the contacts of a group and for lasting contacts and go on

@@ -50,6 +50,12 @@ def arrow_value(view: View, start: Vector, pixel: Vector, usual: float) -> Vecto
     return x, y
 
 
+def arrow_end(view: View, start: Vector, value: Vector, usual: float) -> Vector:
+    """The point (m) of the picture where the arrow for a value ends."""
+    metres = view.pixel_ratio / _rounded_down(usual / COMFORTABLE) / view.camera.scale
+    return start[0] + metres * value[0], start[1] + metres * value[1]
+
+
 def _rounded_down(value: float) -> float:
     """The largest of …, 1, 2, 5, 10, 20, … that is at most `value`."""
     power = 10.0 ** math.floor(math.log10(value))

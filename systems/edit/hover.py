@@ -17,7 +17,7 @@ class Hover(System):
 
     name = "edit.hover"
     phase = Phase.EDIT
-    scenes = ("simulation", "pause", "force method")
+    scenes = ("simulation", "pause", "properties", "force method")
 
     def needs(self, model: Model) -> bool:
         return model.particles.count + model.grids.count > 0
@@ -26,7 +26,8 @@ class Hover(System):
         """Move the mark if the pointer is over something else now."""
         model, view = frame.session.focus
         pointer = frame.session.view.pointer
-        hit = pick(model, view, pointer) if pointer is not None else None
+        inside = pointer is not None and view.camera.viewport.contains(pointer)
+        hit = pick(model, view, pointer) if inside else None
         before = model.tagged(Hovered)
         if before == [hit] or (hit is None and not before):
             return

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,13 +20,17 @@ Points = NDArray[np.float64]
 
 def movable(model: Model, handles: Iterable[Handle]) -> list[Particle]:
     """The particles that move with some elements: themselves, and the ends of rods; in row order."""
+    chosen = list(handles)
     moves = np.zeros(model.particles.count, dtype=bool)
-    for handle in handles:
-        if isinstance(handle, Particle):
-            moves[handle.row] = True
-        elif isinstance(handle, Rod):
-            moves[list(handle.between)] = True
+    moves[rows_of(model, [handle for handle in chosen if isinstance(handle, Particle)])] = True
+    moves[model.rods.between[rows_of(model, [handle for handle in chosen if isinstance(handle, Rod)])]] = True
     return [model.particles[row] for row in np.flatnonzero(moves).tolist()]
+
+
+def rows_of(model: Model, handles: Sequence[Handle]) -> NDArray[np.int64]:
+    """Rows of existing elements of one kind, each in its table."""
+    rows: NDArray[np.int64] = model.row_of_entity[[handle.entity for handle in handles]]
+    return rows
 
 
 def move(model: Model, particles: list[Particle], positions: ArrayLike) -> None:

@@ -18,13 +18,15 @@ GRID_REACH = 5.0  # points
 
 
 def pick(model: Model, view: View, pixel: Vector) -> Handle | None:
-    """The particle, else the rod, else the shown grid under a pixel; None if there is nothing."""
+    """The particle, else the rod, else the shown grid under a pixel; None if there is nothing to be seen."""
+    if view.strip.contains(pixel):
+        return None
     return pick_particle(model, view, pixel) or pick_rod(model, view, pixel) or _grid_at(model, view, pixel)
 
 
 def pick_particle(model: Model, view: View, pixel: Vector) -> Particle | None:
-    """The particle that is nearest to being hit at a pixel, if one is."""
-    if model.particles.count == 0:
+    """The particle that is nearest to being hit at a pixel, if one is; none under the toolbar."""
+    if model.particles.count == 0 or view.strip.contains(pixel):
         return None
     distance = np.hypot(*(view.camera.to_pixels(drawn_positions(model)) - pixel).T)
     reach = np.maximum(model.particles.radius * view.camera.scale, PARTICLE_REACH * view.pixel_ratio)

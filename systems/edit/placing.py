@@ -57,7 +57,7 @@ def check_free(model: Model, view: View, point: Vector, besides: list[Particle] 
     if model.particles.count == 0:
         return
     distance = np.hypot(*(drawn_positions(model) - point).T) * view.camera.scale
-    distance[[particle.row for particle in besides or []]] = math.inf
+    distance[model.row_of_entity[[particle.entity for particle in besides or []]]] = math.inf
     nearest = int(np.argmin(distance))
     if distance[nearest] <= PARTICLE_REACH * view.pixel_ratio:
         name = model.describe(model.particles[nearest])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Sequence
 
@@ -11,6 +12,7 @@ from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, spawn_rods
 from components.world import Handle
+from systems.edit.moving import rows_of
 from systems.edit.refusal import Refusal
 
 
@@ -54,9 +56,9 @@ def delete(model: Model, handles: Iterable[Handle]) -> None:
     """Delete elements with all that refer to them; the masses of what remains follow from the rods again."""
     doomed = list(handles)
     rods = np.zeros(model.rods.count, dtype=bool)
-    rods[[handle.row for handle in doomed if isinstance(handle, Rod)]] = True
+    rods[rows_of(model, [handle for handle in doomed if isinstance(handle, Rod)])] = True
     particles = np.zeros(model.particles.count, dtype=bool)
-    particles[[handle.row for handle in doomed if isinstance(handle, Particle)]] = True
+    particles[rows_of(model, [handle for handle in doomed if isinstance(handle, Particle)])] = True
     rods |= particles[model.rods.between].any(axis=1)
     ends = np.zeros(model.particles.count, dtype=bool)
     ends[model.rods.between[rods]] = True
@@ -68,5 +70,5 @@ def delete(model: Model, handles: Iterable[Handle]) -> None:
 
 def masses_from_rods(model: Model, particles: Sequence[Particle]) -> None:
     """Forget the masses that were prescribed for these particles."""
-    prescribed = [particle for particle in particles if particle.prescribed_mass is not None]
-    model.assign(prescribed, "prescribed_mass", None)
+    given = ~np.isnan(model.particles.prescribed_mass[rows_of(model, particles)])
+    model.assign(list(itertools.compress(particles, given.tolist())), "prescribed_mass", None)

@@ -14,7 +14,7 @@ def inside(model: Model, corner: Vector, opposite: Vector) -> list[Handle]:
     """Particles drawn inside the box between two points (m), and rods with both ends inside."""
     low, high = np.minimum(corner, opposite), np.maximum(corner, opposite)
     drawn = drawn_positions(model)
-    within = ((drawn >= low) & (drawn <= high)).all(axis=1)
+    within = np.asarray(((drawn >= low) & (drawn <= high)).all(axis=1))
     rods = within[model.rods.between].all(axis=1)
     return [
         *(model.particles[row] for row in np.flatnonzero(within).tolist()),

@@ -1,20 +1,20 @@
-"""Properties: boxes generated from the Fields of elements, and what was typed put back into them."""
+"""Properties: boxes generated from the Fields of elements."""
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from components.box import NUMBER, TEXT, WORD, Box
-from components.field import Column, Field, FieldError, Role
+from components.field import Field, Role
 from components.form import Form
-from components.load import Load
+from components.load import HISTORIES, Load
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
@@ -23,9 +23,13 @@ from components.world import Handle
 from systems.forms.typing import YES_NO
 
 MIXED = "mixed"
+KIND = "kind"  # the part of a history that is its kind
 EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in full, others rounded
 _OF_RODS = ("diagram_scale", "plasticity")  # settings of all rods together; the others are of all particles
-_EDITABLE = (float, bool, str)
+_NUMBERS = (float, int)
+_EDITABLE = (*_NUMBERS, bool, str)
+
+Content = tuple[str, str]  # a box's text and its note
 
 
 @dataclass(frozen=True)
@@ -34,10 +38,11 @@ class Subject:
 
     section: str
     elements: tuple[Handle, ...]
+    rows: NDArray[np.intp]
     fields: tuple[Field[Any], ...]
 
 
-# --- what is shown -----------------------------------------------------------------------------------
+# --- whose properties --------------------------------------------------------------------------------
 
 
 def heading(model: Model, selected: Sequence[Handle]) -> str:
@@ -51,70 +56,87 @@ def heading(model: Model, selected: Sequence[Handle]) -> str:
 
 
 def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
-    """The selected elements by kind, what belongs to them, and the settings of all of that kind."""
-    found = [
-        _subject(model, heading(model, alike), alike)
-        for kind in dict.fromkeys(map(type, selected))
-        if (alike := [handle for handle in selected if type(handle) is kind])
-    ]
+    """The selected elements by kind, the loads on a single particle, and the settings of all of a kind."""
+    kinds = dict.fromkeys(map(type, selected))
+    groups: list[list[Handle]] = [[h for h in selected if type(h) is kind] for kind in kinds]
+    found = [_subject(model, heading(model, group), group) for group in groups]
     if not selected:
-        found.append(_subject(model, "Environment", [model.environment]))
-    loads = _loads_on(model, selected)
-    found += [_subject(model, model.describe(load), [load]) for load in loads]
-    for title, kind, of_rods in (("All particles", Particle, False), ("All rods", Rod, True)):
-        if not selected or any(isinstance(handle, kind) for handle in selected):
-            found.append(_together(model, title, of_rods=of_rods))
+        found = [_subject(model, heading(model, []), [model.environment])]
+    found += [_subject(model, model.describe(load), [load]) for load in _loads_on(model, selected)]
+    for section, kind, of_rods in (("All particles", Particle, False), ("All rods", Rod, True)):
+        if not selected or kind in kinds:
+            fields = model.tables[Settings.table].fields.values()
+            chosen = tuple(field for field in fields if (field.name in _OF_RODS) is of_rods)
+            found.append(Subject(section, (model.settings,), np.zeros(1, dtype=np.intp), chosen))
     return found
 
 
 def _loads_on(model: Model, selected: Sequence[Handle]) -> list[Load]:
-    """The loads on a single selected particle."""
     if len(selected) != 1 or not isinstance(selected[0], Particle):
         return []
     return [load for load in model.loads if load.on == selected[0].row]
 
 
 def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
-    fields = model.tables[elements[0].table].fields_in(Role.DOCUMENT, Role.STATE)
-    editable = [field for field in fields if field.dtype in _EDITABLE]
+    kind = type(elements[0])
+    fields = model.tables[kind.table].fields_in(Role.DOCUMENT, Role.STATE)
+    wanted = [field for field in fields if field.dtype in _EDITABLE or field is Load.history]
     if len(elements) > 1:
-        editable = [field for field in editable if field.name != "name"]
-    return Subject(section, tuple(elements), tuple(editable))
+        wanted = [field for field in wanted if field.name != "name"]
+    rows = model.row_of_entity[[element.entity for element in elements]].astype(np.intp)
+    return Subject(section, tuple(elements), rows, tuple(wanted))
 
 
-def _together(model: Model, title: str, *, of_rods: bool) -> Subject:
-    fields = model.tables[Settings.table].fields.values()
-    wanted = (field for field in fields if (field.name in _OF_RODS) is of_rods)
-    return Subject(title, (model.settings,), tuple(wanted))
+# --- boxes -------------------------------------------------------------------------------------------
 
 
 def fill(form: Form, model: Model, selected: Sequence[Handle]) -> None:
     """Create the boxes: in each section alphabetical by title, vectors as two, x and y."""
     form.delete(list(form.boxes))
     for subject in subjects(model, selected):
-        rows = sorted(_facts(model, subject), key=lambda fact: str(fact["title"]).casefold())
-        columns = {key: [row[key] for row in rows] for key in rows[0]}
-        form.create(Box, len(rows), **columns)
+        boxes = [box for field in subject.fields for box in _boxes(model, subject, field)]
+        boxes.sort(key=lambda box: str(box["title"]).casefold())
+        form.create(Box, len(boxes), **{key: [box[key] for box in boxes] for key in boxes[0]})
 
 
-def _facts(model: Model, subject: Subject) -> Iterator[dict[str, Any]]:
-    """The Fields of one box for every number, flag and text of the elements."""
-    for field in subject.fields:
-        for axis in "xy" if field.shape else ("",):
-            text, note = _text(model, subject.elements, field, axis)
-            yield {
-                "section": subject.section,
-                "title": f"{field.title} {axis}".rstrip(),
-                "unit": field.shown[0],
-                "explanation": field.doc,
-                "target": f"{subject.elements[0].table}.{field.name}{'.' * bool(axis)}{axis}",
-                "elements": subject.elements,
-                "accepts": NUMBER if field.dtype is float else WORD if _words(field) else TEXT,
-                "words": _words(field),
-                "text": text,
-                "opened": text,
-                "note": note,
-            }
+def _boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[dict[str, Any]]:
+    """The Fields of the boxes for one Field of the elements."""
+    if field.dtype is object:
+        yield from _history_boxes(model, subject, field)
+        return
+    words = _words(field)
+    for axis in "xy" if field.shape else ("",):
+        content = _content(model, subject, field, axis)
+        accepts = NUMBER if field.dtype in _NUMBERS else WORD if words else TEXT
+        yield _box(subject, field, axis, content, accepts, words)
+
+
+def _history_boxes(model: Model, subject: Subject, field: Field[Any]) -> Iterator[dict[str, Any]]:
+    """The kind of a load's history, and each of its numbers."""
+    history = model.loads.history[subject.rows[0]]
+    yield _box(subject, field, KIND, (history[KIND], ""), WORD, tuple(HISTORIES)) | {"title": field.title}
+    for name, value in history.items():
+        if isinstance(value, float):
+            yield _box(subject, field, name, (written_number(value, 1.0), ""), NUMBER, None)
+
+
+def _box(
+    subject: Subject, field: Field[Any], part: str, content: Content, accepts: str, words: Sequence[str] | None
+) -> dict[str, Any]:
+    text, note = content
+    return {
+        "section": subject.section,
+        "title": f"{field.title} {part}".rstrip(),
+        "unit": field.shown[0],
+        "explanation": field.doc,
+        "target": f"{subject.elements[0].table}.{field.name}{'.' * bool(part)}{part}",
+        "elements": subject.elements,
+        "accepts": accepts,
+        "words": words,
+        "text": text,
+        "opened": text,
+        "note": note,
+    }
 
 
 def _words(field: Field[Any]) -> tuple[str, ...] | None:
@@ -125,24 +147,22 @@ def _words(field: Field[Any]) -> tuple[str, ...] | None:
     return (field.absent,) if field.nullable else None
 
 
-def _text(model: Model, elements: Sequence[Handle], field: Field[Any], axis: str) -> tuple[str, str]:
-    """What the box of some elements contains, and a note: that they differ, or that it is automatic."""
-    column, rows = _column(model, elements, field, axis)
-    values = column[rows]
+# --- what they contain -------------------------------------------------------------------------------
+
+
+def _content(model: Model, subject: Subject, field: Field[Any], axis: str) -> Content:
+    """The text for some elements, and a note: that they differ, or that it is automatic."""
+    table = model.tables[subject.elements[0].table]
+    column = table.column(field.name)
+    values = (column[:, "xy".index(axis)] if axis else column)[subject.rows]
     if field.nullable and field.dtype is float and np.isnan(values).all():
         if field.overrides is None:
             return field.absent, ""
-        text, note = _text(model, elements, model.tables[elements[0].table].fields[field.overrides], axis)
+        text, note = _content(model, subject, table.fields[field.overrides], axis)
         return text, f"{note}, {field.absent}" if note else field.absent
-    first = values[0]
-    if not (values == first).all():
+    if not (values == values[0]).all():
         return "", MIXED
-    return _written(field, first), ""
-
-
-def _column(model: Model, elements: Sequence[Handle], field: Field[Any], axis: str) -> tuple[Column, list[int]]:
-    column = model.tables[elements[0].table].column(field.name)
-    return column[:, "xy".index(axis)] if axis else column, [handle.row for handle in elements]
+    return _written(field, values[0]), ""
 
 
 def _written(field: Field[Any], value: Any) -> str:
@@ -150,87 +170,11 @@ def _written(field: Field[Any], value: Any) -> str:
         return YES_NO[int(value)]
     if field.dtype is str:
         return str(value)
-    shown = float(Decimal(repr(float(value))) * Decimal(repr(field.shown[1]))) + 0.0
+    return written_number(float(value), field.shown[1])
+
+
+def written_number(value: float, factor: float) -> str:
+    """A number times the factor of its unit on screen."""
+    shown = float(Decimal(repr(value)) * Decimal(repr(factor))) + 0.0
     exact = f"{shown:.{EXACT}g}"
     return exact if float(exact) == shown else f"{shown:.{DIGITS}g}"
-
-
-# --- what was typed ----------------------------------------------------------------------------------
-
-
-def problem(model: Model, box: Box) -> str:
-    """Why the text of a box is refused, or ""; in the units on the screen."""
-    if not box.changed:
-        return ""
-    field, _ = _target(model, box)
-    try:
-        value = _value(field, box.text)
-    except InvalidOperation:
-        return "must be a number"
-    if isinstance(value, float) and not math.isfinite(value):
-        return "must be a finite number"
-    limit = field.limit_broken_by(value, shown=True) if isinstance(value, float) else None
-    if limit:
-        return f"must be {limit}"
-    if field.name == "name":
-        return _name_problem(model, box)
-    try:
-        if not field.shape:
-            field.check(value, box.section)
-    except FieldError as error:
-        return str(error).removeprefix(f"{box.section}: ").removesuffix(".")
-    return ""
-
-
-def _name_problem(model: Model, box: Box) -> str:
-    element, table = box.elements[0], model.tables[box.elements[0].table]
-    if not box.text.strip():
-        return "must not be empty"
-    if box.text in table and table[box.text] is not element:
-        return f"there is a {element.noun} '{box.text}' already"
-    return ""
-
-
-def apply(form: Form, model: Model) -> list[str]:
-    """Put all changed boxes into the model, as one step; returns the sentences about those refused."""
-    refused = []
-    with model.transaction(f"properties of {form.heading.text}"):
-        for box in form.boxes:
-            elements = [handle for handle in box.elements if handle.exists]
-            if not box.changed or not elements:
-                continue
-            if box.problem:
-                refused.append(f"{box.section}, {box.title}: {box.problem}; the old value stays.")
-                continue
-            try:
-                _assign(model, box, elements)
-            except FieldError as error:
-                refused.append(str(error))
-    return refused
-
-
-def _assign(model: Model, box: Box, elements: Sequence[Handle]) -> None:
-    field, axis = _target(model, box)
-    value = _value(field, box.text)
-    values: Any = [value] * len(elements)
-    if axis:
-        column, rows = model.tables[elements[0].table].column(field.name), [h.row for h in elements]
-        values = column[rows]
-        values[:, "xy".index(axis)] = value
-    model.assign(elements, field.name, values)
-
-
-def _target(model: Model, box: Box) -> tuple[Field[Any], str]:
-    table, name, *axis = box.target.split(".")
-    return model.tables[table].fields[name], "".join(axis)
-
-
-def _value(field: Field[Any], text: str) -> Any:
-    """What a text means, in the units inside. Raises InvalidOperation if it should be a number."""
-    if field.dtype is bool:
-        return text == YES_NO[1]
-    if field.dtype is str:
-        return text
-    if field.nullable and text == field.absent:
-        return None
-    return float(Decimal(text) / Decimal(repr(field.shown[1])))

@@ -44,6 +44,8 @@ BINDINGS: tuple[Binding, ...] = (
     Binding("shift+left", "far arrow left", (PAUSE,), "skip back; a selection: move far", repeats=True),
     Binding("shift+up", "far arrow up", (PAUSE,), "move the selection by a grid spacing", repeats=True),
     Binding("shift+down", "far arrow down", (PAUSE,), "move the selection by a grid spacing", repeats=True),
+    Binding(".", "step", (PAUSE,), "a single step", repeats=True),
+    Binding(",", "step back", (PAUSE,), "a step back", repeats=True),
     Binding("return", "properties", LIVE, "properties of the selected elements"),
     Binding("s", "save", (PAUSE,), "save"),
     Binding("ctrl+s", "save again", LIVE, "save under the same name"),
@@ -80,7 +82,8 @@ BINDINGS: tuple[Binding, ...] = (
     Binding("ctrl+v", "paste", LIVE, "paste at the pointer"),
     Binding("ctrl+d", "duplicate", LIVE, "duplicate the selection"),
     Binding("home", "fit", LIVE, "fit the view"),
-    Binding("tab", "toggle legend", LIVE, "legend on / off"),
+    Binding("tab", "toggle legend", LIVE, "legend and toolbar on / off"),
+    Binding("t", "next theme", (*LIVE, FORCE_METHOD), "next theme: light, dark, colour-blind safe"),
     Binding("return", "accept", (PROPERTIES,), "accept the box; without one, go back"),
     Binding("return", "accept", (SAVE,), "save"),
     Binding("return", "accept", (LOAD,), "open"),
@@ -125,6 +128,17 @@ BINDINGS: tuple[Binding, ...] = (
     Binding("drag middle", "pan", LIVE, "move the view (or right button)"),
 )
 
+# What the toolbar offers, in groups from the top to the bottom.
+TOOLBAR: tuple[tuple[str, ...], ...] = (
+    ("toggle run", "restart", "step back", "step", "slower", "faster", "settle"),
+    ("next part", "toggle diagrams of sets", "back"),
+    ("undo", "redo"),
+    ("place", "rod", "support", "force", "velocity"),
+    ("toggle diagrams", "fit", "new grid", "next grid"),
+    ("properties", "force method", "load", "save again"),
+    ("next theme", "toggle help"),
+)
+
 _BY_KEY = {(scene, binding.key): binding for binding in BINDINGS for scene in binding.scenes}
 
 
@@ -138,6 +152,16 @@ def repeats(scene: str, key: str) -> bool:
     """True if holding a key performs its action again and again in a scene."""
     binding = _BY_KEY.get((scene, key))
     return binding is not None and binding.repeats
+
+
+def toolbar(scene: str) -> list[list[Binding]]:
+    """Groups of what the toolbar offers in a scene: the same while time passes as in pause; none in panels."""
+    scenes = set(LIVE if scene in LIVE else () if scene in PANELS else (scene,))
+    found = [binding for binding in BINDINGS if scenes & set(binding.scenes)]
+    found.sort(key=lambda binding: scene not in binding.scenes)  # keys that work here come first
+    offered = {binding.action: binding for binding in reversed(found)}
+    groups = ([offered[action] for action in group if action in offered] for group in TOOLBAR)
+    return [group for group in groups if group]
 
 
 def help_lines(scene: str) -> list[tuple[str, str]]:

@@ -46,9 +46,7 @@ class PygameInput(System):
     def __init__(self) -> None:
         self.closed = False
         self._held: set[int] = set()  # keys that are down
-        self._grip: tuple[str, Vector] | None = (
-            None  # "click" or "ctrl+click" and where, while that button is down
-        )
+        self._grip: tuple[str, Vector] | None = None  # the kind of click and where, while the button is down
         self._dragging = False
 
     def process(self, frame: Any) -> None:
@@ -88,7 +86,9 @@ class PygameInput(System):
             view.pointer = None
         elif event.type == pygame.WINDOWFOCUSLOST:  # what is let go of elsewhere is not told
             self._held.clear()
-            self._release(frame)
+            if self._dragging:
+                self._release(frame)
+            self._grip = None
 
     def _press(self, event: pygame.event.Event, frame: Any) -> None:
         key, repeated = _key_name(event), event.key in self._held

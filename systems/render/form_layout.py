@@ -17,7 +17,7 @@ WIDEST = 1500.0  # points that tiles spread over
 EDGE = 16.0  # points around everything
 LOW = 330.0  # points: a viewport less high does without explanations
 
-TITLE, BOX, BELOW = 18.0, 26.0, 14.0  # points: title above a box, the box, what is said below it
+TITLE, BOX, BELOW = 18.0, 26.0, 16.0  # points: title above a box, the box, what is said below it
 SECTION = 28.0
 COLUMN_GAP = 14.0
 HEADING = 104.0  # points, where a low viewport has the box beside the heading
@@ -105,8 +105,8 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         room = min(width - beside_heading, 420.0 * u)
         fixed = [Place(box, left + beside_heading, top, room, BOX * u) for box in form.boxes]
         top += (BOX + 22.0) * u
-    beside = low and bool(fixed)
-    heading_width = (HEADING - 8.0) * u if beside else width
+    shares_line = low and bool(fixed)
+    heading_width = (HEADING - 8.0) * u if shares_line else width
     layout = FormLayout(v, u, left, left + width, header, heading_width, top - 11.0 * u, top, bottom)
     return _with_rows(form, layout, fixed)
 

@@ -46,7 +46,7 @@ class _Card:
     """The help at one size of type."""
 
     def __init__(self, sheet: Drawn, keys: list[tuple[str, str]], points: float) -> None:
-        self.sheet, self.keys, self.u = sheet, [(_shown(key), title) for key, title in keys], sheet.unit
+        self.sheet, self.keys, self.u = sheet, [(written_key(key), title) for key, title in keys], sheet.unit
         self.size = sheet.font(points)
         self.step = 1.15 * line_height(self.size)
         self.key_width = max(text_width(key, self.size, "semibold") for key, _ in self.keys) + 14.0 * self.u
@@ -82,7 +82,8 @@ class _Card:
         return marks
 
 
-def _shown(key: str) -> str:
-    """A key's name as a keyboard shows it: "ctrl+shift+z" → "Ctrl+Shift+Z"."""
+def written_key(key: str) -> str:
+    """A key's name as a keyboard shows it: "ctrl+shift+z" → "Ctrl+Shift+Z"; a speck of ink by its name."""
+    key = {".": "period", ",": "comma"}.get(key, key)
     parts = key.split("+") if key != "+" else [key]
     return "+".join(part[:1].upper() + part[1:] for part in parts if part).replace("-", "−")

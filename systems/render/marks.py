@@ -91,10 +91,10 @@ Mark = Strokes | Fills | Stamps | Rectangles | Panel | Text
 
 @dataclass
 class Picture:
-    """Everything to be drawn in one viewport."""
+    """Everything to be drawn in one viewport; without a background, over what is there already."""
 
     viewport: Viewport
-    background: Colour
+    background: Colour | None
     marks: list[Mark] = field(default_factory=list)
 
     @property

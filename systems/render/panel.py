@@ -80,10 +80,10 @@ class _Writer:
         return marks
 
     def _explanation(self) -> str:
-        if self.selected is not None and self.selected.explanation:
-            return self.selected.explanation
-        subject = self.hovered if self.hovered is not None else self.chosen
-        return subject.explanation if subject is not None else ""
+        hovered = self.hovered if isinstance(self.hovered, Tile) else None
+        name = next((box for box in self.form.boxes if box.target == "name"), None)
+        told = (hovered, self.chosen, self.selected, name)
+        return next((item.explanation for item in told if item is not None), "")
 
     def scroll_bar(self) -> list[Mark]:
         """How much is scrolled away, if anything is."""

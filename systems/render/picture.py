@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from components.form import Form
+from components.toolbar import Toolbar
 from components.view import View, drawn_positions
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
-from systems.render.help import draw_help
 from systems.render.labels import place_labels
 from systems.render.marks import Picture
 from systems.render.overlays import draw_overlays, draw_scale
@@ -17,6 +17,7 @@ from systems.render.sheet import measure
 from systems.render.structure import draw_ghost, draw_grid, draw_halos, draw_particles, draw_rods, label_names
 from systems.render.supports import crowding, draw_supports, support_sides
 from systems.render.theme import Theme
+from systems.render.toolbar import compose_toolbar
 from systems.render.tools import draw_preview
 
 if TYPE_CHECKING:
@@ -25,16 +26,18 @@ if TYPE_CHECKING:
 __all__ = ["compose", "drawn_positions"]
 
 
-def compose(model: Model | Form, view: View, theme: Theme) -> Picture:
-    """The model (or form) as seen in a view, as marks in pixels. Reads it, changes nothing.
+def compose(model: Model | Form | Toolbar, view: View, theme: Theme) -> Picture:
+    """The model (or form, or toolbar) as seen in a view, as marks in pixels. Reads it, changes nothing.
 
     Forces are read only where a diagram shows them, yielding only where a rod has a strength.
     """
     if isinstance(model, Form):
         return compose_form(model, view, theme)
+    if isinstance(model, Toolbar):
+        return compose_toolbar(model, view, theme)
     sheet = measure(model, view, theme)
     if view.page is not None:
-        return Picture(view.camera.viewport, theme.background, [*draw_page(sheet), *draw_help(sheet)])
+        return Picture(sheet.viewport, theme.background, draw_page(sheet))
     draw_grid(sheet)
     draw_rod_diagrams(sheet)
     draw_ghost(sheet)
@@ -49,6 +52,5 @@ def compose(model: Model | Form, view: View, theme: Theme) -> Picture:
     overlays, room = draw_overlays(sheet)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit)
     scale = draw_scale(sheet, room) if model.particles.count else []
-    viewport = view.camera.viewport
-    over = [*scale, *draw_preview(sheet), *overlays, *draw_help(sheet)]
-    return Picture(viewport, theme.background, [*sheet.marks, *labels, *over])
+    over = [*scale, *draw_preview(sheet), *overlays]
+    return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over])

@@ -41,7 +41,8 @@ class Canvas:
         v = picture.viewport
         before = surface.get_clip()
         surface.set_clip(pygame.Rect(v.left, v.top, v.width, v.height).clip(before))
-        surface.fill(picture.background)
+        if picture.background is not None:
+            surface.fill(picture.background)
         for mark in picture.marks:
             match mark:
                 case Strokes():

@@ -9,11 +9,12 @@ import pygame
 
 from components.form import Form
 from components.model import Model
+from components.toolbar import Toolbar
 from components.view import View
 from systems.base import Phase, System
 from systems.render.picture import compose
 from systems.render.pygame_canvas import Canvas
-from systems.render.theme import Theme
+from systems.render.theme import load_theme
 
 
 class PygameRender(System):
@@ -22,9 +23,8 @@ class PygameRender(System):
     name = "render.pygame"
     phase = Phase.RENDER
 
-    def __init__(self, surface: pygame.Surface, theme: Theme) -> None:
+    def __init__(self, surface: pygame.Surface) -> None:
         self.surface = surface
-        self.theme = theme
         self.drawn = False
         self._canvas = Canvas()
         self._shown: Any = None
@@ -33,13 +33,14 @@ class PygameRender(System):
         """Draw every stage of the scene, unless the picture would be the same as the last."""
         stages = frame.session.stages
         looks = tuple(repr(view) for _, view in stages)
-        shown = (id(self.surface), self.theme, looks, _revisions(stages))
+        shown = (id(self.surface), looks, _revisions(stages))
         self.drawn = shown != self._shown
         if self.drawn:
+            theme = load_theme(frame.session.view.theme)
             for model, view in stages:
-                self._canvas.draw(self.surface, compose(model, view, self.theme))
-            self._shown = (id(self.surface), self.theme, looks, _revisions(stages))
+                self._canvas.draw(self.surface, compose(model, view, theme))
+            self._shown = (id(self.surface), looks, _revisions(stages))
 
 
-def _revisions(stages: Sequence[tuple[Model | Form, View]]) -> tuple[tuple[str, int], ...]:
-    return tuple((shown.context, shown.revision) for shown, _ in stages)
+def _revisions(stages: Sequence[tuple[Model | Form | Toolbar, View]]) -> tuple[tuple[str, int], ...]:
+    return tuple((shown.context, shown.revision) for shown, _ in stages if not isinstance(shown, Toolbar))

@@ -54,11 +54,10 @@ class Sheet:
     labels: list[Label] = field(default_factory=list)
     legend: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-    _tagged: dict[type, dict[str, Rows]] = field(default_factory=dict)
 
     @property
     def viewport(self) -> Viewport:
-        return self.view.camera.viewport
+        return self.occupancy.viewport
 
     def font(self, points: float) -> int:
         """A font size in whole pixels."""
@@ -72,13 +71,8 @@ class Sheet:
         return inside
 
     def tagged(self, tag: type, table: str) -> Rows:
-        """Rows of the entities of one table that carry a tag; asked of the model once."""
-        if tag not in self._tagged:
-            rows: dict[str, list[int]] = {}
-            for handle in self.model.tagged(tag):
-                rows.setdefault(handle.table, []).append(handle.row)
-            self._tagged[tag] = {name: np.array(found, dtype=np.intp) for name, found in rows.items()}
-        return self._tagged[tag].get(table, np.empty(0, dtype=np.intp))
+        """Rows of the entities of one table that carry a tag."""
+        return self.model.tagged_rows(tag, table)
 
     def chosen(self, wanted: Rows, rows: Rows) -> NDArray[np.bool_]:
         """For each of `rows`, whether it is among `wanted`."""
@@ -101,7 +95,8 @@ def measure(model: Model, view: View, theme: Theme) -> Sheet:
     camera, unit = view.camera, view.pixel_ratio
     centres = camera.to_pixels(drawn_positions(model))
     ends = model.rods.between.astype(np.intp)
-    low, high = bounds(camera.viewport)
+    viewport = view.canvas
+    low, high = bounds(viewport)
     margin = 150.0 * unit  # so that the ends of a rod that leaves the viewport, and their labels, are not seen
     start, end, rods = clip_segments(centres[ends[:, 0]], centres[ends[:, 1]], low - margin, high + margin)
     radii = np.maximum(model.particles.radius * camera.scale, _smallest_radius(start, end, unit))
@@ -120,7 +115,7 @@ def measure(model: Model, view: View, theme: Theme) -> Sheet:
         start,
         end,
         np.flatnonzero(seen),
-        Occupancy(camera.viewport, unit),
+        Occupancy(viewport, unit),
     )
 
 

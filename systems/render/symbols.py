@@ -11,6 +11,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from systems.render.icons import ICONS, STROKE
+
 Polygon = NDArray[np.float64]
 Parts = list[tuple[str, Polygon]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
 
@@ -23,8 +25,33 @@ _GROUND = 13.0  # points, half the length of the ground under it
 
 
 def symbol_parts(symbol: str, size: float, unit: float) -> Parts:
-    """The polygons of a symbol in pixels, for a size in pixels and pixels per point."""
+    """The polygons of a symbol in pixels, for a size in pixels and pixels per point.
+
+    The size of an icon is how many pixels the unit of its square takes.
+    """
+    if symbol in ICONS:
+        return [("ink", polygon * size) for part in ICONS[symbol] for polygon in _icon_part(*part)]
     return _SYMBOLS[symbol](size, unit)
+
+
+def _icon_part(kind: str, numbers: tuple[float, ...]) -> list[Polygon]:
+    """A line with round ends and corners, an area, an arc or a disc of an icon as polygons."""
+    if kind == "disc":
+        return [circle(numbers[2]) + numbers[:2]]
+    if kind == "arc":
+        x, y, radius, first, last = numbers
+        angle = np.radians(np.linspace(first, last, 33))
+        return _thick(np.stack([x + radius * np.cos(angle), y + radius * np.sin(angle)], axis=1))
+    points = np.array(numbers).reshape(-1, 2)
+    return [points] if kind == "area" else _thick(points)
+
+
+def _thick(points: Polygon) -> list[Polygon]:
+    """The polygons of a line through points (n, 2)."""
+    along = points[1:] - points[:-1]
+    across = along[:, ::-1] * [-1.0, 1.0] / np.hypot(*along.T)[:, None] * (STROKE / 2)
+    sides = [points[:-1] + across, points[1:] + across, points[1:] - across, points[:-1] - across]
+    return [*np.stack(sides, axis=1), *(circle(STROKE / 2) + point for point in points)]
 
 
 def circle(radius: float) -> Polygon:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass, fields
+from functools import cache
 from importlib.resources import files
 
 Colour = tuple[int, int, int, int]  # red, green, blue, opacity, each 0 to 255
@@ -70,6 +71,7 @@ def theme_names() -> list[str]:
     )
 
 
+@cache
 def load_theme(name: str = "light") -> Theme:
     """The theme of that name. Raises ValueError if there is none or if its file is wrong."""
     if name not in theme_names():

@@ -12,8 +12,9 @@ from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix
+from scipy.sparse import csc_matrix, identity
 from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import splu
 
 from components.model import Model
 
@@ -22,6 +23,7 @@ Flags = NDArray[np.bool_]
 Rows = NDArray[np.intp]
 Matrix: TypeAlias = Array | csc_matrix  # full up to DENSE unknowns, else sparse
 
+SYMMETRIC = {"SymmetricMode": True}  # pivots on the diagonal
 DENSE = 100  # unknowns up to which full matrices are faster
 
 AT_LIMIT = 1e-10  # share of its strength within which a rod counts as yielding
@@ -96,8 +98,15 @@ class Structure:
 
     @cached_property
     def index(self) -> Rows:
-        """Where the unknowns are in a flattened field, (N,)."""
-        return np.flatnonzero(self.unknown.ravel())
+        """Where the unknowns are in a flattened field, (N,); ordered so that sparse factors stay sparse."""
+        index = np.flatnonzero(self.unknown.ravel())
+        if len(index) <= DENSE:
+            return index
+        links = _compatibility(self.ends, np.ones((len(self.ends), 2)), len(self.position))[:, index]
+        pattern = csc_matrix(abs(links).T @ abs(links) + identity(len(index)))
+        order = splu(pattern, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC).perm_c
+        ordered: Rows = index[np.argsort(order)]
+        return ordered
 
     @property
     def size(self) -> int:
@@ -140,7 +149,7 @@ class Structure:
     def weight(self) -> Array:
         """Sum of EA/L₀ of the rods at each unknown's particle (kN/m), the scale of its stiffness, (N,)."""
         per_rod = self.stiffness / self.rest_length
-        total = np.bincount(self.ends.ravel(), np.repeat(per_rod, 2), len(self.position))
+        total = np.bincount(self.ends.ravel(), np.repeat(per_rod, 2), len(self.position)).astype(np.float64)
         return self.gather(np.repeat(total, 2).reshape(-1, 2))
 
     # --- forces --------------------------------------------------------------------------------------
@@ -218,8 +227,8 @@ class Structure:
         parts = (signs[None, :, None, :, None] * block[:, None, :, None, :]).ravel()
         if self.size <= DENSE:
             kept, place = self._dense_pattern
-            dense: Array = np.bincount(place, parts[kept], self.size**2).reshape(self.size, self.size)
-            return dense
+            full = np.bincount(place, parts[kept], self.size**2).astype(np.float64)
+            return full.reshape(self.size, self.size)
         kept, slot, rows, starts = self._sparse_pattern
         values = np.bincount(slot, parts[kept], len(rows))
         return csc_matrix((values, rows, starts), shape=(self.size, self.size))

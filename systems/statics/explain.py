@@ -29,13 +29,16 @@ def rod_names(model: Model, rows: Rows) -> str:
 
 
 def describe_motion(model: Model, modes: Array) -> str:
-    """Who moves, and which way, in some modes (k, n, 2): "B along x, C in any direction"."""
+    """Who moves, and which way, in some modes (k, n, 2): "B and D along x, C in any direction"."""
     names = model.particles.column("name")
     size = np.sqrt((modes**2).sum(axis=(0, 2)))
-    movers = [row for row in np.argsort(-size, kind="stable") if size[row] > TAKES_PART * size.max()]
-    told = [f"{names[row]} {_direction(modes[:, row])}" for row in sorted(movers[:NAMED])]
-    rest = len(movers) - len(told)
-    return ", ".join(told) + (f" and {rest} more" if rest > 0 else "")
+    movers = np.flatnonzero(size > TAKES_PART * size.max())
+    groups: dict[str, list[str]] = {}
+    for row in movers.tolist():
+        groups.setdefault(_direction(modes[:, row]), []).append(str(names[row]))
+    told = [f"{listed(group)} {direction}" for direction, group in list(groups.items())[:NAMED]]
+    rest = sum(len(group) for group in list(groups.values())[NAMED:])
+    return ", ".join(told) + (f" and {rest} more" if rest else "")
 
 
 def _direction(motions: Array) -> str:

@@ -9,7 +9,7 @@ from scipy.linalg.lapack import dsytrf, dsytrs
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
-from systems.statics.equations import Array, Matrix
+from systems.statics.equations import SYMMETRIC, Array, Matrix
 
 NO_STIFFNESS = 1e-13  # of the rods' at the same particle: what is softer than that is round-off
 SOFT = 1e-12  # of the rods' at the same particle: such a motion counts as not resisted
@@ -47,12 +47,7 @@ class Factor:
     def _factor_sparse(self, matrix: csc_matrix) -> None:
         """Pivots on the diagonal only, so that they are those of a symmetric elimination."""
         try:
-            factors = splu(
-                matrix,
-                permc_spec="MMD_AT_PLUS_A",
-                diag_pivot_thresh=0.0,
-                options={"SymmetricMode": True},
-            )
+            factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC)
         except RuntimeError:  # exactly singular
             self.exists = False
             return

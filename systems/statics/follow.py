@@ -21,10 +21,12 @@ LARGEST_MOVE = 0.1  # of a rod's length, in one increment; larger: fewer increme
 MISS = 0.2  # share of an increment by which it may miss where the tangent pointed
 TURN = 0.5  # share by which the tangent may change over an increment
 NEWTON_ITERATIONS = 25
+PATIENCE = 6  # iterations before steps are shortened that do not lessen the residual
+SMALLEST_SHARE = 1 / 8
 CONVERGED = 1e-11  # of the largest force: a residual that stopped falling below it is round-off
 EXACT_EVENTS = 500  # rods up to which every yield ends an increment; larger: slower, no more exact answers
 HALF = 0.5  # share of an increment to try after it failed
-RESOLUTION = 1 / 32  # of the change of load, to which yields are told apart in larger structures
+RESOLUTION = 1 / 8  # of the change of load, to which yields are told apart in larger structures
 EVENT = 1e-8  # of the change of load, to which a yield is located
 REVERSAL = 1e-5  # increment to which the end of yielding is located; the error goes with its square
 SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
@@ -256,12 +258,10 @@ class Path:
     def correct(self, start: Point, guess: Array, t: float, across: Tangent | None) -> Point | None:
         """The equilibrium near a guess: at constant t, or on the plane across a tangent; None if not found."""
         structure = self.structure
-        displacement = guess.copy()
-        normal = None
-        if across is not None and self.reference > 0.0:
-            normal = across.rate / self.reference**2
-        before = math.inf
-        for _ in range(NEWTON_ITERATIONS):
+        normal = across.rate / self.reference**2 if across is not None and self.reference > 0.0 else None
+        displacement, step = guess, np.zeros_like(guess)
+        before, dt, share, flowing = math.inf, 0.0, 1.0, None
+        for iteration in range(NEWTON_ITERATIONS):
             response = structure.respond(displacement, start.plastic_strain)
             residual = structure.gather(self.load(t) - structure.internal(response))
             size = float(np.abs(residual).max(initial=0.0))
@@ -271,22 +271,34 @@ class Path:
             noise = structure.round_off(displacement) + 4.0 * ROUND_OFF * scale
             if size <= noise or (size >= 0.5 * before and size <= CONVERGED * scale + 64.0 * noise):
                 return self.after(start, displacement, t)
-            before = size
-            factor = regular(structure.tangent(response, response.flowing), structure.weight)
-            if not factor.exists:
+            switched = flowing is not None and not np.array_equal(response.flowing, flowing)
+            if (switched or iteration > PATIENCE) and size >= before and share > SMALLEST_SHARE:
+                share *= HALF  # other rods yield than the step reckoned with: take less of it
+                displacement, t = displacement - share * step, t - share * dt
+                continue
+            moved = self._newton_step(response, residual, normal)
+            if moved is None:
                 return None
-            if normal is None:
-                step = factor.solve(residual)
-            else:
-                solved = factor.solve(np.column_stack([residual, self.push]))
-                dt = -float(normal @ solved[:, 0]) / (float(normal @ solved[:, 1]) + 1.0)
-                step = solved[:, 0] + dt * solved[:, 1]
-                t += dt
-            displacement += structure.spread(step)
+            step, dt = structure.spread(moved[0]), moved[1]
+            before, share, flowing = size, 1.0, response.flowing
+            displacement, t = displacement + step, t + dt
             change = structure.gather(displacement - start.displacement)
             if not structure.move(change, start.response.length) <= 2.0 * LARGEST_MOVE:
                 return None
         return None
+
+    def _newton_step(
+        self, response: Response, residual: Array, normal: Array | None
+    ) -> tuple[Array, float] | None:
+        """Changes of the unknowns and of t, the latter such that normal · du + dt = 0."""
+        factor = regular(self.structure.tangent(response, response.flowing), self.structure.weight)
+        if not factor.exists:
+            return None
+        if normal is None:
+            return factor.solve(residual), 0.0
+        solved = factor.solve(np.column_stack([residual, self.push]))
+        dt = -float(normal @ solved[:, 0]) / (float(normal @ solved[:, 1]) + 1.0)
+        return solved[:, 0] + dt * solved[:, 1], dt
 
     def _went_along(
         self,

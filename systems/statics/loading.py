@@ -11,15 +11,15 @@ from components.model import Model
 from systems.statics.equations import Array, Flags
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import describe_motion, moved, rod_names
-from systems.statics.factor import lowest_mode, soft_modes
-from systems.statics.follow import LARGEST_MOVE, Path, Point, Tangent
+from systems.statics.factor import SOFT, lowest_mode, regular, soft_modes
+from systems.statics.follow import Path, Point, Tangent
 from systems.statics.relax import RUNAWAY, relax
 
-UNRESISTED = 1e-9  # of the change of load: if that moves the structure much, nothing resists
 BEYOND = 1e-6  # of the change of load: how far beyond a loss of stability the structure moves on
 FIRST_LOAD = 1 / 64  # of the change of load, under which a first-order mechanism takes its shape
 UNEXCITED = 1e-6  # share of a mode in the response to the load, below which the load does not excite it
-MOST_JUMPS = 100
+STALLED = 0.05  # of a rod's length: a jump that leads no further has hardly changed anything
+MOST_STALLS = 2
 MOST_INCREMENTS = 20000
 
 
@@ -39,7 +39,7 @@ class Loading:
     unstressed: bool
     events: list[Event]
     point: Point
-    jumps: int = 0
+    stalls: int = field(init=False, default=0)
     mechanism: bool = field(init=False, default=False)
 
     def run(self) -> Point:
@@ -60,13 +60,18 @@ class Loading:
         """Find the direction to start in; a mechanism first takes its shape under a small load."""
         path, structure = self.path, self.path.structure
         tangent = path.tangent(self.point)
+        before = self.point
+        modes = np.zeros((structure.size, 0))
         if self.unstressed:
-            matrix = structure.tangent(self.point.response, tangent.flowing)
-            self._note_mechanism(soft_modes(matrix, structure.weight, tangent.factor))
+            matrix = structure.tangent(before.response, tangent.flowing)
+            modes = soft_modes(matrix, structure.weight, tangent.factor)
+        self.mechanism = modes.shape[1] > 0
         if not path.push.any():
             self._rest(tangent)
         elif not tangent.stable or self._unresisted(tangent):
             self._relax(FIRST_LOAD if self.unstressed else 1.0, None)
+        if self.mechanism:
+            self._note_mechanism(modes, before)
         tangent = path.tangent(self.point)
         path.reference = float(np.linalg.norm(tangent.rate))
         return tangent
@@ -79,21 +84,21 @@ class Loading:
         else:
             self.point = found
 
-    def _note_mechanism(self, modes: Array) -> None:
-        if modes.shape[1] == 0:
-            return
-        self.mechanism = True
+    def _note_mechanism(self, modes: Array, before: Point) -> None:
         fields = np.array([self.path.structure.spread(mode) for mode in modes.T])
         motion = describe_motion(self.model, fields)
-        message = (
-            f"First-order mechanism: without load nothing resists moving {motion}."
-            " Add rods or supports there if that is not meant."
-        )
+        message = f"First-order mechanism: without load nothing resists moving {motion}."
+        if self.point is before:
+            message += " Add rods or supports there if that is not meant."
+        else:
+            where = moved(self.model, before.displacement, self.point.displacement)
+            message += f" It gives way until the load is held in another shape: {where}."
         self.events.append(Event("mechanism", self.factor(0.0), message, motion=_unit(fields[0])))
 
     def _unresisted(self, tangent: Tangent) -> bool:
-        move = self.path.structure.move(tangent.rate, self.point.response.length)
-        return move * UNRESISTED > LARGEST_MOVE
+        """True if the load pushes the structure where it has no stiffness but that of round-off."""
+        rate = tangent.rate
+        return float(rate @ self.path.push) < SOFT * float(rate @ (self.path.structure.weight * rate))
 
     # --- on the way ----------------------------------------------------------------------------------
 
@@ -142,8 +147,7 @@ class Loading:
         if self.mechanism or not (following.flowing & ~tangent.flowing).any():
             return
         matrix = structure.tangent(self.point.response, following.flowing, geometric=False)
-        modes = soft_modes(matrix, structure.weight)
-        if modes.shape[1] == 0:
+        if regular(matrix, structure.weight, -SOFT).definite:
             return
         self.mechanism = True
         motion = structure.spread(following.rate)
@@ -157,22 +161,30 @@ class Loading:
     # --- loss of stability -----------------------------------------------------------------------------
 
     def _jump(self, beyond: Tangent) -> Tangent:
-        """From the last stable point move on to the next stable equilibrium, and report what happened."""
+        """From the last stable point go on to the next stable equilibrium, and report what happened."""
         path, critical = self.path, self.point
-        self.jumps += 1
-        if self.jumps > MOST_JUMPS:
-            raise self._lost()
-        nothing = np.zeros_like(beyond.flowing)
-        plastic = bool(beyond.flowing.any()) and path.stable_without(critical, nothing)
+        plastic = bool(beyond.flowing.any()) and path.stable_without(critical, np.zeros_like(beyond.flowing))
         mode = self._mode(beyond)
-        share = abs(float(mode @ path.push)) / (np.linalg.norm(mode) * np.linalg.norm(path.push))
         if self.mechanism and critical.t < FIRST_LOAD and not plastic:
             self._relax(FIRST_LOAD, mode)
         else:
             self._relax(min(1.0, critical.t + BEYOND), mode, beyond if plastic else None)
-            kind = "bifurcation" if beyond.sense > 0.0 and share < UNEXCITED else "snap-through"
-            self._note_jump(kind, critical, mode)
+            self._note_jump(beyond, critical, mode)
+        change = path.structure.gather(self.point.displacement - critical.displacement)
+        if path.structure.move(change, critical.response.length) < STALLED:
+            self.stalls += 1
+        if self.stalls > MOST_STALLS:
+            self._leap()
         return path.tangent(self.point)
+
+    def _leap(self) -> None:
+        """Give up following the path of a structure that hardly resists, and relax under the whole load."""
+        message = (
+            f"From {self._at(self.point.t).removeprefix('at ')} on the structure hardly resists some motion, so that"
+            " its path is not followed: it is relaxed under the whole load."
+        )
+        self.events.append(Event("note", self.factor(self.point.t), message))
+        self._relax(1.0, None)
 
     def _mode(self, beyond: Tangent) -> Array:
         """The motion in which stability is lost, in the direction in which it goes on."""
@@ -198,7 +210,10 @@ class Loading:
                 raise self._collapse(plastic.flowing, self.path.structure.spread(nudge))
             raise self._collapse(relaxed.point.response.flowing, motion)
 
-    def _note_jump(self, kind: str, critical: Point, mode: Array) -> None:
+    def _note_jump(self, beyond: Tangent, critical: Point, mode: Array) -> None:
+        push = self.path.push
+        share = abs(float(mode @ push)) / (np.linalg.norm(mode) * np.linalg.norm(push))
+        kind = "bifurcation" if beyond.sense > 0.0 and share < UNEXCITED else "snap-through"
         where = moved(self.model, critical.displacement, self.point.displacement)
         yielded = np.flatnonzero(self.point.plastic_strain != critical.plastic_strain)
         if kind == "bifurcation":

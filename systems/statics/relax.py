@@ -13,10 +13,10 @@ import numpy as np
 
 from systems.statics.equations import Array
 from systems.statics.factor import lowest_mode, regular
-from systems.statics.follow import LARGEST_MOVE, Path, Point
+from systems.statics.follow import LARGEST_MOVE, SMALLEST_SHARE, Path, Point
 
 STEPS = 4000  # until relaxing is given up
-NEWTON_ITERATIONS = 12  # within a step
+NEWTON_ITERATIONS = 20  # within a step
 STEP_CONVERGED = 1e-7  # of the force at its start
 LARGEST_PENALTY = 1e9
 NUDGE = 1e-3  # of a rod's length: how far to push off an unstable equilibrium
@@ -99,20 +99,27 @@ def _creep(path: Path, point: Point, residual: Array, penalty: float) -> tuple[P
 def _implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> Array | None:
     """Displacements u with force − internal(u) = penalty × W (u − u₀), or None if Newton's method fails."""
     structure = path.structure
-    displacement = point.displacement
     wanted = STEP_CONVERGED * float(np.abs(residual).max(initial=0.0))
-    moved = np.zeros(structure.size)
+    moved, step = np.zeros(structure.size), np.zeros(structure.size)
+    before, share, flowing = np.inf, 1.0, point.response.flowing
     for _ in range(NEWTON_ITERATIONS):
+        displacement = point.displacement + structure.spread(moved)
         response = structure.respond(displacement, point.plastic_strain)
         pull = structure.gather(path.load(point.t) - structure.internal(response))
         pull -= penalty * structure.weight * moved
-        if float(np.abs(pull).max(initial=0.0)) <= max(wanted, structure.round_off(displacement)):
+        size = float(np.abs(pull).max(initial=0.0))
+        if size <= max(wanted, structure.round_off(displacement)):
             return displacement
+        if size >= before and share > SMALLEST_SHARE and not np.array_equal(response.flowing, flowing):
+            share *= 0.5  # other rods yield than the step reckoned with: take less of it
+            moved = moved - share * step
+            continue
         factor = regular(structure.tangent(response, response.flowing), structure.weight, penalty)
         if not factor.definite:
             return None
-        moved = moved + factor.solve(pull)
+        step = factor.solve(pull)
+        before, share, flowing = size, 1.0, response.flowing
+        moved = moved + step
         if not structure.move(moved, point.response.length) <= 4.0 * LARGEST_MOVE:
             return None
-        displacement = point.displacement + structure.spread(moved)
     return None

@@ -20,7 +20,7 @@ from systems.statics.external import external_forces
 from systems.statics.follow import Path, Point
 from systems.statics.loading import Loading
 
-TOLD = ("mechanism", "snap-through", "bifurcation", "note")  # kinds of events that messages repeat
+TOLD = ("free body", "mechanism", "snap-through", "bifurcation", "note")  # kinds of events that messages repeat
 NO_NET_FORCE = 1e-12  # of the sum of a body's forces: what is left of them is round-off
 UNSTRESSED = 1e-9  # of the largest force: what holds the present state counts as nothing
 
@@ -158,25 +158,35 @@ class _Settling:
             raise
 
     def _check_bodies(self, target: Array, factor: float) -> None:
-        """Raise NoEquilibrium if a body is pulled along an axis in which nothing holds it."""
-        structure, model = self.structure, self.model
+        """Report bodies that nothing holds along an axis. Raises NoEquilibrium if one is pulled along it."""
+        structure = self.structure
         bodies = int(structure.body.max(initial=-1)) + 1
-        names = model.particles.column("name")
-        for axis, along in enumerate("xy"):
+        members = np.bincount(structure.body, minlength=bodies)
+        for axis in range(2):
             held = np.bincount(structure.body, structure.fixed[:, axis], bodies) > 0
             net = np.bincount(structure.body, target[:, axis], bodies)
             gross = np.bincount(structure.body, np.abs(target[:, axis]), bodies)
-            for body in np.flatnonzero(~held & (np.abs(net) > NO_NET_FORCE * gross))[:1]:
-                rows = np.flatnonzero(structure.body == body)
-                who = listed([str(names[row]) for row in rows])
-                message = (
-                    f"Free body: nothing holds {who} along {along}, where {net[body]:.6g} kN pull"
-                    f" {'it' if len(rows) == 1 else 'them'}. Constrain one of them in {along}."
-                )
-                motion = np.zeros(structure.unknown.shape)
-                motion[rows, axis] = np.sign(net[body])
-                self.events.append(Event("free body", factor, message, motion=motion))
-                raise NoEquilibrium("mechanism", message)
+            pulled = np.abs(net) > NO_NET_FORCE * gross
+            for body in np.flatnonzero(~held & pulled)[:1].tolist():
+                event = self._free_body(body, axis, float(net[body]), factor)
+                self.events.append(event)
+                raise NoEquilibrium("mechanism", event.message)
+            if self.factor == 0.0:
+                loose = np.flatnonzero(~held & ~pulled & (members > 1))
+                self.events += [self._free_body(body, axis, 0.0, factor) for body in loose.tolist()]
+
+    def _free_body(self, body: int, axis: int, net: float, factor: float) -> Event:
+        rows = np.flatnonzero(self.structure.body == body)
+        names = self.model.particles.column("name")
+        who, along = listed([str(names[row]) for row in rows]), "xy"[axis]
+        if net:
+            what = f", where {net:.6g} kN pull {'it' if len(rows) == 1 else 'them'}"
+        else:
+            what = ", but no force acts on them in all there"
+        message = f"Free body: nothing holds {who} along {along}{what}. Constrain one of them in {along}."
+        motion = np.zeros(self.structure.unknown.shape)
+        motion[rows, axis] = np.sign(net) or 1.0
+        return Event("free body", factor, message, motion=motion)
 
     def _state(self, status: str, message: str) -> StaticState:
         structure, response = self.structure, self.point.response

@@ -192,6 +192,17 @@ def test_every_model_with_unsaved_work_has_its_spare(data: Path) -> None:
     keeper.close(session.desks)
 
 
+def test_a_model_that_was_saved_and_left_at_once_leaves_no_spare(data: Path) -> None:
+    keeper = SpareKeeper(interval=0.0)
+    session = Session.open(triangle(), [keeper])
+    session.rods["AB"].stiffness = 5.0
+    kept(keeper, session)
+    session.save_as(data / "a.json")
+    session.open_here("tower")
+    keeper.close(session.desks)
+    assert list((data / "autosave").iterdir()) == []
+
+
 def test_a_spare_is_written_at_most_every_few_seconds(data: Path) -> None:
     keeper = SpareKeeper(interval=60.0)
     session = Session.open(triangle(), [keeper])
@@ -216,11 +227,11 @@ def test_ten_thousand_rods_do_not_stop_the_picture() -> None:
     longest = 0.0
     for value in range(5):
         session.rods[0].stiffness = 10.0 + value
-        started = time.perf_counter()
+        started = time.thread_time()
         keeper.process(frame)
-        longest = max(longest, time.perf_counter() - started)
+        longest = max(longest, time.thread_time() - started)
         kept(keeper, session)
-    assert longest < 0.1  # it took 0.02 s when this was written
+    assert longest < 0.016  # s, one frame; it took 0.002 when this was written
     keeper.close(session.desks)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from pathlib import Path
 
 import pytest
 
@@ -13,6 +14,7 @@ from components.particle import Particle
 from components.tags import Selected
 from game import Session
 from game.scenes.properties import Properties
+from game.script import Recorder, Script
 from systems.render.form_layout import FormLayout
 from systems.render.marks import Text
 from systems.render.picture import compose
@@ -313,6 +315,50 @@ def test_text_goes_through_the_clipboard(session: Session) -> None:
     assert session.clipboard == "1234.5"
 
 
+# --- loads -------------------------------------------------------------------------------------------
+
+
+def ramped() -> Session:
+    """The triangle with a load at B that grows in half a second."""
+    load = {"on": "B", "force": [3, 0], "history": {"kind": "ramp", "duration": 0.5}}
+    return Session.open(triangle() | {"loads": [load]})
+
+
+def test_a_load_is_edited_with_its_particle() -> None:
+    session = ramped()
+    scene = open_of(session, "B")
+    assert "load 1" in {box.section for box in scene.form.boxes}
+    assert session.boxes["history"] == "ramp"
+    assert (session.boxes["history start"], session.boxes["history duration"]) == ("0", "0.5")
+    entered(session, "history duration", "2")
+    entered(session, "force x", "4")
+    session.press("escape")
+    load = session.loads["load 1"]
+    assert load.force == (4.0, 0.0)
+    assert dict(load.history) == {"kind": "ramp", "start": 0.0, "duration": 2.0}
+
+
+def test_a_history_can_become_another() -> None:
+    session = ramped()
+    open_of(session, "B")
+    entered(session, "history", "constant")
+    session.press("escape")
+    load = session.loads["load 1"]
+    assert dict(load.history) == {"kind": "constant"}
+    session.undo()
+    assert load.history["kind"] == "ramp"
+
+
+def test_a_bad_history_is_refused() -> None:
+    session = ramped()
+    open_of(session, "B")
+    box = entered(session, "history duration", "-1")
+    assert "at least 0" in box.problem
+    session.press("escape")
+    session.press("escape")
+    assert session.loads["load 1"].history["duration"] == 0.5
+
+
 # --- what is refused ---------------------------------------------------------------------------------
 
 
@@ -434,6 +480,21 @@ def test_a_click_on_another_element_shows_that_one(session: Session) -> None:
     assert scene.form.heading.text == "particle C"
     assert session.rods["AB"].stiffness == 5.0
     assert session.model.tagged(Selected) == [session.particles["C"]]
+
+
+def test_what_was_typed_in_a_window_can_be_played_again(tmp_path: Path) -> None:
+    path = tmp_path / "typed.jsonl"
+    with path.open("w", encoding="utf-8") as file:
+        session = Session.open(triangle())
+        Recorder(session, file, triangle())
+        session.click(0.5, 0.5)
+        for key in ("return", "text 1", "tab", "text 2", "text 1", "text 5", "return", "escape"):
+            session.press(key)
+    assert session.rods["AB"].compressive_strength == 215.0
+    script = Script(path)
+    played = script.open()
+    assert script.play(played) == []
+    assert played.rods["AB"].compressive_strength == 215.0
 
 
 # --- where it is -------------------------------------------------------------------------------------

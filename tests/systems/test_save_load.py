@@ -322,6 +322,25 @@ def test_saved_work_is_not_kept_twice(session: Session) -> None:
     assert len(session.desks) == 1
 
 
+def test_a_typed_velocity_is_unsaved_work() -> None:
+    session = Session.open("collision_iii")
+    session.particles[0].velocity = (1.0, 2.0)
+    assert session.desk.unsaved
+    session.open_here("tower")
+    session.undo()
+    assert session.particles[0].velocity == (1.0, 2.0)
+
+
+def test_examples_that_were_only_run_are_not_kept(session: Session) -> None:
+    for name in ("isostatic", "tower", "pendulum"):
+        session.open_here(name)
+        session.run(steps=5)
+    assert len(session.desks) == 1
+    assert session.undo()
+    assert not session.undo()
+    assert session.time == 0.0
+
+
 def test_loading_in_the_middle_of_a_run_works(session: Session) -> None:
     session.press("space")
     session.frame(0.01)

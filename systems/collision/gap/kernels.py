@@ -12,6 +12,8 @@ from systems.collision.disc import (
     AY,
     EPOCH,
     EPSILON,
+    GX,
+    GY,
     OX,
     OY,
     PLACE_NOISE,
@@ -66,6 +68,15 @@ def speed_noise(discs, i, j, time):
 
 
 @compiled
+def pull_noise(discs, i, j):
+    """Relative acceleration (m/s²) that the round-off of the two accelerations can feign."""
+    total = 0.0
+    for disc in (i, j):
+        total += abs(discs[disc, AX]) + abs(discs[disc, AY]) + abs(discs[disc, GX]) + abs(discs[disc, GY])
+    return 2.0 * SPEED_NOISE * total
+
+
+@compiled
 def extent(discs, i, time):
     """Magnitude of the numbers that make up a disc's position: its coordinates and its path since t = 0."""
     place = abs(discs[i, OX]) + abs(discs[i, OY]) + abs(discs[i, UX]) + abs(discs[i, UY])
@@ -79,12 +90,12 @@ def place_noise(discs, i, j, time):
 
 
 @compiled
-def first_approach(dx, dy, vx, vy, ax, ay, reach, noise, horizon, overlapping):
+def first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, horizon, overlapping):
     """The least s ≥ 0 at which the distance is at most `reach` and shrinks; NEVER if there is none.
 
-    noise: relative speeds below it count as none. horizon: NEVER may be returned for later times; what is
-    returned for earlier ones does not depend on it, to the last bit. overlapping: the discs overlap from
-    the start and are left alone until they have separated.
+    noise + growth × s: speed of approach below which it counts as none. horizon: NEVER may be returned for
+    later times; what is returned for earlier ones does not depend on it, to the last bit. overlapping: the
+    discs overlap from the start and are left alone until they have separated.
     """
     if ax == 0.0 and ay == 0.0:
         return _first_on_lines(dx, dy, vx, vy, reach, noise, overlapping)
@@ -94,7 +105,9 @@ def first_approach(dx, dy, vx, vy, ax, ay, reach, noise, horizon, overlapping):
     if distance - reach > horizon * (speed + 0.5 * horizon * pull):
         return NEVER
     last = (speed + math.sqrt(speed * speed + 2.0 * pull * (distance + reach))) / pull
-    return _first_on_parabolas(dx, dy, vx, vy, ax, ay, reach, noise * reach, horizon, last, overlapping)
+    return _first_on_parabolas(
+        dx, dy, vx, vy, ax, ay, reach, noise * reach, growth * reach, horizon, last, overlapping
+    )
 
 
 @compiled
@@ -114,10 +127,10 @@ def _first_on_lines(dx, dy, vx, vy, reach, noise, overlapping):
 
 
 @compiled
-def _first_on_parabolas(dx, dy, vx, vy, ax, ay, reach, noise, horizon, last, overlapping):
+def _first_on_parabolas(dx, dy, vx, vy, ax, ay, reach, noise, growth, horizon, last, overlapping):
     """Root of the quartic: between the roots of f'' (a quadratic) f' is monotone, between those of f' f is.
 
-    last: the discs only move apart after it. noise: of f'.
+    last: the discs only move apart after it. noise, growth: of f'.
     """
     bend, other = _inflections(dx, dy, vx, vy, ax, ay)
     start = 0.0
@@ -135,8 +148,9 @@ def _first_on_parabolas(dx, dy, vx, vy, ax, ay, reach, noise, horizon, last, ove
             low, high = start, turn
         else:  # approaching after it, if at all
             low, high = turn, end
-        if min(slope_start, slope_end) < -noise and low < high:
-            s = _touch(dx, dy, vx, vy, ax, ay, reach, low, high, overlapping)
+        approaches = slope_start < -noise - growth * start or slope_end < -noise - growth * end
+        if approaches and low < high:
+            s = _touch(dx, dy, vx, vy, ax, ay, reach, noise, growth, low, high, overlapping)
             if s < NEVER:
                 return s
         start = end
@@ -205,10 +219,28 @@ def _turn(dx, dy, vx, vy, ax, ay, low, high, falling):
 
 
 @compiled
-def _touch(dx, dy, vx, vy, ax, ay, reach, low, high, overlapping):
-    """Root of f between low and high, where it falls; `low` itself if the discs overlap there already."""
+def _fall(dx, dy, vx, vy, ax, ay, noise, growth, low, high):
+    """The least s from low to high at which f' is below the noise, by bisection; NEVER if it is nowhere."""
+    if _slope(dx, dy, vx, vy, ax, ay, low) < -noise - growth * low:
+        return low
+    if not _slope(dx, dy, vx, vy, ax, ay, high) < -noise - growth * high:
+        return NEVER
+    for _ in range(MOST_ITERATIONS):
+        s = 0.5 * (low + high)
+        if s == low or s == high:
+            break
+        if _slope(dx, dy, vx, vy, ax, ay, s) < -noise - growth * s:
+            high = s
+        else:
+            low = s
+    return high
+
+
+@compiled
+def _touch(dx, dy, vx, vy, ax, ay, reach, noise, growth, low, high, overlapping):
+    """Root of f between low and high, where it falls; if it is negative at `low`, when it falls noticeably."""
     if _half_gap(dx, dy, vx, vy, ax, ay, reach, low) <= 0.0:
-        return NEVER if overlapping else low
+        return NEVER if overlapping else _fall(dx, dy, vx, vy, ax, ay, noise, growth, low, high)
     if _half_gap(dx, dy, vx, vy, ax, ay, reach, high) > 0.0:
         return NEVER
     s = low

@@ -28,11 +28,8 @@ from systems.collision.state import (
     LAYERS,
     LEVEL,
     NOW,
-    OPENED,
     QUEUED,
     RENEW,
-    STRIKES,
-    STRIKES_BEFORE,
     WINDOW,
     Reason,
 )
@@ -121,10 +118,11 @@ def open_window(
 ):
     """Choose a window that begins now, box all discs and queue all meetings in it. Returns a Reason."""
     counts[RENEW] = 1
-    _choose_length(discs, numbers, counts)
+    _choose_length(discs, numbers)
     while True:
-        area = _area(discs, numbers, numbers[WINDOW])
-        crowd = NEVER if area <= 2.0 * _area(discs, numbers, 0.0) else CROWD * discs.shape[0]
+        area, _ = _survey(discs, numbers, numbers[WINDOW])
+        resting, _ = _survey(discs, numbers, 0.0)
+        crowd = NEVER if area <= 2.0 * resting else CROWD * discs.shape[0]
         reason, pairs = _fill(
             crowd, discs, changes, boxes, layer, levels, heads, entries, first, partners, bonds, times, meetings,
             found, numbers, counts,
@@ -135,8 +133,6 @@ def open_window(
             break
         numbers[WINDOW] = max(0.25 * numbers[WINDOW], SHORTEST_WINDOW)
     numbers[CROWDING] = max(pairs, 0.05 * discs.shape[0]) / area
-    numbers[OPENED] = numbers[NOW]
-    counts[STRIKES_BEFORE] = counts[STRIKES]
     counts[RENEW] = 0
     return DONE
 
@@ -178,35 +174,42 @@ def _fill(
 
 
 @compiled
-def _area(discs, numbers, window):
-    """Sum of the areas of all boxes in a window of some length; none more than would hold half of all discs."""
-    most = 0.5 * discs.shape[0] / numbers[CROWDING] if numbers[CROWDING] > 0.0 else NEVER
-    total = 0.0
+def _survey(discs, numbers, window):
+    """Sums over all discs: the areas of their boxes (m²) for a length of the window, and radius × speed (m²/s).
+
+    No box counts for more than would hold half of all discs.
+    """
+    most = 0.5 * discs.shape[0] / numbers[CROWDING]
+    area, sweep = 0.0, 0.0
     for i in range(discs.shape[0]):
         s = numbers[NOW] - discs[i, EPOCH]
-        vx, vy = abs(discs[i, VX] + s * discs[i, AX]), abs(discs[i, VY] + s * discs[i, AY])
+        speed = max(abs(discs[i, VX] + s * discs[i, AX]), abs(discs[i, VY] + s * discs[i, AY]))
         pull = max(abs(discs[i, AX]), abs(discs[i, AY]))
-        side = 2.0 * discs[i, RADIUS] + window * (max(vx, vy) + 0.5 * window * pull)
-        total += min(side * side, most)
-    return total
+        side = 2.0 * discs[i, RADIUS] + window * (speed + 0.5 * window * pull)
+        area += min(side * side, most)
+        sweep += min(discs[i, RADIUS] * speed, most / window)
+    return area, sweep
 
 
 @compiled
-def _cost(discs, numbers, rate, window):
-    """Cost per second: boxes and pairs once a window, and those of two discs for every strike."""
-    pairs = numbers[CROWDING] * _area(discs, numbers, window)
+def _cost(discs, numbers, window):
+    """Cost per second: all boxes and pairs once a window, and those of two discs for every impact.
+
+    With 2 × crowding discs per area, crowding × area pairs of boxes overlap and about crowding × sweep pairs
+    of discs meet per second.
+    """
+    area, sweep = _survey(discs, numbers, window)
+    pairs = numbers[CROWDING] * area
     count = discs.shape[0]
-    return (BOX_COST * count + pairs) / window + rate * 2.0 * (BOX_COST + 2.0 * pairs / count)
+    return (BOX_COST * count + pairs) / window + 2.0 * numbers[CROWDING] * sweep * (BOX_COST + 2.0 * pairs / count)
 
 
 @compiled
-def _choose_length(discs, numbers, counts):
-    """Adapt the length of the window to speeds, crowding and strikes per second; seek it the first time."""
+def _choose_length(discs, numbers):
+    """Adapt the length of the window to speeds and crowding; seek it the first time."""
     if discs.shape[0] == 0:
         numbers[WINDOW] = LONGEST_WINDOW
         return
-    passed = numbers[NOW] - numbers[OPENED]
-    rate = (counts[STRIKES] - counts[STRIKES_BEFORE]) / passed if passed > 0.0 else 0.0
     steps = 1
     if numbers[WINDOW] == 0.0:
         numbers[WINDOW] = 1.0
@@ -214,10 +217,10 @@ def _choose_length(discs, numbers, counts):
         steps = 300
     for _ in range(steps):
         window = numbers[WINDOW]
-        cost = _cost(discs, numbers, rate, window)
-        if _cost(discs, numbers, rate, 0.5 * window) < cost:
+        cost = _cost(discs, numbers, window)
+        if _cost(discs, numbers, 0.5 * window) < cost:
             numbers[WINDOW] = max(0.5 * window, SHORTEST_WINDOW)
-        elif _cost(discs, numbers, rate, 2.0 * window) < cost:
+        elif _cost(discs, numbers, 2.0 * window) < cost:
             numbers[WINDOW] = min(2.0 * window, LONGEST_WINDOW)
         if numbers[WINDOW] == window:
             return

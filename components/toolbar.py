@@ -1,0 +1,94 @@
+"""Toolbar: buttons at the left edge of the window, and where they are: the same for drawing and for clicking."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from components.camera import Viewport
+from components.field import Vector
+
+BUTTON = 30.0, 26.0  # points, width and height
+EDGE = 4.0  # points around all buttons
+GAP = 8.0  # points between groups
+LEAST_WIDTH = 420.0  # points: a window less wide does without
+MOST_COLUMNS = 2
+
+
+@dataclass(frozen=True)
+class Tool:
+    """What a button offers.
+
+    action: its name, and that of its icon. title, key: what it does, and what can be pressed instead.
+    pressed: it is in use, or what it shows is on. enabled: it would do something now.
+    """
+
+    action: str
+    title: str
+    key: str
+    icon: str
+    pressed: bool = False
+    enabled: bool = True
+
+
+@dataclass(frozen=True)
+class Button:
+    """A tool and the rectangle of its button in pixels."""
+
+    tool: Tool
+    left: float
+    top: float
+    width: float
+    height: float
+
+    def contains(self, pixel: Vector) -> bool:
+        """True if the pixel lies inside."""
+        return 0.0 <= pixel[0] - self.left < self.width and 0.0 <= pixel[1] - self.top < self.height
+
+
+@dataclass(frozen=True)
+class Toolbar:
+    """Tools in groups, from the top; the last group stands at the bottom."""
+
+    groups: tuple[tuple[Tool, ...], ...] = ()
+
+    def strip(self, window: Viewport, unit: float) -> Viewport:
+        """The part of a window that it takes, with so many pixels per point; of no width where it is hidden.
+
+        It has a second column where one is too high, and is hidden where two are.
+        """
+        columns = self._columns(window, unit)
+        width = round((columns * BUTTON[0] + 2 * EDGE) * unit) if columns else 0
+        return Viewport(window.left, window.top, width, window.height)
+
+    def buttons(self, window: Viewport, unit: float) -> list[Button]:
+        """Where the buttons are; none where it is hidden."""
+        columns = self._columns(window, unit)
+        if not columns:
+            return []
+        (width, height), buttons = BUTTON, []
+        top = EDGE
+        for group in self.groups:
+            if group is self.groups[-1]:
+                top = window.height / unit - EDGE - _rows(group, columns) * height
+            for index, tool in enumerate(group):
+                row, column = divmod(index, columns)
+                place = EDGE + column * width, top + row * height, width, height
+                left, upper, wide, high = (round(points * unit) for points in place)
+                buttons.append(Button(tool, window.left + left, window.top + upper, wide, high))
+            top += _rows(group, columns) * height + GAP
+        return buttons
+
+    def _columns(self, window: Viewport, unit: float) -> int:
+        if not self.groups or window.width < LEAST_WIDTH * unit:
+            return 0
+        fitting = (n for n in range(1, MOST_COLUMNS + 1) if self._height(n) * unit <= window.height)
+        return next(fitting, 0)
+
+    def _height(self, columns: int) -> float:
+        """Points that it takes in that many columns."""
+        rows = sum(_rows(group, columns) for group in self.groups)
+        return rows * BUTTON[1] + (len(self.groups) - 1) * GAP + 2 * EDGE
+
+
+def _rows(group: tuple[Tool, ...], columns: int) -> int:
+    return -(-len(group) // columns)

@@ -1,0 +1,51 @@
+"""Preferences: what a person chose for every session, kept in a settings file of their own."""
+
+from __future__ import annotations
+
+import json
+import os
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from platformdirs import user_config_path
+
+from systems.render.theme import theme_names
+
+CONFIG_VARIABLE = "PINJOINT_CONFIG"  # names another folder than the system's own
+DEFAULT_THEME = "light"
+
+
+def settings_path() -> Path:
+    """The settings file; it need not exist yet."""
+    chosen = os.environ.get(CONFIG_VARIABLE)
+    folder = Path(chosen) if chosen else user_config_path("pinjoint", appauthor=False)
+    return folder / "settings.json"
+
+
+def preferred_theme() -> str:
+    """The name of the theme that was chosen last; the default where that cannot be read or is gone."""
+    name = _read().get("theme")
+    return name if isinstance(name, str) and name in theme_names() else DEFAULT_THEME
+
+
+def remember_theme(name: str) -> None:
+    """Keep the choice of a theme; all other entries stay. Where nothing can be written, it is not kept."""
+    path = settings_path()
+    unfinished = path.with_suffix(".tmp")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        unfinished.write_text(json.dumps({**_read(), "theme": name}, indent=1) + "\n", encoding="utf-8")
+        os.replace(unfinished, path)
+    except OSError:
+        with suppress(OSError):
+            unfinished.unlink()
+
+
+def _read() -> dict[str, Any]:
+    """What the file says; nothing if it is damaged."""
+    try:
+        entries = json.loads(settings_path().read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return entries if isinstance(entries, dict) else {}

@@ -1,0 +1,1 @@
+"""Discs that stay in contact."""

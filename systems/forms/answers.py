@@ -1,0 +1,108 @@
+"""Answers: what was typed into the boxes of properties, checked and put back into the elements."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from decimal import Decimal, DecimalException
+from typing import Any
+
+from components.box import Box
+from components.field import Field, FieldError
+from components.form import Form
+from components.load import HISTORIES
+from components.model import Model
+from components.world import Handle
+from systems.forms.properties import KIND
+from systems.forms.typing import YES_NO
+
+
+def problem(model: Model, box: Box) -> str:
+    """Why the text of a box is refused, or ""; in the units on the screen."""
+    if not box.changed:
+        return ""
+    field, part = _target(model, box)
+    try:
+        value = _value(field, part, box.text)
+    except DecimalException:
+        return "must be a number"
+    if isinstance(value, float):
+        if not math.isfinite(value):
+            return "must be a finite number"
+        limit = field.limit_broken_by(value, shown=True)
+        if limit:
+            return f"must be {limit}"
+    if field.name == "name":
+        return _name_problem(model, box)
+    if part and field.shape:
+        return ""
+    try:
+        field.check(_with_part(box.elements[0], field, part, value), box.section)
+    except FieldError as error:
+        return str(error).removeprefix(f"{box.section}: ").removesuffix(".")
+    return ""
+
+
+def _name_problem(model: Model, box: Box) -> str:
+    element, table = box.elements[0], model.tables[box.elements[0].table]
+    if not box.text.strip():
+        return "must not be empty"
+    if box.text in table and table[box.text] is not element:
+        return f"there is a {element.noun} '{box.text}' already"
+    return ""
+
+
+def apply(form: Form, model: Model) -> list[str]:
+    """Put all changed boxes into the model, as one step; returns the sentences about those refused."""
+    refused = []
+    with model.transaction(f"properties of {form.heading.text}"):
+        for box in form.boxes:
+            elements = [handle for handle in box.elements if handle.exists] if box.changed else []
+            if not elements:
+                continue
+            if box.problem:
+                refused.append(f"{box.section}, {box.title}: {box.problem}; the old value stays.")
+                continue
+            try:
+                _assign(model, box, elements)
+            except FieldError as error:
+                refused.append(str(error))
+    return refused
+
+
+def _assign(model: Model, box: Box, elements: Sequence[Handle]) -> None:
+    field, part = _target(model, box)
+    value = _value(field, part, box.text)
+    values: Any = [_with_part(elements[0], field, part, value)] * len(elements)
+    if field.shape:
+        rows = model.row_of_entity[[element.entity for element in elements]]
+        values = model.tables[elements[0].table].column(field.name)[rows]
+        values[:, "xy".index(part)] = value
+    model.assign(elements, field.name, values)
+
+
+def _with_part(element: Handle, field: Field[Any], part: str, value: Any) -> Any:
+    """The value of a Field with one part of it changed: of a history, its kind or one of its numbers."""
+    if field.dtype is not object:
+        return value
+    old = getattr(element, field.name)
+    if part != KIND:
+        return {**old, part: value}
+    return {KIND: value} | {name: old[name] for name in HISTORIES[value].parameters if name in old}
+
+
+def _target(model: Model, box: Box) -> tuple[Field[Any], str]:
+    table, name, *part = box.target.split(".")
+    return model.tables[table].fields[name], "".join(part)
+
+
+def _value(field: Field[Any], part: str, text: str) -> Any:
+    """What a text means, in the units inside. Raises DecimalException if it should be a number."""
+    if field.dtype is bool:
+        return text == YES_NO[1]
+    if field.dtype is str or part == KIND:
+        return text
+    if field.nullable and text == field.absent:
+        return None
+    number = Decimal(text) / Decimal(repr(field.shown[1]))
+    return int(number) if field.dtype is int and number == number.to_integral_value() else float(number)

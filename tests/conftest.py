@@ -1,0 +1,34 @@
+"""What several test folders share."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+ROOT = Path(__file__).resolve().parents[1]
+
+# The first example of a plan may compile for seconds, so no example has a deadline.
+settings.register_profile("pinjoint", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("pinjoint")
+
+
+@pytest.fixture
+def fresh_process() -> Callable[..., str]:
+    """Run Python code in a process of its own; returns what it printed. `environment` adds variables."""
+
+    def run(code: str, environment: Mapping[str, str] | None = None) -> str:
+        finished = subprocess.run(
+            [sys.executable, "-c", code],
+            env=os.environ | {"PYTHONPATH": str(ROOT)} | dict(environment or {}),
+            capture_output=True,
+            text=True,
+            timeout=120,
+        )
+        assert finished.returncode == 0, finished.stderr
+        return finished.stdout
+
+    return run

@@ -1,0 +1,23 @@
+"""Write the golden pictures anew: python -m tests.golden.regenerate [NAME…]; look at each before keeping it."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+import pygame
+
+from tests.golden.scenes import FOLDER, SCENES, drawn
+
+
+def main() -> None:
+    """Write those that are named, or all."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name in sys.argv[1:] or SCENES:
+            pygame.image.save(drawn(name, Path(folder) / "nowhere"), FOLDER / f"{name}.png")
+            print(f"{name}.png")
+
+
+if __name__ == "__main__":
+    main()

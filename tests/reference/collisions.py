@@ -1,0 +1,178 @@
+"""Colliding discs, every pair looked at after every impact, in extended precision: slow, obvious, exact.
+
+Compiled kernels are compared with this module. Discs move along x + v t + a t²/2 between impacts. Contact is
+when the distance of two centres is the sum of the radii while it shrinks; the impulse acts along the line of
+centres. Simultaneous impacts that share a disc are not meant to be computed with it.
+
+Units: m, kg, s, N·s, J. Arrays have one row per disc (x, y).
+"""
+
+from dataclasses import dataclass, replace
+from itertools import combinations, pairwise
+
+import numpy as np
+
+Real = np.longdouble
+NEVER = Real(np.inf)
+
+
+@dataclass(frozen=True)
+class Impact:
+    """What happened at one instant to two discs."""
+
+    time: float
+    pair: tuple[int, int]
+    impulse: float
+    loss: float
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Discs at one time. inverse_mass: of each direction, shape (n, 2), 0 where a disc is held."""
+
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    radius: np.ndarray
+    inverse_mass: np.ndarray
+    restitution: float = 1.0
+    joined: tuple[tuple[int, int], ...] = ()
+
+    def precise(self) -> "Scene":
+        """Return the same scene in extended precision, at rest in held directions."""
+        held = np.asarray(self.inverse_mass) == 0
+        return replace(
+            self,
+            position=np.array(self.position, Real),
+            velocity=np.where(held, Real(0), np.array(self.velocity, Real)),
+            acceleration=np.where(held, Real(0), np.array(self.acceleration, Real)),
+            radius=np.array(self.radius, Real),
+            inverse_mass=np.array(self.inverse_mass, Real),
+        )
+
+    def after(self, duration: Real) -> "Scene":
+        """Return the discs after a flight without impacts."""
+        flight = self.velocity * duration + self.acceleration * duration**2 / 2
+        return replace(
+            self, position=self.position + flight, velocity=self.velocity + self.acceleration * duration
+        )
+
+    def kinetic_energy(self) -> float:
+        """Return Σ m v²/2 over the free directions."""
+        free = self.inverse_mass > 0
+        return float((self.velocity[free] ** 2 / self.inverse_mass[free]).sum() / 2)
+
+
+def run(scene: Scene, duration: float) -> tuple[Scene, list[Impact]]:
+    """Return the scene after a time, and the impacts on the way."""
+    now, end, impacts = Real(0), Real(duration), []
+    scene = scene.precise()
+    while True:
+        waiting, pair = min(
+            (time_to_impact(scene, i, j, end - now), (i, j)) for i, j in _pairs(scene)
+        )
+        if now + waiting > end:
+            return scene.after(end - now), impacts
+        now += waiting
+        scene, impulse, loss = strike(scene.after(waiting), *pair)
+        impacts.append(Impact(float(now), pair, float(impulse), float(loss)))
+
+
+def time_to_impact(scene: Scene, i: int, j: int, horizon: Real) -> Real:
+    """Return the least t in [0, horizon] at which f(t) = |d + v t + a t²/2|² − (r₁ + r₂)² ≤ 0 falls; else NEVER."""
+    d, v, a = (
+        column[j] - column[i] for column in (scene.position, scene.velocity, scene.acceleration)
+    )
+    reach = scene.radius[i] + scene.radius[j]
+    gap = [a @ a / 4, v @ a, v @ v + d @ a, 2 * d @ v, d @ d - reach**2]
+    if gap[-1] <= 0 and gap[-2] < 0:
+        return Real(0)
+    for low, high in pairwise([Real(0), *real_roots(derivative(gap), Real(0), horizon), horizon]):
+        if value(gap, low) > 0 >= value(gap, high):
+            return bisect(gap, low, high)
+    return NEVER
+
+
+def strike(scene: Scene, i: int, j: int) -> tuple[Scene, Real, Real]:
+    """Return the scene after the impact of two touching discs, the impulse, and the energy lost.
+
+    Impulse −(1 + e) (n·Δv) / (n·(W₁ + W₂) n); each disc changes along its free directions only.
+    """
+    line = scene.position[j] - scene.position[i]
+    normal = line / np.sqrt(line @ line)
+    speed = normal @ (scene.velocity[j] - scene.velocity[i])
+    compliance = normal @ ((scene.inverse_mass[i] + scene.inverse_mass[j]) * normal)
+    impulse = -(1 + Real(scene.restitution)) * speed / compliance
+    velocity = scene.velocity.copy()
+    velocity[i] -= impulse * scene.inverse_mass[i] * normal
+    velocity[j] += impulse * scene.inverse_mass[j] * normal
+    loss = (1 - Real(scene.restitution) ** 2) * speed**2 / compliance / 2
+    return replace(scene, velocity=velocity), impulse, loss
+
+
+def amplification(scene: Scene, duration: float, size: float = 1e-9) -> float:
+    """Return by how much a small error at the start has grown at the end, at least 1."""
+    direction = np.random.default_rng(0).normal(size=(2, len(scene.position), 2))
+    direction *= scene.inverse_mass > 0
+    direction /= np.abs(direction).max()
+    moved = replace(
+        scene,
+        position=scene.position + size * direction[0],
+        velocity=scene.velocity + size * direction[1],
+    )
+    there, _ = run(scene, duration)
+    beside, _ = run(moved, duration)
+    growth = max(
+        np.abs(there.position - beside.position).max(), np.abs(there.velocity - beside.velocity).max()
+    )
+    return max(float(growth) / size, 1.0)
+
+
+# Polynomials, highest power first
+
+
+def value(polynomial: list, t: Real) -> Real:
+    """Return the polynomial at t."""
+    total = Real(0)
+    for coefficient in polynomial:
+        total = total * t + coefficient
+    return total
+
+
+def derivative(polynomial: list) -> list:
+    """Return the coefficients of the derivative."""
+    degree = len(polynomial) - 1
+    return [coefficient * (degree - k) for k, coefficient in enumerate(polynomial[:-1])]
+
+
+def real_roots(polynomial: list, low: Real, high: Real) -> list:
+    """Return where the polynomial changes sign between low and high: between the roots of its derivative once each."""
+    if len(polynomial) < 2:
+        return []
+    turns = [low, *real_roots(derivative(polynomial), low, high), high]
+    return [
+        bisect(polynomial, a, b)
+        for a, b in pairwise(turns)
+        if (value(polynomial, a) > 0) != (value(polynomial, b) > 0)
+    ]
+
+
+def bisect(polynomial: list, low: Real, high: Real) -> Real:
+    """Return where the polynomial changes sign between low and high, to the last bit."""
+    sign = value(polynomial, low) > 0
+    while low < (middle := (low + high) / 2) < high:
+        if (value(polynomial, middle) > 0) == sign:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+def _pairs(scene: Scene) -> list[tuple[int, int]]:
+    movable = (scene.inverse_mass > 0).any(axis=1)
+    joined = {frozenset(pair) for pair in scene.joined}
+    return [
+        (i, j)
+        for i, j in combinations(range(len(scene.radius)), 2)
+        if (movable[i] or movable[j]) and frozenset((i, j)) not in joined
+    ]

@@ -1,0 +1,199 @@
+"""The toolbar: what it offers, where, and that a click does what the key does."""
+
+from __future__ import annotations
+
+import pytest
+
+from components.camera import Viewport
+from components.toolbar import Button, Tool
+from components.view import drawn_positions
+from game import Session
+from game.actions import ACTIONS
+from systems.input.bindings import BINDINGS, TOOLBAR
+from systems.render.icons import ICONS
+from systems.render.marks import Stamps
+from systems.render.picture import compose
+from systems.render.theme import load_theme
+
+SIZES = [(1000, 720), (640, 480), (600, 600), (3840, 2160)]
+
+
+def opened(source: object = "isostatic", size: tuple[int, int] = (1000, 720), ratio: float = 1.0) -> Session:
+    session = Session.open(source)  # type: ignore[arg-type]
+    session.view.camera.viewport = Viewport(0, 0, *size)
+    session.view.pixel_ratio = ratio
+    session.view.fit(session.model)
+    return session
+
+
+EMPTY = {"format": "pinjoint model", "version": 1}
+
+
+def buttons(session: Session) -> dict[str, Button]:
+    view = session.view
+    found = view.toolbar.buttons(view.camera.viewport, view.pixel_ratio)
+    return {button.tool.action: button for button in found}
+
+
+def push(session: Session, action: str, key: str = "click") -> None:
+    button = buttons(session)[action]
+    session.press(key, (button.left + button.width / 2, button.top + button.height / 2))
+
+
+def tool(session: Session, action: str) -> Tool:
+    return buttons(session)[action].tool
+
+
+def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
+    offered = [action for group in TOOLBAR for action in group]
+    assert len(offered) == len(set(offered))
+    for action in offered:
+        assert action in ACTIONS
+        assert action in ICONS
+        assert any(binding.action == action and binding.title for binding in BINDINGS)
+    assert set(ICONS) == {*offered, "pause"}
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("ratio", [1.0, 2.0])
+def test_buttons_lie_in_the_strip_without_overlapping(size: tuple[int, int], ratio: float) -> None:
+    pixels = round(size[0] * ratio), round(size[1] * ratio)
+    session = opened(size=pixels, ratio=ratio)
+    view, found = session.view, list(buttons(session).values())
+    assert len(found) == sum(map(len, view.toolbar.groups)) > 20
+    for button in found:
+        corner = button.left + button.width - 1, button.top + button.height - 1
+        assert view.strip.contains((button.left, button.top))
+        assert view.strip.contains(corner)
+        assert [other for other in found if other.contains(corner)] == [button]
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_fitted_structure_is_not_covered(size: tuple[int, int]) -> None:
+    session = opened("hyperstatic", size)
+    view = session.view
+    pixels = view.camera.to_pixels(drawn_positions(session.model))
+    left, right = pixels[:, 0].min() - view.canvas.left, size[0] - pixels[:, 0].max()
+    assert view.strip.width > 0
+    assert left > 40
+    assert left == pytest.approx(right)
+
+
+def test_tab_and_small_windows_hide_it() -> None:
+    session = opened()
+    session.press("tab")
+    assert session.view.strip.width == 0
+    session.press("click", (19.0, 19.0))  # where the first button was
+    assert session.scene == "pause"
+    session.press("tab")
+    assert session.view.strip.width > 0
+    assert opened(size=(320, 240)).view.strip.width == 0
+    assert opened(size=(1000, 300)).view.strip.width == 0
+
+
+@pytest.mark.parametrize("key", ["click", "ctrl+click", "drag"])
+def test_a_click_on_a_button_acts_and_selects_nothing(key: str) -> None:
+    session = opened()
+    session.select(session.particles["A"])
+    push(session, "toggle run", key)
+    assert session.scene == "simulation"
+    assert session.selected == [session.particles["A"]]
+    assert (tool(session, "toggle run").icon, tool(session, "toggle run").pressed) == ("pause", True)
+    push(session, "toggle run", key)
+    assert session.scene == "pause"
+
+
+def test_what_lies_under_the_strip_cannot_be_hit() -> None:
+    session = opened()
+    x, y = session.view.camera.to_pixels(session.particles["A"].position)
+    session.view.camera.pan((19.0 - x, 350.0 - y))
+    session.press("click", (19.0, 350.0))
+    assert session.selected == []
+
+
+def test_undo_and_redo_are_offered_only_where_there_is_something() -> None:
+    session = opened(EMPTY)
+    assert not tool(session, "undo").enabled
+    session.press("p", (500.0, 300.0))
+    assert tool(session, "undo").enabled
+    push(session, "redo")
+    assert session.model.particles.count == 1
+    push(session, "undo")
+    assert session.model.particles.count == 0
+    assert tool(session, "redo").enabled
+    push(session, "redo")
+    assert session.model.particles.count == 1
+
+
+def test_a_supported_loaded_rod_by_toolbar_and_clicks_alone() -> None:
+    session = opened(EMPTY)
+    push(session, "place")
+    assert tool(session, "place").pressed
+    session.click(0.0, 0.0)
+    session.click(1.0, 0.0)
+    push(session, "place")
+    assert not tool(session, "place").pressed
+    push(session, "rod")
+    session.click(0.0, 0.0)
+    session.click(1.0, 0.0)
+    push(session, "support")
+    session.click(0.0, 0.0)
+    push(session, "force")
+    session.drag((1.0, 0.0), (1.5, 0.0))
+    first, second = session.particles
+    assert session.model.rods.count == 1
+    assert first.fixed == (True, True)
+    assert second.force[0] > 0.0
+    assert second.force[1] == 0.0
+
+
+def test_keys_over_the_toolbar_take_a_tool_up_instead_of_drawing_below_it() -> None:
+    session = opened(EMPTY)
+    session.press("p", (19.0, 350.0))
+    assert session.model.particles.count == 0
+    assert session.view.tool == "place"
+
+
+def test_steps_by_the_toolbar_ignore_the_selection() -> None:
+    session = opened()
+    session.select(session.particles["B"])
+    push(session, "step")
+    assert session.model.clock.steps == 1
+    push(session, "step back")
+    assert session.model.clock.steps == 0
+    assert session.particles["B"].position == (1.0, 1.0)
+
+
+def test_the_force_method_has_its_own_tools_and_panels_none() -> None:
+    session = opened("hyperstatic")
+    push(session, "force method")
+    assert session.scene == "force method"
+    assert "next part" in buttons(session)
+    assert "undo" not in buttons(session)
+    push(session, "back")
+    assert session.scene == "pause"
+    push(session, "properties")
+    assert session.scene == "properties"
+    push(session, "toggle run")  # there is no toolbar to click now
+    assert session.scene == "properties"
+    assert not any(shown is session.view.toolbar for shown, _ in session.stages)
+
+
+def test_the_tip_names_the_action_and_its_key() -> None:
+    session = opened()
+    session.update_view()
+    button = buttons(session)["undo"]
+    session.view.pointer = button.left + 5.0, button.top + 5.0
+    toolbar, view = session.stages[-1]
+    assert compose(toolbar, view, load_theme()).texts == ["Undo", "Ctrl+Z"]
+
+
+def test_pressed_and_unavailable_tools_look_different() -> None:
+    session = opened()
+    session.press("i")
+    toolbar, view = session.stages[-1]
+    theme = load_theme()
+    inks = {mark.symbol: mark.ink for mark in compose(toolbar, view, theme).marks if isinstance(mark, Stamps)}
+    assert inks["toggle diagrams"] == theme.hover
+    assert inks["place"] == theme.text
+    assert inks["redo"][3] < 128
