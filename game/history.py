@@ -9,7 +9,9 @@ from dataclasses import dataclass, replace
 from components.commands import Assign, Command, Group
 from components.field import Role
 from components.model import Model
+from components.snapshot import Snapshot
 from game.moment import Moment
+from game.shelf import Shelf, Shelved
 from game.simulation import Simulation
 
 
@@ -30,19 +32,32 @@ class Run:
     """Time that passed; returning to `before` takes it back (or, in the redo log, repeats it).
 
     single: it was stepped through one by one; such runs in a row are one entry.
+    shelved: where the state of `before` is if it was put aside.
     """
 
     before: Moment
     single: bool = False
+    shelved: Shelved | None = None
 
 
 Entry = Edit | Run
+
+_NOTHING = Snapshot({}, {})
+MEMORY = 256 * 2**20  # bytes that the states before runs may take; older ones are put on a shelf
 
 
 class History:
     """The log of one model, from when it was opened. `on_edit` is called after every entry but runs."""
 
-    def __init__(self, model: Model, simulation: Simulation, on_edit: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        model: Model,
+        simulation: Simulation,
+        on_edit: Callable[[], None],
+        memory: int = MEMORY,
+    ) -> None:
+        self._memory = memory
+        self._shelf = Shelf()
         self._model = model
         self._simulation = simulation
         self._on_edit = on_edit
@@ -106,7 +121,9 @@ class History:
     def end_run(self) -> None:
         """Time stops; what passed since begin_run is one entry, if anything did."""
         run, self._run = self._run, None
-        if run is not None and not self._add_run(run) and self._model.newest(Role.STATE) != self._run_revision:
+        if run is None or self._add_run(run) or self._simulation.halted:
+            return  # also if it diverged at once: that it did is not forgotten
+        if self._model.newest(Role.STATE) != self._run_revision:
             self._simulation.resume(run.before)  # it only got ready to run
 
     def _add_run(self, run: Run) -> bool:
@@ -115,10 +132,28 @@ class History:
             return False
         last = self._done[-1] if self._done else None
         if run.single and isinstance(last, Run) and last.single:
-            run = replace(run, before=last.before)
+            run = last
             self._done.pop()
         self._add(run)
+        self._put_aside(self._done)
         return True
+
+    def _put_aside(self, entries: list[Entry]) -> None:
+        """Keep in memory only as many states as there is room for, the newest."""
+        room = self._memory
+        for index in range(len(entries) - 1, -1, -1):
+            entry = entries[index]
+            if not isinstance(entry, Run):
+                continue
+            if entry.shelved is not None:
+                return  # and so are all older ones
+            room -= entry.before.size
+            if room < 0:
+                try:
+                    shelved = self._shelf.put(entry.before.state)
+                except OSError:  # no room on the disk either
+                    return
+                entries[index] = Run(replace(entry.before, state=_NOTHING), entry.single, shelved)
 
     # --- going through the log -------------------------------------------------------------------------
 
@@ -147,8 +182,12 @@ class History:
             return ""
         entry = source.pop()
         if isinstance(entry, Run):
-            target.append(replace(entry, before=self._simulation.moment()))
-            self._simulation.resume(entry.before)
+            before = entry.before
+            if entry.shelved is not None:
+                before = replace(before, state=self._shelf.take(entry.shelved))
+            target.append(Run(self._simulation.moment(), entry.single))
+            self._put_aside(target)
+            self._simulation.resume(before)
             title = "run"
         else:
             now = self._simulation.moment("clock")

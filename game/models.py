@@ -62,8 +62,7 @@ def _missing(source: str | Path) -> ModelError:
     nearest = difflib.get_close_matches(Path(source).stem, bundled(), n=1, cutoff=0.6)
     hint = f"; did you mean '{nearest[0]}'?" if nearest else "."
     return ModelError(
-        f"There is no file and no bundled model '{source}'{hint}"
-        " pinjoint --help lists the bundled models."
+        f"There is no file and no bundled model '{source}'{hint} pinjoint --help lists the bundled models."
     )
 
 

@@ -15,7 +15,7 @@ class Moment:
     state: all of it, or of the clock only where nothing else can have changed since.
     armed: the energy account and the step size fit the document.
     before_edit: measures of the state before edits that are not accounted for yet.
-    stable_step, warning: of the simulation then.
+    stable_step, warning: of the simulation then. size: bytes that the state takes.
     """
 
     state: Snapshot
@@ -24,13 +24,9 @@ class Moment:
     before_edit: Column | None
     stable_step: float
     warning: str
+    size: int
 
     @property
     def whole(self) -> bool:
         """True if it keeps all of the state."""
         return "particles" in self.state.entities
-
-    @property
-    def size(self) -> int:
-        """Bytes that it keeps."""
-        return sum(column.nbytes for column in self.state.columns.values())

@@ -159,7 +159,7 @@ class Program:
 
     def conserved_energy(self) -> float:
         """What the integrator conserves, less the work done so far (J), in the state last observed."""
-        clock, dt = self.model.clock, self.model.clock.step_size
+        dt = self.model.clock.step_size
         return float(self._module.conserved(self.measures, self._accounts(), dt, self._module.SHADOW))
 
     def _accounts(self) -> Column:

@@ -202,7 +202,7 @@ def _result_type(b: Bound, model: Model) -> Any:
             field = model.tables[table].fields[column]
             storage, shape = field.storage, field.shape
         scalar = from_dtype(storage)
-        return types.UniTuple(scalar, 2) if shape else scalar
+        return types.UniTuple(scalar, 2) if shape else scalar  # type: ignore[no-untyped-call]
 
     of_load = (types.float64, types.Array(types.float64, 1, "C"), types.uint32)
     signature = of_load if b.each == "loads" else tuple(map(type_of, b.parameters))

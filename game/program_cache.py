@@ -92,7 +92,8 @@ def compile_module(source: str, kernels: Mapping[str, Callable[..., Any]]) -> Mo
         path = _cache_folder() / f"{name}.py"
         _write_once(path, source)
         spec = importlib.util.spec_from_file_location(name, path)
-        assert spec is not None and spec.loader is not None
+        assert spec is not None
+        assert spec.loader is not None
         module = importlib.util.module_from_spec(spec)
         vars(module).update(kernels)
         sys.modules[name] = module  # numba's cache looks the module up by its name

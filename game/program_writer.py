@@ -47,7 +47,7 @@ class Writer:
         self.driver = bind(driver, model)
         self.kernels = {b.call: b.function for b in bound} | _of_energy()
         self.rates = bool(self.rod_rates or self.particle_rates)
-        self.working = [b for b in of_rods if b in self.rod_laws and not (b.system.elastic or b.replaces)]
+        self.working = [b for b in of_rods if b in self.rod_laws and not (b.replaces or _is_elastic(b))]
         self.powers = self.rates or bool(self.particle_laws or self.working)
         self.columns = self._columns()
 
@@ -365,3 +365,7 @@ def _of_energy() -> dict[str, Callable[..., Any]]:
     from systems.physics.kernels import conserved, judge  # imports numba, when a program is built, not before
 
     return {"conserved": conserved, "judge": judge}
+
+
+def _is_elastic(b: Bound) -> bool:
+    return isinstance(b.system, Law) and b.system.elastic

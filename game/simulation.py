@@ -158,8 +158,16 @@ class Simulation:
 
     def moment(self, *tables: str) -> Moment:
         """The present, to return to: the state of these tables (none given: of all)."""
-        state, steps = Snapshot.take(self.model, *tables), self.model.clock.steps
-        return Moment(state, steps, self._armed, self._before_edit, self.stable_step, self.warning)
+        state = Snapshot.take(self.model, *tables)
+        return Moment(
+            state,
+            self.model.clock.steps,
+            self._armed,
+            self._before_edit,
+            self.stable_step,
+            self.warning,
+            size=sum(column.nbytes for column in state.columns.values()),
+        )
 
     def resume(self, moment: Moment) -> None:
         """Return to a moment in which the document was as it is now."""

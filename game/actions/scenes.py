@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from components.field import Vector
 from game.actions.drawing import put_away
 from game.actions.registry import action
+from systems.edit.refusal import Refusal
 
 if TYPE_CHECKING:
     from game.session import Session
@@ -42,4 +43,6 @@ def _toggle_run(session: Session, pixel: Vector) -> None:
 
 @action("force method")
 def _force_method(session: Session, pixel: Vector) -> None:
+    if session.model.particles.count == 0:
+        raise Refusal("There is nothing to solve yet; draw a structure with P and L, or open one with D.")
     session.scenes.request("force method")

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 PACE_STEP = 2.0
 FAR = 0.2  # s shown, by which time is skipped forward or back
+MOST_WORK = 10_000_000  # steps × elements that one skip takes, some 0.2 s
 
 
 def _arrow(direction: Vector, steps: int, *, far: bool) -> Action:
@@ -22,9 +23,7 @@ def _arrow(direction: Vector, steps: int, *, far: bool) -> Action:
     def act(session: Session, pixel: Vector) -> None:
         if nudge(session, direction, far=far) or steps == 0:
             return
-        size = session.model.clock.step_size
-        count = max(round(FAR * session.pace / size), 1) if far and size > 0.0 else 1
-        _step(session, steps * count)
+        _step(session, steps * (_far(session) if far else 1))
 
     return act
 
@@ -37,6 +36,14 @@ for _name, _direction, _steps in (
 ):
     action(f"arrow {_name}")(_arrow(_direction, _steps, far=False))
     action(f"far arrow {_name}")(_arrow(_direction, _steps, far=True))
+
+
+def _far(session: Session) -> int:
+    """How many steps to skip; fewer in large models, so that one does not wait."""
+    model = session.model
+    size = model.clock.step_size
+    wanted = round(FAR * session.pace / size) if size > 0.0 else 1
+    return max(min(wanted, MOST_WORK // (model.particles.count + model.rods.count + 1)), 1)
 
 
 def _step(session: Session, steps: int) -> None:

@@ -12,13 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from systems.collision import disc, state
+from systems.collision import arrays
+from systems.collision.arrays import Floats, Grid, Group, Integers, Queue, Reason, Report, Ties
 from systems.collision.flight.kernels import advance
-from systems.collision.impact.kernels import DIRECT
-from systems.collision.state import Reason
-from systems.collision.window.kernels import JOINED
-
-Array = NDArray[np.float64]
 
 REPORT = 4096  # impacts reported at a time
 REST_HEIGHT = 1e-9  # of the radius; larger: bouncing ends sooner
@@ -31,10 +27,10 @@ class Impacts:
     pairs: the two discs, shape (k, 2). time: s. impulse: N·s, along the line of centres. loss: energy lost, J.
     """
 
-    pairs: NDArray[np.int64]
-    time: Array
-    impulse: Array
-    loss: Array
+    pairs: Integers
+    time: Floats
+    impulse: Floats
+    loss: Floats
 
     def __len__(self) -> int:
         return len(self.time)
@@ -61,121 +57,168 @@ class Discs:
 
         position: original, shape (n, 2), m. velocity: shape (n, 2), m/s, 0 in held directions. radius: shape
         (n,), m. inverse_mass: of each direction, shape (n, 2), 1/kg, 0 where it is held. displacement: m;
-        acceleration: m/s², without contacts. joined: pairs that never collide.
+        acceleration: m/s², without contacts. rest_height: bounces that would rise less, relative to the
+        smaller radius, end in lasting contact. joined: pairs that never collide.
         """
         place = np.atleast_2d(np.asarray(position, dtype=np.float64))
         n = len(place)
-        self.rows = np.zeros((n, disc.WIDTH))
-        self.rows[:, disc.OX : disc.OY + 1] = place
-        self.rows[:, disc.UX : disc.UY + 1] = displacement
-        self.rows[:, disc.VX : disc.VY + 1] = velocity
-        self.rows[:, disc.WX : disc.WY + 1] = inverse_mass
-        self.rows[:, disc.GX : disc.GY + 1] = acceleration
-        self.rows[:, disc.GX : disc.GY + 1][self.rows[:, disc.WX : disc.WY + 1] == 0.0] = 0.0
-        self.rows[:, disc.AX : disc.AY + 1] = self.rows[:, disc.GX : disc.GY + 1]
-        self.rows[:, disc.RADIUS] = radius
-        self.rows[:, disc.EPOCH] = time
-        self.numbers = np.zeros(state.NUMBERS)
-        self.numbers[state.NOW] = time
-        self.numbers[state.RESTITUTION] = restitution
-        self.numbers[state.REST_HEIGHT] = rest_height
-        self.counts = np.zeros(state.COUNTS, dtype=np.int64)
-        self.counts[state.RENEW] = 1
-        self.changes = np.zeros(n, dtype=np.int64)
-        self.first, self.partners, self.bonds = _bonds(n, joined)
-        self.boxes = np.zeros((n, 4))
-        self.layer = np.zeros(n, dtype=np.int64)
-        self.levels = np.zeros(64, dtype=np.int64)
-        self.found = np.zeros(n, dtype=np.int64)
-        self.members = np.full((2, n), -1, dtype=np.int64)
-        self.mobility = np.zeros((n, 2))
-        self.velocities = np.zeros((4, n, 2))
-        self.matrix = np.zeros((DIRECT + 1, DIRECT))
-        self._reserve_queue(2 * n + 64)
-        self._reserve_grid(2)
-        self._reserve_contacts(4 * n + 64)
-        self.report = np.zeros((max(REPORT, len(self.links)), 2), dtype=np.int64)
-        self.details = np.zeros((len(self.report), 3))
+        self.rows = np.zeros((n, arrays.DISC_WIDTH))
+        self._columns(arrays.OX)[...] = place
+        self._columns(arrays.UX)[...] = displacement
+        self._columns(arrays.VX)[...] = velocity
+        self._columns(arrays.WX)[...] = inverse_mass
+        self._columns(arrays.GX)[...] = acceleration
+        self._columns(arrays.GX)[self._columns(arrays.WX) == 0.0] = 0.0
+        self._columns(arrays.AX)[...] = self._columns(arrays.GX)
+        self.rows[:, arrays.RADIUS] = radius
+        self.rows[:, arrays.EPOCH] = time
+        self.rows[:, arrays.STEP] = np.inf
+        self.numbers = np.zeros(arrays.NUMBERS)
+        self.numbers[arrays.NOW] = time
+        self.numbers[arrays.RESTITUTION] = restitution
+        self.numbers[arrays.REST_HEIGHT] = rest_height
+        self.counts = np.zeros(arrays.COUNTS, dtype=np.int64)
+        self.counts[arrays.RENEW] = 1
+        self.queue = _queue(2 * n + 64)
+        self.grid = _grid(n, 2)
+        self.group = _group(n, 4 * n + 64)
+        self.report = _report(max(REPORT, len(self.group.links)))
+        self.ties = _ties(n, joined, 2 * len(self.group.links), self.counts)
 
-    # --- room -------------------------------------------------------------------------------------
-
-    def _reserve_queue(self, size: int) -> None:
-        self.times, self.meetings = np.zeros(size), np.zeros((size, 4), dtype=np.int64)
-
-    def _reserve_grid(self, layers: int) -> None:
-        n = len(self.rows)
-        buckets = 1 << int(np.ceil(np.log2(max(4 * n * layers, 16))))
-        self.heads = np.full(buckets, -1, dtype=np.int64)
-        self.entries = np.zeros((4 * n * layers, 3), dtype=np.int64)
-
-    def _reserve_contacts(self, size: int) -> None:
-        self.links = np.zeros((size, 2), dtype=np.int64)
-        self.contacts = np.zeros((size, 5))
-        self.marks = np.zeros((3, size), dtype=np.int64)
-
-    def _arrays(self) -> tuple[Any, ...]:
-        return (
-            self.rows, self.changes, self.boxes, self.layer, self.levels, self.heads, self.entries,
-            self.first, self.partners, self.bonds, self.times, self.meetings, self.found, self.members,
-            self.links, self.contacts, self.mobility, self.velocities, self.marks, self.matrix,
-            self.report, self.details, self.numbers, self.counts,
-        )  # fmt: skip
+    def _columns(self, first: int) -> Floats:
+        """The x and y columns that begin with one."""
+        return self.rows[:, first : first + 2]
 
     # --- time -------------------------------------------------------------------------------------
 
-    def advance(self, until: float, most_strikes: int = 2**62) -> tuple[Reason, Impacts]:
-        """Let everything happen up to a time (s), at most `most_strikes` strikes; returns why it stopped, and impacts."""
+    def advance(self, until: float, most_events: int = 2**62) -> tuple[Reason, Impacts]:
+        """Let everything happen up to a time (s), at most `most_events` events.
+
+        Returns DONE or BUSY, and the impacts.
+        """
+        last = int(self.counts[arrays.EVENTS]) + most_events
         taken = [self._take()]
         while True:
-            before = self.counts[state.STRIKES]
-            reason = Reason(advance(until, most_strikes, *self._arrays()))
-            most_strikes -= self.counts[state.STRIKES] - before
+            reason = Reason(
+                advance(
+                    until,
+                    last - int(self.counts[arrays.EVENTS]),
+                    self.rows,
+                    self.grid,
+                    self.ties,
+                    self.queue,
+                    self.group,
+                    self.report,
+                    self.numbers,
+                    self.counts,
+                )
+            )
             taken.append(self._take())
-            if reason is Reason.QUEUE_FULL:
-                self.counts[state.RENEW] = 1
-                self._reserve_queue(2 * len(self.times))
-            elif reason is Reason.GRID_FULL:
-                self._reserve_grid(int(self.counts[state.LAYERS]) + 1)
-            elif reason is Reason.GROUP_FULL:
-                self._reserve_contacts(2 * len(self.links))
-                self.report = np.zeros((max(REPORT, len(self.links)), 2), dtype=np.int64)
-                self.details = np.zeros((len(self.report), 3))
-            elif reason is not Reason.REPORT_FULL:
-                return reason, _joined_together(taken)
+            if reason in (Reason.DONE, Reason.BUSY):
+                return reason, _concatenated(taken)
+            self._make_room(reason)
+
+    def _make_room(self, reason: Reason) -> None:
+        n = len(self.rows)
+        if reason is Reason.QUEUE_FULL:
+            self.counts[arrays.RENEW] = 1
+            self.queue = _queue(2 * len(self.queue.times))
+        elif reason is Reason.GRID_FULL:
+            self.grid = _grid(n, int(self.counts[arrays.LAYERS]) + 1)
+        elif reason is Reason.GROUP_FULL:
+            size = 2 * len(self.group.links)
+            self.group = _group(n, size)
+            self.report = _report(max(REPORT, size))
+            self.ties = _more_lasting(self.ties, 2 * size, self.counts)
 
     def _take(self) -> Impacts:
-        k = int(self.counts[state.REPORTED])
-        self.counts[state.REPORTED] = 0
-        details = self.details[:k].copy()
-        return Impacts(self.report[:k].copy(), details[:, 0], details[:, 1], details[:, 2])
+        k = int(self.counts[arrays.REPORTED])
+        self.counts[arrays.REPORTED] = 0
+        details = self.report.details[:k].copy()
+        return Impacts(self.report.pairs[:k].copy(), details[:, 0], details[:, 1], details[:, 2])
 
     @property
     def now(self) -> float:
         """Time (s) up to which everything has happened."""
-        return float(self.numbers[state.NOW])
+        return float(self.numbers[arrays.NOW])
 
     @property
     def impacts(self) -> int:
         """How many there were."""
-        return int(self.counts[state.IMPACTS])
+        return int(self.counts[arrays.IMPACTS])
 
-    def state_at(self, time: float) -> tuple[Array, Array]:
-        """Displacements (m) and velocities (m/s) at a time (s) between the last impact and the next."""
-        rows = self.rows
-        s = (time - rows[:, disc.EPOCH])[:, None]
-        u, v, a = rows[:, disc.UX : disc.UY + 1], rows[:, disc.VX : disc.VY + 1], rows[:, disc.AX : disc.AY + 1]
+    def state_at(self, time: float) -> tuple[Floats, Floats]:
+        """Displacements (m) and velocities (m/s) at a time (s) between the last event and the next."""
+        s = (time - self.rows[:, arrays.EPOCH])[:, None]
+        u, v, a = (self._columns(first) for first in (arrays.UX, arrays.VX, arrays.AX))
         return u + s * (v + 0.5 * s * a), v + s * a
 
 
-def _bonds(n: int, joined: Any) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int8]]:
-    """Pairs as rows of partners: those of disc i are partners[first[i] : first[i + 1]]."""
+def _queue(size: int) -> Queue:
+    return Queue(np.zeros(size), np.zeros((size, 4), dtype=np.int64))
+
+
+def _grid(n: int, layers: int) -> Grid:
+    entries = 4 * n * layers
+    buckets = 1 << int(np.ceil(np.log2(max(entries, 16))))
+    return Grid(
+        boxes=np.zeros((n, 4)),
+        layer=np.zeros(n, dtype=np.int64),
+        levels=np.zeros(64, dtype=np.int64),
+        heads=np.full(buckets, arrays.NONE, dtype=np.int64),
+        entries=np.zeros((entries, 3), dtype=np.int64),
+        found=np.zeros(n + 1, dtype=np.int64),
+    )
+
+
+def _group(n: int, contacts: int) -> Group:
+    return Group(
+        members=np.zeros(n, dtype=np.int64),
+        place=np.full(n, arrays.NONE, dtype=np.int64),
+        links=np.zeros((contacts, 2), dtype=np.int64),
+        contacts=np.zeros((contacts, arrays.CONTACT_WIDTH)),
+        mobility=np.zeros((n, 2)),
+        motion=np.zeros((n, 2)),
+        initial=np.zeros((n, 2)),
+        start=np.zeros((n, 2)),
+        other=np.zeros((n, 2)),
+        marks=np.zeros((3, contacts), dtype=np.int64),
+        matrix=np.zeros((arrays.DIRECT + 1, arrays.DIRECT)),
+    )
+
+
+def _report(size: int) -> Report:
+    return Report(np.zeros((size, 2), dtype=np.int64), np.zeros((size, 3)))
+
+
+def _ties(n: int, joined: Any, lasting: int, counts: Integers) -> Ties:
     pairs = np.asarray(joined, dtype=np.int64).reshape(-1, 2)
     ends = np.concatenate([pairs, pairs[:, ::-1]])
     ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
-    first = np.searchsorted(ends[:, 0], np.arange(n + 1)).astype(np.int64)
-    return first, np.ascontiguousarray(ends[:, 1]), np.full(len(ends), JOINED, dtype=np.int8)
+    ties = Ties(
+        first=np.searchsorted(ends[:, 0], np.arange(n + 1)),
+        partners=np.ascontiguousarray(ends[:, 1]),
+        bonds=np.full(len(ends), arrays.JOINED, dtype=np.int64),
+        first_lasting=np.full(n, arrays.NONE, dtype=np.int64),
+        lasting=np.zeros((0, 2), dtype=np.int64),
+        forces=np.zeros(0),
+    )
+    counts[arrays.SPARE] = arrays.NONE
+    return _more_lasting(ties, lasting, counts)
 
 
-def _joined_together(parts: list[Impacts]) -> Impacts:
+def _more_lasting(ties: Ties, size: int, counts: Integers) -> Ties:
+    """The same table with more unused entries, chained before those there are."""
+    old = len(ties.lasting)
+    lasting, forces = np.zeros((size, 2), dtype=np.int64), np.zeros(size)
+    lasting[:old], forces[:old] = ties.lasting, ties.forces
+    lasting[old:, arrays.NEXT] = np.arange(old + 1, size + 1)
+    lasting[-1, arrays.NEXT] = counts[arrays.SPARE]
+    counts[arrays.SPARE] = old
+    counts[arrays.SPARES] += size - old
+    return ties._replace(lasting=lasting, forces=forces)
+
+
+def _concatenated(parts: list[Impacts]) -> Impacts:
     columns = ("pairs", "time", "impulse", "loss")
     return Impacts(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))

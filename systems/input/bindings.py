@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 SIMULATION, PAUSE = "simulation", "pause"
 PROPERTIES, SAVE, LOAD, FORCE_METHOD = "properties", "save", "load", "force method"
@@ -154,14 +155,15 @@ def repeats(scene: str, key: str) -> bool:
     return binding is not None and binding.repeats
 
 
-def toolbar(scene: str) -> list[list[Binding]]:
+@cache
+def toolbar(scene: str) -> tuple[tuple[Binding, ...], ...]:
     """Groups of what the toolbar offers in a scene: the same while time passes as in pause; none in panels."""
     scenes = set(LIVE if scene in LIVE else () if scene in PANELS else (scene,))
     found = [binding for binding in BINDINGS if scenes & set(binding.scenes)]
     found.sort(key=lambda binding: scene not in binding.scenes)  # keys that work here come first
     offered = {binding.action: binding for binding in reversed(found)}
-    groups = ([offered[action] for action in group if action in offered] for group in TOOLBAR)
-    return [group for group in groups if group]
+    groups = (tuple(offered[action] for action in group if action in offered) for group in TOOLBAR)
+    return tuple(group for group in groups if group)
 
 
 def help_lines(scene: str) -> list[tuple[str, str]]:

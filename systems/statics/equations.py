@@ -6,7 +6,7 @@ unknowns has shape (N,), a field over all particles (n, 2). Lengths in m, forces
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeAlias
 
@@ -56,6 +56,7 @@ class Structure:
     unknown: the free directions that are solved for, (n, 2): those of particles with rods, less one of
         every body that nothing holds along an axis (its translation is arbitrary).
     body: number of the connected body that each particle belongs to, (n,).
+    linear: first-order theory, in which elongations and equilibrium are those of the original positions.
     """
 
     position: Array
@@ -69,16 +70,17 @@ class Structure:
     fixed: Flags
     unknown: Flags
     body: Rows
+    linear: bool
 
     @classmethod
-    def of(cls, model: Model) -> Structure:
-        """The structure of a model; rods never yield if the settings have plasticity off."""
+    def of(cls, model: Model, geometry: str = "exact") -> Structure:
+        """The structure of a model in "exact" or "linear" geometry; without plasticity no rod yields."""
+        if geometry not in ("exact", "linear"):
+            raise ValueError(f"Geometry is '{geometry}'; it must be 'exact' or 'linear'.")
         particles, rods = model.particles, model.rods
         yields = bool(model.settings.plasticity)
         ends = rods.between.astype(np.intp)
         body = _bodies(particles.count, ends)
-        has_rods = np.zeros(particles.count, dtype=bool)
-        has_rods[ends] = True
         fixed = particles.fixed.copy()
         return cls(
             position=particles.position.copy(),
@@ -90,9 +92,14 @@ class Structure:
             tension_limit=rods.tension_limit.copy() if yields else np.full(rods.count, np.inf),
             compression_limit=rods.compression_limit.copy() if yields else np.full(rods.count, np.inf),
             fixed=fixed,
-            unknown=has_rods[:, None] & ~fixed & ~_arbitrary(fixed, body),
+            unknown=_held_by_rods(particles.count, ends) & ~fixed & ~_arbitrary(fixed, body),
             body=body,
+            linear=geometry == "linear",
         )
+
+    def with_translations(self) -> Structure:
+        """The same structure with the arbitrary translations of free bodies among the unknowns."""
+        return replace(self, unknown=_held_by_rods(len(self.position), self.ends) & ~self.fixed)
 
     # --- unknowns ----------------------------------------------------------------------------------
 
@@ -155,14 +162,8 @@ class Structure:
     # --- forces --------------------------------------------------------------------------------------
 
     def respond(self, displacement: Array, plastic_strain: Array) -> Response:
-        """Axial forces N = EA (ε − ε_p), ε = (L − L₀)/L₀, limited by yielding; both limits move with ε_p.
-
-        The change of length is (2D + Δu)·Δu / (L + |D|), in which nothing cancels at small displacements.
-        """
-        change = self.relative(displacement)
-        present = self.difference + change
-        length = np.hypot(present[:, 0], present[:, 1])
-        stretch = ((self.difference + present) * change).sum(axis=1) / (length + self.original_length)
+        """Axial forces N = EA (ε − ε_p), ε = (L − L₀)/L₀, limited by yielding; both limits move with ε_p."""
+        stretch, axis, length = self._stretch(self.relative(displacement))
         elongation = stretch + (self.original_length - self.rest_length)
         strain = elongation / self.rest_length
         elastic = self.stiffness * (strain - plastic_strain)
@@ -172,12 +173,28 @@ class Structure:
             elongation=elongation,
             strain=strain,
             length=length,
-            axis=present / np.where(length > 0.0, length, 1.0)[:, None],
+            axis=axis,
             elastic_force=elastic,
             axial_force=force,
             plastic_strain=np.where(flowing, strain - force / self.stiffness, plastic_strain),
             flowing=flowing,
         )
+
+    def _stretch(self, change: Array) -> tuple[Array, Array, Array]:
+        """Changes of length from the original ones, unit vectors and lengths of the rods.
+
+        change: of the differences between their ends, (rods, 2). |D + Δ| − |D| is computed as
+        (2D + Δ)·Δ / (|D + Δ| + |D|), in which nothing cancels at small displacements.
+        """
+        original = self.original_length
+        if self.linear:
+            axis = self.difference / np.where(original > 0.0, original, 1.0)[:, None]
+            return (axis * change).sum(axis=1), axis, original
+        present = self.difference + change
+        length = np.hypot(present[:, 0], present[:, 1])
+        total = length + original
+        stretch = ((self.difference + present) * change).sum(axis=1) / np.where(total > 0.0, total, 1.0)
+        return stretch, present / np.where(length > 0.0, length, 1.0)[:, None], length
 
     def internal(self, response: Response) -> Array:
         """Forces (n, 2) that hold the particles against the rods' pull."""
@@ -212,7 +229,7 @@ class Structure:
         """dF/du over the unknowns: Σ EA/L₀ a aᵀ (not of flowing rods) + Σ N/L (1 − a aᵀ)."""
         along = np.where(flowing, 0.0, self.stiffness / self.rest_length)
         across = np.zeros_like(along)
-        if geometric:
+        if geometric and not self.linear:
             length = response.length
             across = np.where(length > 0.0, response.axial_force / np.where(length > 0.0, length, 1.0), 0.0)
         a = response.axis
@@ -265,6 +282,13 @@ def _compatibility(ends: Rows, axis: Array, particles: int) -> csc_matrix:
     entries = np.concatenate([-axis, axis], axis=1)
     rows = np.repeat(np.arange(len(ends)), 4)
     return csc_matrix((entries.ravel(), (rows, columns.ravel())), (len(ends), 2 * particles))
+
+
+def _held_by_rods(particles: int, ends: Rows) -> Flags:
+    """Both directions of particles with rods, (n, 2)."""
+    held = np.zeros((particles, 2), dtype=bool)
+    held[ends] = True
+    return held
 
 
 def _bodies(particles: int, ends: Rows) -> Rows:

@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
+import numpy as np
+
+from components.model import Model
 from systems.statics.equations import Array
+
+RESTS = 1e-9  # of the largest motion: less is none
 
 
 @dataclass(frozen=True)
@@ -22,6 +28,21 @@ class Event:
     message: str
     rods: tuple[str, ...] = ()
     motion: Array | None = None
+
+
+def event_record(model: Model, event: Event) -> dict[str, Any]:
+    """An event as plain data; its motion as {name: [x, y]} of the particles that take part."""
+    record: dict[str, Any] = {
+        "kind": event.kind,
+        "load_factor": event.load_factor,
+        "message": event.message,
+        "rods": list(event.rods),
+    }
+    if event.motion is not None:
+        names = model.particles.column("name")
+        taking_part = np.flatnonzero(np.hypot(*event.motion.T) > RESTS)
+        record["motion"] = {str(names[row]): event.motion[row].tolist() for row in taking_part}
+    return record
 
 
 class NoEquilibrium(Exception):

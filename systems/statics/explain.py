@@ -10,6 +10,7 @@ from components.model import Model
 from systems.statics.equations import Array, Rows
 
 NAMED = 5  # at most so many by name, then "and 7 more"
+DIRECTIONS = 3  # at most so many, then "and 7 more"
 TAKES_PART = 0.1  # of the largest motion
 ONE_WAY = 1e-3  # ratio of a particle's motions across and along, below which it has one direction
 
@@ -23,9 +24,11 @@ def listed(names: Sequence[str]) -> str:
 
 
 def rod_names(model: Model, rows: Rows) -> str:
-    """Rods as a person calls them."""
-    names = model.rods.column("name")
-    return ("rod " if len(rows) == 1 else "rods ") + listed([str(names[row]) for row in rows.tolist()])
+    """Rods as a person calls them: "rods AB and CD", "rod 7"."""
+    names = [str(model.rods.column("name")[row]) for row in rows.tolist()]
+    if all(name.startswith("rod ") for name in names):
+        return listed(names)
+    return ("rod " if len(names) == 1 else "rods ") + listed(names)
 
 
 def describe_motion(model: Model, modes: Array) -> str:
@@ -36,8 +39,8 @@ def describe_motion(model: Model, modes: Array) -> str:
     groups: dict[str, list[str]] = {}
     for row in movers.tolist():
         groups.setdefault(_direction(modes[:, row]), []).append(str(names[row]))
-    told = [f"{listed(group)} {direction}" for direction, group in list(groups.items())[:NAMED]]
-    rest = sum(len(group) for group in list(groups.values())[NAMED:])
+    told = [f"{listed(group)} {direction}" for direction, group in list(groups.items())[:DIRECTIONS]]
+    rest = sum(len(group) for group in list(groups.values())[DIRECTIONS:])
     return ", ".join(told) + (f" and {rest} more" if rest else "")
 
 

@@ -14,7 +14,6 @@ from systems.statics.equations import SYMMETRIC, Array, Matrix
 NO_STIFFNESS = 1e-13  # of the rods' at the same particle: what is softer than that is round-off
 SOFT = 1e-12  # of the rods' at the same particle: such a motion counts as not resisted
 INVERSE_ITERATIONS = 30
-BLOCK = 8  # soft modes that are looked for at once
 
 
 class Factor:
@@ -83,7 +82,7 @@ def lowest_mode(matrix: Matrix, weight: Array) -> tuple[float, Array]:
     while not factor.definite:
         share *= 4.0
         factor = regular(matrix, weight, share)
-    mode = _start(len(weight), 1)[:, 0]
+    mode = pseudo_random(len(weight), 1)[:, 0]
     value = np.inf
     for _ in range(INVERSE_ITERATIONS):
         mode = factor.solve(weight * mode)
@@ -94,13 +93,13 @@ def lowest_mode(matrix: Matrix, weight: Array) -> tuple[float, Array]:
     return value, mode
 
 
-def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None) -> Array:
-    """Up to 8 modes (N, k) that K resists by less than a share SOFT of W, orthonormal in W."""
+def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most: int = 8) -> Array:
+    """Up to `most` modes (N, k) that K resists by less than a share SOFT of W, orthonormal in W."""
     factor = factor or regular(matrix, weight)
     if len(weight) == 0 or not factor.exists:
         return np.zeros((len(weight), 0))
     root = np.sqrt(weight)
-    block = _start(len(weight), min(BLOCK, len(weight)))
+    block = pseudo_random(len(weight), min(most, len(weight)))
     for _ in range(4):
         block = root[:, None] * factor.solve(weight[:, None] * block)
         block = np.linalg.qr(block)[0] / root[:, None]
@@ -109,7 +108,12 @@ def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None) -> A
     return modes
 
 
-def _start(size: int, count: int) -> Array:
+def soft_count(matrix: Matrix, weight: Array) -> int:
+    """How many modes K resists by less than a share SOFT of W."""
+    return regular(matrix, weight, -SOFT).negative
+
+
+def pseudo_random(size: int, count: int) -> Array:
     """Fixed vectors with a part in every direction, the same in every run."""
     numbers = np.arange(1, size * count + 1) * 0.6180339887498949
     vectors: Array = (np.modf(numbers)[0] - 0.5).reshape(count, size).T.copy()

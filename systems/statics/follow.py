@@ -80,16 +80,17 @@ class Step:
 
 
 class Path:
-    """The equilibria of a structure under force + t × change (fields of kN), 0 ≤ t ≤ 1.
+    """The equilibria of a structure under force + t × change (fields of kN), up to t = 1.
 
-    passes_limits: go on where stability is lost, the load growing or falling, instead of looking for
-    another way to yield that is stable.
+    passes_limits: go on without end where stability is lost, the load growing or falling, instead of
+    looking for another way to yield that is stable.
     """
 
     def __init__(
         self, structure: Structure, force: Array, change: Array, *, passes_limits: bool = False
     ) -> None:
         self.passes_limits = passes_limits
+        self.end = math.inf if passes_limits else 1.0
         self.structure = structure
         self.force = force
         self.change = change
@@ -233,14 +234,14 @@ class Path:
         """One increment; or, if it cannot be accepted, the share of it to try next."""
         structure = self.structure
         dt = tangent.sense * increment / self.stretch(tangent)
-        last = point.t + dt >= 1.0 - 4.0 * ROUND_OFF
+        last = point.t + dt >= self.end - 4.0 * ROUND_OFF
         if last:
-            dt = 1.0 - point.t
+            dt = self.end - point.t
         predicted = dt * tangent.rate
         guess = point.displacement + structure.spread(predicted)
         found = self.correct(point, guess, point.t + dt, None if last else tangent)
-        if found is not None and found.t > 1.0:
-            found = self.correct(point, found.displacement, 1.0, None)
+        if found is not None and found.t > self.end:
+            found = self.correct(point, found.displacement, self.end, None)
         if found is None:
             return HALF
         change = structure.gather(found.displacement - point.displacement)
@@ -375,12 +376,13 @@ class Path:
         self, point: Point, tangent: Tangent, beyond: Tangent, increment: float
     ) -> tuple[Point, Tangent, Tangent]:
         """The last stable point of an increment, its tangent, and that of the first point that is not."""
+        start, along, stable = point, tangent, 0.0
         for _ in range(NARROWINGS if self.exact_events else FEW_NARROWINGS):
-            increment *= 0.5
-            found = self.attempt(point, tangent, increment)
-            if isinstance(found, tuple):
-                if found[1].stable:
-                    point, tangent = found
-                else:
-                    beyond = found[1]
+            middle = 0.5 * (stable + increment)
+            found = self.attempt(start, along, middle)
+            if isinstance(found, tuple) and found[1].stable:
+                point, tangent, stable = *found, middle
+            else:
+                increment = middle
+                beyond = found[1] if isinstance(found, tuple) else beyond
         return point, tangent, beyond

@@ -189,6 +189,8 @@ class Loading:
     def _mode(self, beyond: Tangent) -> Array:
         """The motion in which stability is lost, in the direction in which it goes on."""
         structure, response = self.path.structure, self.point.response
+        if beyond.factor.definite and beyond.flowing.any():
+            return beyond.rate
         _, mode = lowest_mode(structure.tangent(response, beyond.flowing), structure.weight)
         flow = structure.elongation_rate(mode, response) * np.sign(response.axial_force) * beyond.flowing
         pushed = float(mode @ self.path.push)
@@ -204,6 +206,8 @@ class Loading:
             self.point = relaxed.point
         elif relaxed.outcome == "gave up":
             raise self._lost()
+        elif not (relaxed.point.plastic_strain != self.point.plastic_strain).any():
+            raise self._mechanism(relaxed.point)
         else:
             motion = relaxed.point.displacement - self.point.displacement
             if plastic is not None and nudge is not None:
@@ -239,6 +243,16 @@ class Loading:
         factor = self.factor(self.point.t)
         self.events.append(Event("collapse", factor, message, self._rods(flowing), _unit(motion)))
         return NoEquilibrium("collapse", message)
+
+    def _mechanism(self, away: Point) -> NoEquilibrium:
+        """In first-order theory a mechanism that the load moves never comes to rest."""
+        motion = away.displacement - self.point.displacement
+        message = (
+            f"Mechanism: the load moves {describe_motion(self.model, motion[None])} and nothing resists."
+            " Add rods or supports there."
+        )
+        self.events.append(Event("mechanism", self.factor(self.point.t), message, motion=_unit(motion)))
+        return NoEquilibrium("mechanism", message)
 
     def _lost(self) -> NoEquilibrium:
         message = (

@@ -13,15 +13,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from components.model import Model
-from systems.statics.equations import Array, Flags, Structure
+from systems.statics.bodies import loose_bodies, loose_event
+from systems.statics.equations import ROUND_OFF, Array, Flags, Structure
 from systems.statics.events import Event, NoEquilibrium
-from systems.statics.explain import listed
+from systems.statics.explain import describe_motion
 from systems.statics.external import external_forces
+from systems.statics.factor import lowest_mode
 from systems.statics.follow import Path, Point
 from systems.statics.loading import Loading
 
 TOLD = ("free body", "mechanism", "snap-through", "bifurcation", "note")  # kinds of events that messages repeat
-NO_NET_FORCE = 1e-12  # of the sum of a body's forces: what is left of them is round-off
+NEARLY_SOFT = 1e-9  # of the rods' stiffness: a motion that is resisted less is worth a note
+UNCHANGED = 1e-12  # of the load: a change of it that is round-off
 UNSTRESSED = 1e-9  # of the largest force: what holds the present state counts as nothing
 
 
@@ -78,17 +81,18 @@ class Settlement:
         return tuple(event for state in self.states for event in state.events)
 
 
-def settle(model: Model, factors: Sequence[float] = (1.0,)) -> Settlement:
+def settle(model: Model, factors: Sequence[float] = (1.0,), geometry: str = "exact") -> Settlement:
     """The equilibria at these load factors in turn, from the model's present state; does not change it.
 
     Factors multiply forces and loads; accelerations grow from 0 to 1 with the first factor and then stay.
     In a model that has not moved yet, lack of fit and moved supports act before the load does; in any other
     the forces that hold its present state are exchanged for the load. Ends early, with a status other than
     "equilibrium", where there is no equilibrium to go on to.
+    geometry: "linear" for first-order theory about the original positions, with the same yielding.
     """
     if len(factors) == 0:
         raise ValueError("Give at least one load factor, such as 1.")
-    settling = _Settling(model)
+    settling = _Settling(model, geometry)
     states: list[StaticState] = []
     for factor in factors:
         states.append(settling.to(float(factor)))
@@ -107,12 +111,13 @@ def apply(model: Model, state: StaticState) -> None:
 class _Settling:
     """A structure on its way through the load factors: its last equilibrium, and what holds it there."""
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Model, geometry: str) -> None:
         self.model = model
-        self.structure = Structure.of(model)
+        self.structure = Structure.of(model, geometry)
         self.external = external_forces(model)
         self.events = [Event("note", 0.0, note) for note in self.external.notes]
         self.factor, self.largest = 0.0, 0.0
+        self.looked_for_bodies = self.soft = False
         at_rest = Path(self.structure, self._nothing, self._nothing)
         self.point = at_rest.start(model.particles.displacement.copy(), model.rods.plastic_strain.copy())
         self.load = self._holding()
@@ -137,12 +142,17 @@ class _Settling:
             if self.load.any() and not self.structure.gather(self.point.displacement).any():
                 self._change(self._nothing, self.factor)
             self._change(target, factor)
+            self._note_softness(factor)
         except NoEquilibrium as end:
             status, message = end.status, str(end)
         return self._state(status, message)
 
     def _change(self, target: Array, factor: float) -> None:
-        path = Path(self.structure, self.load, target - self.load)
+        change = target - self.load
+        if np.abs(change).max(initial=0.0) <= UNCHANGED * np.abs(target).max(initial=0.0):
+            path = Path(self.structure, target, self._nothing)
+        else:
+            path = Path(self.structure, self.load, change)
         total = float(np.hypot(*self.external.scaled.T).sum())
         start = self.point
         fresh = Point(start.displacement, start.plastic_strain, 0.0, start.response, start.dissipated)
@@ -157,36 +167,35 @@ class _Settling:
             self.load, self.factor = path.load(loading.point.t), loading.factor(loading.point.t)
             raise
 
+    def _note_softness(self, factor: float) -> None:
+        """Report a motion that is resisted so little that few digits are certain."""
+        structure = self.structure
+        known = any(event.kind in ("mechanism", "plastic mechanism") for event in self.events)
+        if structure.size == 0 or known or self.soft:
+            self.soft = True
+            return
+        matrix = structure.tangent(self.point.response, self.point.response.flowing)
+        share, mode = lowest_mode(matrix, structure.weight)
+        if share < NEARLY_SOFT:
+            self.soft = True
+            motion = structure.spread(mode)
+            digits = max(0, int(np.log10(max(share, ROUND_OFF) / ROUND_OFF)))
+            message = (
+                f"Nearly a mechanism: moving {describe_motion(self.model, motion[None])} meets only"
+                f" {max(share, 0.0):.1g} of the rods' stiffness, so that about {digits} digits are certain."
+            )
+            largest = np.hypot(*motion.T).max()
+            self.events.append(Event("note", factor, message, motion=motion / largest))
+
     def _check_bodies(self, target: Array, factor: float) -> None:
         """Report bodies that nothing holds along an axis. Raises NoEquilibrium if one is pulled along it."""
-        structure = self.structure
-        bodies = int(structure.body.max(initial=-1)) + 1
-        members = np.bincount(structure.body, minlength=bodies)
-        for axis in range(2):
-            held = np.bincount(structure.body, structure.fixed[:, axis], bodies) > 0
-            net = np.bincount(structure.body, target[:, axis], bodies)
-            gross = np.bincount(structure.body, np.abs(target[:, axis]), bodies)
-            pulled = np.abs(net) > NO_NET_FORCE * gross
-            for body in np.flatnonzero(~held & pulled)[:1].tolist():
-                event = self._free_body(body, axis, float(net[body]), factor)
+        for body in loose_bodies(self.structure, target):
+            if body.pull or not self.looked_for_bodies:
+                event = loose_event(self.model, body, factor)
                 self.events.append(event)
-                raise NoEquilibrium("mechanism", event.message)
-            if self.factor == 0.0:
-                loose = np.flatnonzero(~held & ~pulled & (members > 1))
-                self.events += [self._free_body(body, axis, 0.0, factor) for body in loose.tolist()]
-
-    def _free_body(self, body: int, axis: int, net: float, factor: float) -> Event:
-        rows = np.flatnonzero(self.structure.body == body)
-        names = self.model.particles.column("name")
-        who, along = listed([str(names[row]) for row in rows]), "xy"[axis]
-        if net:
-            what = f", where {net:.6g} kN pull {'it' if len(rows) == 1 else 'them'}"
-        else:
-            what = ", but no force acts on them in all there"
-        message = f"Free body: nothing holds {who} along {along}{what}. Constrain one of them in {along}."
-        motion = np.zeros(self.structure.unknown.shape)
-        motion[rows, axis] = np.sign(net) or 1.0
-        return Event("free body", factor, message, motion=motion)
+                if body.pull:
+                    raise NoEquilibrium("mechanism", event.message)
+        self.looked_for_bodies = True
 
     def _state(self, status: str, message: str) -> StaticState:
         structure, response = self.structure, self.point.response

@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 LAYERS = ("components", "systems", "game", "tests")  # each may import itself and those before it
 RESOURCES = "assets"
 WINDOW = ("systems/render/pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
-COMPILED = ("systems/kernels.py", "systems/*/kernels.py", "game/program*.py")
+COMPILED = ("systems/kernels.py", "systems/*/kernels.py", "systems/collision/*.py", "game/program*.py")
 MODULES_OF = {"pygame-ce": "pygame"}  # distributions whose module has another name
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -104,7 +104,7 @@ def test_imports_point_one_way(layer: str) -> None:
 
 def modules(layer: str) -> list[str]:
     """The modules of a layer that are there without a window and before anything is compiled."""
-    backends = (*WINDOW, *COMPILED[:2], "*/__main__.py")
+    backends = (*WINDOW, *COMPILED[:3], "*/__main__.py")
     paths = [path for path in files() if path.split("/")[0] == layer and not within(path, backends)]
     return [path.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for path in paths]
 

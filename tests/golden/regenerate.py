@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import sys
-import tempfile
-from pathlib import Path
 
 import pygame
 
@@ -13,10 +11,9 @@ from tests.golden.scenes import FOLDER, SCENES, drawn
 
 def main() -> None:
     """Write those that are named, or all."""
-    with tempfile.TemporaryDirectory() as folder:
-        for name in sys.argv[1:] or SCENES:
-            pygame.image.save(drawn(name, Path(folder) / "nowhere"), FOLDER / f"{name}.png")
-            print(f"{name}.png")
+    for name in sys.argv[1:] or SCENES:
+        pygame.image.save(drawn(name), FOLDER / f"{name}.png")
+        print(f"{name}.png")
 
 
 if __name__ == "__main__":

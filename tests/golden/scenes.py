@@ -23,12 +23,13 @@ from systems.render.theme import load_theme
 
 FOLDER = Path(__file__).parent
 SIZE = 640, 480
+NOWHERE = "nowhere"  # in place of the person's saved models; there is no such folder
 EMPTY = {"format": "pinjoint model", "version": 1}
 
 
-def drawn(name: str, nowhere: Path) -> pygame.Surface:
-    """The picture of that name; `nowhere`: a folder that is not there, in place of the person's models."""
-    with _data_in(nowhere):
+def drawn(name: str) -> pygame.Surface:
+    """The picture of that name."""
+    with _without_saved_models():
         session = SCENES[name]()
         session.update_view()
         surface = pygame.Surface(SIZE, depth=32)
@@ -39,9 +40,9 @@ def drawn(name: str, nowhere: Path) -> pygame.Surface:
 
 
 @contextmanager
-def _data_in(folder: Path) -> Iterator[None]:
+def _without_saved_models() -> Iterator[None]:
     before = os.environ.get(DATA_VARIABLE)
-    os.environ[DATA_VARIABLE] = str(folder)
+    os.environ[DATA_VARIABLE] = NOWHERE
     try:
         yield
     finally:
@@ -88,7 +89,7 @@ def _save() -> Session:
 
 
 def _load() -> Session:
-    """Narrowed down to few examples, so that a new one does not change the picture."""
+    """Narrowed down to few examples, so that a new one need not change the picture."""
     session = _pressed("d")
     session.type("hyperstatic")
     for _ in session.scenes.active.stages(session)[0][0].tiles:  # type: ignore[union-attr]
@@ -104,7 +105,7 @@ def _force_method() -> Session:
     return session
 
 
-def _pulled() -> Session:
+def _drawing_a_force() -> Session:
     """A selected rod, a tool in hand and what it is about to draw."""
     session = _opened("hyperstatic")
     session.click(0.75, 1.5)
@@ -119,7 +120,7 @@ SCENES: dict[str, Callable[[], Session]] = {
     "pause-dark": lambda: _pressed("i", "e", source="hyperstatic", theme="dark"),
     "pause-colour-blind": lambda: _pressed("i", "e", source="hyperstatic", theme="colour-blind"),
     "pause-colour-blind-dark": lambda: _pressed("i", "e", source="hyperstatic", theme="colour-blind-dark"),
-    "drawing-a-force": _pulled,
+    "drawing-a-force": _drawing_a_force,
     "simulation-at-rest": _simulation_at_rest,
     "properties": _properties,
     "save": _save,

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tests.golden.scenes import FOLDER, SCENES, SIZE, drawn
 
 MEAN_DIFFERENCE = 2.5  # of 255, per channel
-CLEARLY_DIFFERENT = 40.0  # of 255, in any channel of a square
+CLEARLY_DIFFERENT = 25.0  # of 255, in any channel of a square
 MOST_DIFFERENT = 0.005  # share of squares that may be clearly different
 SQUARE = 4
 
@@ -37,7 +37,7 @@ def difference(one: pygame.Surface, other: pygame.Surface) -> tuple[float, float
 
 @pytest.mark.parametrize("name", SCENES)
 def test_it_looks_as_it_did(name: str, tmp_path: Path) -> None:
-    found = drawn(name, tmp_path / "nowhere")
+    found = drawn(name)
     golden = pygame.image.load(FOLDER / f"{name}.png")
     mean, share = difference(found, golden)
     if mean >= MEAN_DIFFERENCE or share >= MOST_DIFFERENT:
@@ -52,18 +52,18 @@ def test_there_is_no_picture_of_nothing() -> None:
     assert {path.stem for path in FOLDER.glob("*.png")} == set(SCENES)
 
 
-def test_small_changes_are_noticed(tmp_path: Path) -> None:
-    """A label of another colour, a rod that moved by 3 px, a button that is gone."""
-    golden = pygame.image.load(FOLDER / "pause.png").convert(32)
+def test_small_changes_are_noticed() -> None:
+    """Everything 3 px to the right; a toolbar without icons."""
+    golden = pygame.image.load(FOLDER / "pause.png")
     moved = golden.copy()
     moved.scroll(3, 0)
     assert difference(golden, moved)[1] > MOST_DIFFERENT
     gone = golden.copy()
-    gone.fill((255, 255, 255), (0, 0, 68, 240))
+    gone.fill(golden.get_at((1, 1)), (0, 0, 67, 480))
     assert difference(golden, gone)[1] > MOST_DIFFERENT
 
 
 def test_the_pictures_are_small() -> None:
     for path in FOLDER.glob("*.png"):
         assert pygame.image.load(path).get_size() == SIZE
-        assert path.stat().st_size < 60_000
+        assert path.stat().st_size < 100_000

@@ -68,9 +68,7 @@ def run(scene: Scene, duration: float) -> tuple[Scene, list[Impact]]:
     now, end, impacts = Real(0), Real(duration), []
     scene = scene.precise()
     while True:
-        waiting, pair = min(
-            (time_to_impact(scene, i, j, end - now), (i, j)) for i, j in _pairs(scene)
-        )
+        waiting, pair = min((time_to_impact(scene, i, j, end - now), (i, j)) for i, j in _pairs(scene))
         if now + waiting > end:
             return scene.after(end - now), impacts
         now += waiting
@@ -80,9 +78,7 @@ def run(scene: Scene, duration: float) -> tuple[Scene, list[Impact]]:
 
 def time_to_impact(scene: Scene, i: int, j: int, horizon: Real) -> Real:
     """Return the least t in [0, horizon] at which f(t) = |d + v t + a t²/2|² − (r₁ + r₂)² ≤ 0 falls; else NEVER."""
-    d, v, a = (
-        column[j] - column[i] for column in (scene.position, scene.velocity, scene.acceleration)
-    )
+    d, v, a = (column[j] - column[i] for column in (scene.position, scene.velocity, scene.acceleration))
     reach = scene.radius[i] + scene.radius[j]
     gap = [a @ a / 4, v @ a, v @ v + d @ a, 2 * d @ v, d @ d - reach**2]
     if gap[-1] <= 0 and gap[-2] < 0:
@@ -122,9 +118,7 @@ def amplification(scene: Scene, duration: float, size: float = 1e-9) -> float:
     )
     there, _ = run(scene, duration)
     beside, _ = run(moved, duration)
-    growth = max(
-        np.abs(there.position - beside.position).max(), np.abs(there.velocity - beside.velocity).max()
-    )
+    growth = max(np.abs(there.position - beside.position).max(), np.abs(there.velocity - beside.velocity).max())
     return max(float(growth) / size, 1.0)
 
 

@@ -80,9 +80,7 @@ class Stages:
         self.commits = [k for k in kernels if isinstance(k.system, Commit)]
         self.u = model.particles.displacement.tolist()
         self.v = model.particles.velocity.tolist()
-        self.history = {
-            k.system.writes[0]: model.column(k.system.writes[0]).tolist() for k in self.commits
-        }
+        self.history = {k.system.writes[0]: model.column(k.system.writes[0]).tolist() for k in self.commits}
         stored = [k for k in of_rods if not k.takes_rate and (k.replaces or k.system.elastic)]
         self.working = [k for k in self.adding if k not in stored]
         self.account = dict.fromkeys(ACCOUNTS, 0.0)
@@ -136,7 +134,8 @@ class Stages:
             self._past(row) | {"elongation": elongation, "time": time, "dt": dt}
             for row, elongation in enumerate(elongations)
         ]
-        parts = [[kernel(row, provided) for row, provided in enumerate(given)] for kernel in self.adding if kernel not in without]
+        adding = [kernel for kernel in self.adding if kernel not in without]
+        parts = [[kernel(row, provided) for row, provided in enumerate(given)] for kernel in adding]
         total = [0.0] * len(given)
         for part in parts:
             total = [so_far + force for so_far, force in zip(total, part, strict=True)]
@@ -272,7 +271,9 @@ class Stages:
             a = self._accelerations(force, resisting)
             middle = [[v + half * a for v, a in zip(*row, strict=True)] for row in zip(self.v, a, strict=True)]
             predicted = [[v + dt * a for v, a in zip(*row, strict=True)] for row in zip(self.v, a, strict=True)]
-            self.u = [[u + dt * m for u, m in zip(*row, strict=True)] for row in zip(self.u, middle, strict=True)]
+            self.u = [
+                [u + dt * m for u, m in zip(*row, strict=True)] for row in zip(self.u, middle, strict=True)
+            ]
             if self.loading:
                 before = self.load_power((step - 1) * dt, middle)
                 self.account["work"] += 500.0 * dt * (before + self.load_power(time, middle))

@@ -54,8 +54,12 @@ def test_wrong_lines_are_explained(tmp_path: Path, line: str, words: str) -> Non
     header = '{"format": "pinjoint session", "version": 1, "model": "isostatic"}\n'
     path.write_text(header + line + "\n", encoding="utf-8")
     with pytest.raises(ScriptError, match=words):
-        script = Script(path)
-        script.play(script.open())
+        play(path)
+
+
+def play(path: Path) -> None:
+    script = Script(path)
+    script.play(script.open())
 
 
 def test_a_recording_replays_to_the_same_bits(tmp_path: Path) -> None:

@@ -703,3 +703,32 @@ def test_another_action_ends_a_drag_but_a_look_does_not(triangle: Session) -> No
     triangle.press("space")
     assert triangle.gesture is None
     assert triangle.particles["B"].position == (1.2, 1.0)
+
+
+def test_what_is_undone_leaves_no_trace(triangle: Session) -> None:
+    triangle.run(steps=200)
+    triangle.particles["B"].force = (10.0, 20.0)
+    triangle.run(steps=100)
+    triangle.click(2.0, 0.0)
+    triangle.press("delete")
+    triangle.run(steps=100)
+    triangle.press("e")
+    for _ in range(5):
+        triangle.press("ctrl+z")
+    triangle.run(steps=300)
+    reference = opened()
+    reference.run(steps=200)
+    reference.run(steps=300)
+    assert_same_state(triangle, Snapshot.take(reference.model))
+    assert triangle.energy == reference.energy
+
+
+def test_single_steps_in_a_row_are_one_entry_of_the_log(triangle: Session) -> None:
+    press_at(triangle, "p", 2.0, 2.0)
+    for key in ("right", "right", "right", "left", "right"):
+        triangle.press(key)
+    triangle.press("ctrl+z")
+    assert triangle.model.clock.steps == 0
+    assert triangle.particles.count == 4
+    triangle.press("ctrl+y")
+    assert triangle.model.clock.steps == 3

@@ -58,7 +58,7 @@ def assert_identical(document: Model, integrator: str, mods: list[Any], steps: i
     size = 5e-6
     document = document | {"settings": {"integrator": integrator, "time_step": size}}
     session = Session.open(document, mods)
-    session.run(steps=0)
+    session.simulation.advance(0)
     stages = Stages(session.model, session.simulation.program.systems)
     assert session.run(steps=steps) == "time reached"
     stages.run(integrator, size, steps)
@@ -288,7 +288,7 @@ class OwnArray(Law):
     ],
 )
 def test_a_system_that_cannot_join_is_named_with_the_remedy(system: Any, says: str) -> None:
-    with pytest.raises(ProgramError, match="mod.wrong") as caught:
+    with pytest.raises(ProgramError, match=r"mod\.wrong") as caught:
         Session.open(oscillator(100.0), [system]).run(steps=1)
     assert says in str(caught.value)
 
@@ -327,7 +327,9 @@ def test_an_unwritable_cache_folder_is_done_without(fresh_process: Callable[...,
     assert list(temporary.rglob("pinjoint_program_*.py"))
 
 
-SOURCE = "from numba import njit\n\nentry = njit(cache=True)\n\n\n@entry\ndef answer(x):\n    return kernel(x)\n"
+SOURCE = (
+    "from numba import njit\n\nentry = njit(cache=True)\n\n\n@entry\ndef answer(x):\n    return kernel(x)\n"
+)
 CALLER = "from numba import njit\nimport edited_helpers as helpers\n\n@njit\ndef kernel(x):\n    return helpers.twice(x)\n"
 CALLEE = "from numba import njit\n\nFACTOR = 2.0\n\n@njit\ndef twice(x):\n    return FACTOR * x\n"
 
@@ -343,7 +345,8 @@ def test_an_edited_kernel_is_noticed_in_what_it_calls_too(
         shutil.rmtree(tmp_path / "__pycache__", ignore_errors=True)
         for name in ("edited_helpers", "edited_kernel"):
             spec = importlib.util.spec_from_file_location(name, tmp_path / f"{name}.py")
-            assert spec is not None and spec.loader is not None
+            assert spec is not None
+            assert spec.loader is not None
             monkeypatch.setitem(sys.modules, name, importlib.util.module_from_spec(spec))
             spec.loader.exec_module(sys.modules[name])
         program = compile_module(SOURCE, {"kernel": sys.modules["edited_kernel"].kernel})

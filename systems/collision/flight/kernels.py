@@ -1,189 +1,236 @@
-"""Flight of discs from impact to impact: the earliest meeting happens, then what it changed is foreseen anew.
+"""Flight of discs from event to event: the earliest meeting happens, then what it changed is foreseen anew.
 
-Every disc keeps the epoch of its own last impact; nothing else is touched. Discs that touch at the instant of
-an impact, directly or through others, take part in it together.
-
-A group's members: members[MEMBER, m] is a disc, members[PLACE, i] the member that disc i is, or −1.
-report: shape (capacity, 2), the discs of an impact; details: shape (capacity, 3), its time (s), impulse (N·s) and
-energy lost (J).
+Every disc keeps the epoch of its own last change; nothing else is touched. Discs that touch at the instant of
+an event, directly or through others, take part in it together. Where contacts last, events are also the steps
+in which their forces are renewed.
 """
 
 import math
 
-from systems.collision.disc import AX, AY, EPOCH, GX, GY, RADIUS, UX, UY, VX, VY, WX, WY
-from systems.collision.gap.kernels import place_noise, relative_motion
-from systems.collision.grid.kernels import enclose, enter, layer_of, leave, level_of, neighbours, place_box
-from systems.collision.impact.kernels import IMPULSE, INITIAL, MOTION, NX, NY, respond, separation_speed
-from systems.collision.queue.kernels import drop_first, is_void
-from systems.collision.state import (
+from systems.collision.arrays import (
+    AX,
+    AY,
+    BIAS,
     CELL,
+    CHANGES,
+    DISTANCE,
     END,
+    EPOCH,
+    EVENTS,
+    FORCE,
+    GX,
+    GY,
     IMPACTS,
+    IMPULSE,
     LAYERS,
     LEVEL,
+    NEXT,
+    NONE,
     NOW,
+    NX,
+    NY,
+    OPENING,
+    OTHER,
     QUEUED,
+    RADIUS,
     RENEW,
     REPORTED,
     REST_HEIGHT,
     RESTITUTION,
-    STRIKES,
+    SPARES,
+    STEP,
+    UX,
+    UY,
+    VX,
+    VY,
+    WX,
+    WY,
     Reason,
 )
-from systems.collision.window.kernels import expect, find_bond, is_held, open_window
-from systems.kernels import compiled
+from systems.collision.contact.kernels import (
+    find_lasting,
+    forget_lasting,
+    is_held,
+    note_lasting,
+    stop_sinking,
+    support,
+)
+from systems.collision.gap.kernels import NEVER, place_noise, relative_motion
+from systems.collision.grid.kernels import enclose, enter, layer_of, leave, level_of, neighbours, place_box
+from systems.collision.impact.kernels import respond
+from systems.collision.kernels import compiled, entry
+from systems.collision.projection.kernels import compliance, opening_rate
+from systems.collision.queue.kernels import drop_first, is_void
+from systems.collision.window.kernels import expect, find_bond, open_window
 
 DONE, BUSY, REPORT_FULL = int(Reason.DONE), int(Reason.BUSY), int(Reason.REPORT_FULL)
 QUEUE_FULL, GROUP_FULL = int(Reason.QUEUE_FULL), int(Reason.GROUP_FULL)
-MEMBER, PLACE = 0, 1
 
 
-@compiled
-def advance(
-    until, most_strikes,
-    discs, changes, boxes, layer, levels, heads, entries, first, partners, bonds, times, meetings, found,
-    members, links, contacts, mobility, velocities, marks, matrix, report, details, numbers, counts,
-):  # fmt: skip
-    """Let everything happen up to a time (s), at most `most_strikes` strikes. Returns a Reason.
+@entry
+def advance(until, most_events, discs, grid, ties, queue, group, report, numbers, counts):
+    """Let everything happen up to a time (s), at most `most_events` events. Returns a Reason.
 
     After DONE, every disc is on its path at `until`; after any other reason, call again when it is dealt with.
     """
-    last = counts[STRIKES] + most_strikes
+    last = counts[EVENTS] + most_events
     while True:
         if counts[RENEW]:
-            reason = open_window(
-                discs, changes, boxes, layer, levels, heads, entries, first, partners, bonds, times, meetings,
-                found, numbers, counts,
-            )  # fmt: skip
+            reason = open_window(discs, grid, ties, queue, numbers, counts)
             if reason != DONE:
                 return reason
-        while counts[QUEUED] > 0 and is_void(meetings, 0, changes):
-            drop_first(times, meetings, counts[QUEUED])
+        while counts[QUEUED] > 0 and is_void(queue, 0, discs):
+            drop_first(queue, counts[QUEUED])
             counts[QUEUED] -= 1
         stop = min(until, numbers[END])
-        if counts[QUEUED] == 0 or times[0] > stop:
+        if counts[QUEUED] == 0 or queue.times[0] > stop:
             numbers[NOW] = max(numbers[NOW], stop)
             if until <= numbers[END]:
                 return DONE
             counts[RENEW] = 1
-            continue
-        if counts[STRIKES] == last:
+        elif counts[EVENTS] >= last:
             return BUSY
-        numbers[NOW] = max(numbers[NOW], times[0])
-        reason = _strike(
-            meetings[0, 0], meetings[0, 1],
-            discs, changes, boxes, layer, levels, heads, entries, first, partners, bonds, times, meetings, found,
-            members, links, contacts, mobility, velocities, marks, matrix, report, details, numbers, counts,
-        )  # fmt: skip
-        if reason != DONE:
-            return reason
+        else:
+            numbers[NOW] = max(numbers[NOW], queue.times[0])
+            reason = _happen(discs, grid, ties, queue, group, report, numbers, counts)
+            if reason != DONE:
+                return reason
 
 
 @compiled
-def _strike(
-    i, j,
-    discs, changes, boxes, layer, levels, heads, entries, first, partners, bonds, times, meetings, found,
-    members, links, contacts, mobility, velocities, marks, matrix, report, details, numbers, counts,
-):  # fmt: skip
-    """The meeting of i and j, now the first of the queue, happens. Returns a Reason."""
-    count, touching = _gather(
-        i, j, discs, boxes, layer, levels, heads, entries, first, partners, bonds, found, members, links,
-        contacts, mobility, velocities, numbers, counts,
-    )  # fmt: skip
-    if touching > links.shape[0] or counts[REPORTED] + touching > report.shape[0]:
-        _dismiss(count, members)
-        return GROUP_FULL if touching > links.shape[0] else REPORT_FULL
-    restitution = _restitution(touching, discs, members, links, contacts, velocities, numbers)
-    respond(count, touching, restitution, links, contacts, mobility, velocities, marks, matrix)
-    _report(touching, members, links, contacts, velocities, report, details, numbers, counts)
-    drop_first(times, meetings, counts[QUEUED])
+def _happen(discs, grid, ties, queue, group, report, numbers, counts):
+    """The first event of the queue happens. Returns a Reason."""
+    i, j = queue.meetings[0, 0], queue.meetings[0, 1]
+    count, touching = _gather(i, j, discs, grid, ties, group, numbers, counts)
+    crowded = touching > group.links.shape[0] or 2 * touching > counts[SPARES]
+    if crowded or counts[REPORTED] + touching > report.pairs.shape[0]:
+        _dismiss(count, group)
+        return GROUP_FULL if crowded else REPORT_FULL
+    drop_first(queue, counts[QUEUED])
     counts[QUEUED] -= 1
-    counts[STRIKES] += 1
-    _redirect(count, discs, changes, members, velocities, numbers)
-    _enclose_anew(count, discs, boxes, layer, levels, heads, entries, members, numbers, counts)
+    counts[EVENTS] += 1
+    stop_sinking(count, touching, group)
+    respond(count, touching, _restitution(touching, discs, group, numbers), group)
+    _report(touching, group, report, numbers, counts)
+    duration = support(count, touching, discs, group, numbers)
+    _make_contacts_last(count, touching, discs, ties, group, counts)
+    struck = 0 if i == j else 2
+    _redirect(count, struck, duration, discs, group, numbers)
+    _enclose_anew(count, discs, grid, group, numbers, counts)
     reason = DONE
-    if not _expect_anew(
-        count, discs, changes, boxes, layer, levels, heads, entries, first, partners, bonds, times, meetings,
-        found, members, numbers, counts,
-    ):  # fmt: skip
+    if not _expect_anew(count, discs, grid, ties, queue, group, numbers, counts):
         counts[RENEW] = 1
         reason = QUEUE_FULL
-    _dismiss(count, members)
+    _dismiss(count, group)
     return reason
 
 
-# --- who takes part ---------------------------------------------------------------------------------------
+# --- who takes part -----------------------------------------------------------------------------------------
 
 
 @compiled
-def _admit(i, count, discs, members, mobility, velocities, time):
-    """Make a disc the next member of the group."""
-    members[MEMBER, count] = i
-    members[PLACE, i] = count
+def _admit(i, count, discs, group, time):
+    """Make a disc the next member of the group, with its velocity at the time."""
+    group.members[count] = i
+    group.place[i] = count
+    group.mobility[count, 0], group.mobility[count, 1] = discs[i, WX], discs[i, WY]
+    group.motion[count, 0], group.motion[count, 1] = _velocity(i, discs, time)
+
+
+@compiled
+def _velocity(i, discs, time):
+    """Velocity of a disc; at the end of a step in lasting contact that of RATTLE before its projection."""
     s = time - discs[i, EPOCH]
-    velocities[MOTION, count, 0] = discs[i, VX] + s * discs[i, AX]
-    velocities[MOTION, count, 1] = discs[i, VY] + s * discs[i, AY]
-    mobility[count, 0], mobility[count, 1] = discs[i, WX], discs[i, WY]
+    vx, vy, ax, ay = discs[i, VX], discs[i, VY], discs[i, AX], discs[i, AY]
+    if (ax != discs[i, GX] or ay != discs[i, GY]) and (vx != 0.0 or vy != 0.0 or ax != 0.0 or ay != 0.0):
+        return vx + 0.5 * s * (ax + discs[i, GX]), vy + 0.5 * s * (ay + discs[i, GY])
+    return vx + s * ax, vy + s * ay
 
 
 @compiled
-def _dismiss(count, members):
+def _dismiss(count, group):
     for m in range(count):
-        members[PLACE, members[MEMBER, m]] = -1
+        group.place[group.members[m]] = NONE
 
 
 @compiled
-def _link(i, j, touching, members, links, contacts, dx, dy):
-    """Note a contact of the group; more than there is room for are only counted."""
-    if touching < links.shape[0]:
-        links[touching, 0], links[touching, 1] = members[PLACE, i], members[PLACE, j]
+def _link(i, j, force, touching, discs, group, time):
+    """Note a contact of the group; those for which there is no room are only counted."""
+    if touching < group.links.shape[0]:
+        dx, dy, _, _, _, _ = relative_motion(discs, i, j, time)
         distance = math.sqrt(dx * dx + dy * dy)
-        contacts[touching, NX], contacts[touching, NY] = dx / distance, dy / distance
+        group.links[touching, 0], group.links[touching, 1] = group.place[i], group.place[j]
+        contact = group.contacts[touching]
+        contact[NX], contact[NY], contact[DISTANCE] = dx / distance, dy / distance, distance
+        contact[BIAS], contact[FORCE] = 0.0, force
+        contact[OPENING] = compliance(touching, touching, group)
     return touching + 1
 
 
 @compiled
-def _gather(
-    i, j, discs, boxes, layer, levels, heads, entries, first, partners, bonds, found, members, links, contacts,
-    mobility, velocities, numbers, counts,
-):  # fmt: skip
+def _gather(i, j, discs, grid, ties, group, numbers, counts):
     """The group of i and j: all that touches them now, directly or through others that can move.
 
-    Returns how many members and contacts it has. The contact of i and j is the first.
+    Returns how many members and contacts it has. The contact of i and j, if they are two, is the first.
     """
     now = numbers[NOW]
-    _admit(i, 0, discs, members, mobility, velocities, now)
-    _admit(j, 1, discs, members, mobility, velocities, now)
-    dx, dy, _, _, _, _ = relative_motion(discs, i, j, now)
-    touching = _link(i, j, 0, members, links, contacts, dx, dy)
-    count = 2
+    _admit(i, 0, discs, group, now)
+    count, touching = 1, 0
+    if i != j:
+        _admit(j, 1, discs, group, now)
+        count, touching = 2, _link(i, j, 0.0, 0, discs, group, now)
     m = 0
     while m < count:
-        a = members[MEMBER, m]
-        near = 0
-        if not is_held(discs, a):
+        a = group.members[m]
+        if not is_held(a, discs):
+            count, touching = _gather_lasting(m, count, touching, discs, ties, group, now)
             left, bottom, right, top = place_box(a, discs, now)
-            near = neighbours(
-                a, left, bottom, right, top,
-                boxes, layer, levels, counts[LAYERS], numbers[CELL], heads, entries, found,
-            )  # fmt: skip
-        for k in range(near):
-            b = found[k]
-            place = members[PLACE, b]
-            if (0 <= place < m and not is_held(discs, b)) or (m < 2 and place == 1 - m):
-                continue  # this contact is noted already
-            dx, dy, _, _, _, _ = relative_motion(discs, a, b, now)
-            reach = discs[a, RADIUS] + discs[b, RADIUS] + place_noise(discs, a, b, now)
-            if dx * dx + dy * dy <= reach * reach and find_bond(a, b, first, partners, bonds) < 0:
-                if place < 0:
-                    _admit(b, count, discs, members, mobility, velocities, now)
-                    count += 1
-                touching = _link(a, b, touching, members, links, contacts, dx, dy)
+            near = neighbours(a, left, bottom, right, top, grid, counts[LAYERS], numbers[CELL])
+            for k in range(near):
+                b = grid.found[k]
+                met = i != j and m < 2 and group.place[b] == 1 - m
+                if not met and _is_new(m, b, discs, group) and _touch(a, b, discs, ties, now):
+                    if group.place[b] == NONE:
+                        _admit(b, count, discs, group, now)
+                        count += 1
+                    touching = _link(a, b, 0.0, touching, discs, group, now)
         m += 1
     return count, touching
 
 
-# --- what it does ------------------------------------------------------------------------------------------
+@compiled
+def _is_new(m, b, discs, group):
+    """False if the contacts of disc b, and so that with member m, are noted already."""
+    return group.place[b] == NONE or group.place[b] > m or is_held(b, discs)
+
+
+@compiled
+def _touch(a, b, discs, ties, now):
+    """True if two discs touch that may collide and have no lasting contact."""
+    dx, dy, _, _, _, _ = relative_motion(discs, a, b, now)
+    reach = discs[a, RADIUS] + discs[b, RADIUS] + place_noise(discs, a, b, now)
+    if dx * dx + dy * dy > reach * reach:
+        return False
+    return find_bond(a, b, ties) < 0 and find_lasting(a, b, ties) == NONE
+
+
+@compiled
+def _gather_lasting(m, count, touching, discs, ties, group, now):
+    """Add the lasting contacts of member m."""
+    a = group.members[m]
+    entry = ties.first_lasting[a]
+    while entry != NONE:
+        b = ties.lasting[entry, OTHER]
+        if _is_new(m, b, discs, group):
+            if group.place[b] == NONE:
+                _admit(b, count, discs, group, now)
+                count += 1
+            touching = _link(a, b, ties.forces[entry], touching, discs, group, now)
+        entry = ties.lasting[entry, NEXT]
+    return count, touching
+
+
+# --- what it does -------------------------------------------------------------------------------------------
 
 
 @compiled
@@ -195,26 +242,23 @@ def rest_speed(i, j, discs, restitution, rest_height, time):
     height = place_noise(discs, i, j, time)
     if restitution < 1.0:
         height = max(height, rest_height * min(discs[i, RADIUS], discs[j, RADIUS]))
-    pull = max(
-        discs[i, GX] * discs[i, GX] + discs[i, GY] * discs[i, GY],
-        discs[j, GX] * discs[j, GX] + discs[j, GY] * discs[j, GY],
-    )
-    return math.sqrt(2.0 * math.sqrt(pull) * height)
+    pull = max(math.hypot(discs[i, GX], discs[i, GY]), math.hypot(discs[j, GX], discs[j, GY]))
+    return math.sqrt(2.0 * pull * height)
 
 
 @compiled
-def _restitution(touching, discs, members, links, contacts, velocities, numbers):
+def _restitution(touching, discs, group, numbers):
     """The restitution, or 0 if nothing in the group approaches faster than rest."""
     for c in range(touching):
-        i, j = members[MEMBER, links[c, 0]], members[MEMBER, links[c, 1]]
+        i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
         speed = rest_speed(i, j, discs, numbers[RESTITUTION], numbers[REST_HEIGHT], numbers[NOW])
-        if separation_speed(c, links, contacts, velocities[MOTION]) < -speed:
+        if opening_rate(c, group.motion, group) < -speed:
             return numbers[RESTITUTION]
     return 0.0
 
 
 @compiled
-def _report(touching, members, links, contacts, velocities, report, details, numbers, counts):
+def _report(touching, group, report, numbers, counts):
     """Report the contacts that had an impulse.
 
     The energy lost is −Σ p (s + s')/2, with s, s' the speeds of separation before and after; in a joint
@@ -222,82 +266,96 @@ def _report(touching, members, links, contacts, velocities, report, details, num
     """
     loss, impulses = 0.0, 0.0
     for c in range(touching):
-        before = separation_speed(c, links, contacts, velocities[INITIAL])
-        after = separation_speed(c, links, contacts, velocities[MOTION])
-        loss -= 0.5 * contacts[c, IMPULSE] * (before + after)
-        impulses += contacts[c, IMPULSE]
+        before, after = opening_rate(c, group.initial, group), opening_rate(c, group.motion, group)
+        loss -= 0.5 * group.contacts[c, IMPULSE] * (before + after)
+        impulses += group.contacts[c, IMPULSE]
     for c in range(touching):
-        if contacts[c, IMPULSE] > 0.0:
+        impulse = group.contacts[c, IMPULSE]
+        if impulse > 0.0:
             k = counts[REPORTED]
-            i, j = members[MEMBER, links[c, 0]], members[MEMBER, links[c, 1]]
-            report[k, 0], report[k, 1] = min(i, j), max(i, j)
-            details[k, 0] = numbers[NOW]
-            details[k, 1] = contacts[c, IMPULSE]
-            details[k, 2] = loss * (contacts[c, IMPULSE] / impulses)
+            i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+            report.pairs[k, 0], report.pairs[k, 1] = min(i, j), max(i, j)
+            report.details[k, 0] = numbers[NOW]
+            report.details[k, 1] = impulse
+            report.details[k, 2] = loss * (impulse / impulses)
             counts[REPORTED] += 1
             counts[IMPACTS] += 1
 
 
 @compiled
-def _has_new_path(m, discs, members, velocities):
-    """True for the two that met and those whose velocity changed, unless held."""
-    changed = velocities[MOTION, m, 0] != velocities[INITIAL, m, 0]
-    changed = changed or velocities[MOTION, m, 1] != velocities[INITIAL, m, 1]
-    return (m < 2 or changed) and not is_held(discs, members[MEMBER, m])
-
-
-@compiled
-def _redirect(count, discs, changes, members, velocities, numbers):
-    """Start new paths now."""
+def _make_contacts_last(count, touching, discs, ties, group, counts):
+    """Enter the contacts with a force into the table, instead of all that the members had."""
     for m in range(count):
-        if _has_new_path(m, discs, members, velocities):
-            i = members[MEMBER, m]
-            s = numbers[NOW] - discs[i, EPOCH]
-            discs[i, UX] += s * (discs[i, VX] + 0.5 * s * discs[i, AX])
-            discs[i, UY] += s * (discs[i, VY] + 0.5 * s * discs[i, AY])
-            discs[i, VX], discs[i, VY] = velocities[MOTION, m, 0], velocities[MOTION, m, 1]
-            discs[i, EPOCH] = numbers[NOW]
-            changes[i] += 1
+        forget_lasting(group.members[m], ties, counts)
+    for c in range(touching):
+        force = group.contacts[c, FORCE]
+        if force > 0.0:
+            i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+            note_lasting(i, j, force, discs, ties, counts)
+            note_lasting(j, i, force, discs, ties, counts)
 
 
 @compiled
-def _enclose_anew(count, discs, boxes, layer, levels, heads, entries, members, numbers, counts):
+def _redirect(count, struck, duration, discs, group, numbers):
+    """Start new paths now: of the first `struck` members and of those whose velocity or acceleration changed.
+
+    One that is in lasting contact gets the group's next step.
+    """
+    now = numbers[NOW]
+    waiting = duration < NEVER
+    for m in range(count):
+        i = group.members[m]
+        discs[i, STEP] = NEVER
+        s = now - discs[i, EPOCH]
+        vx, vy, ax, ay = group.other[m, 0], group.other[m, 1], group.motion[m, 0], group.motion[m, 1]
+        old = vx == discs[i, VX] + s * discs[i, AX] and vy == discs[i, VY] + s * discs[i, AY]
+        old = old and ax == discs[i, AX] and ay == discs[i, AY]
+        if is_held(i, discs) or (old and m >= struck):
+            continue
+        discs[i, UX] += s * (discs[i, VX] + 0.5 * s * discs[i, AX])
+        discs[i, UY] += s * (discs[i, VY] + 0.5 * s * discs[i, AY])
+        discs[i, VX], discs[i, VY], discs[i, AX], discs[i, AY] = vx, vy, ax, ay
+        discs[i, EPOCH] = now
+        discs[i, CHANGES] += 1.0
+        if waiting and (ax != discs[i, GX] or ay != discs[i, GY]):
+            discs[i, STEP] = now + duration
+            waiting = False
+
+
+@compiled
+def _enclose_anew(count, discs, grid, group, numbers, counts):
     """Give the discs with new paths new boxes; the window is opened anew if one is too large for the grid."""
-    layers = counts[LAYERS]
+    layers, cell = counts[LAYERS], numbers[CELL]
     for m in range(count):
-        i = members[MEMBER, m]
-        if discs[i, EPOCH] == numbers[NOW] and not is_held(discs, i):
-            leave(i, layer, layers, heads, entries)
-            enclose(i, discs, boxes, numbers[NOW], numbers[END])
-            level = level_of(i, boxes, numbers[CELL])
-            layer[i] = layer_of(level, levels, layers)
-            if layer[i] == layers:
+        i = group.members[m]
+        if discs[i, EPOCH] == numbers[NOW] and not is_held(i, discs):
+            leave(i, grid, layers)
+            enclose(i, discs, grid, numbers[NOW], numbers[END])
+            level = level_of(i, grid, cell)
+            grid.layer[i] = layer_of(level, grid, layers)
+            if grid.layer[i] == layers:
                 counts[LEVEL] = max(counts[LEVEL], level)
                 counts[RENEW] = 1
-            enter(i, boxes, layer, levels, layers, numbers[CELL], heads, entries)
+            enter(i, grid, layers, cell)
 
 
 @compiled
-def _expect_anew(
-    count, discs, changes, boxes, layer, levels, heads, entries, first, partners, bonds, times, meetings, found,
-    members, numbers, counts,
-):  # fmt: skip
+def _expect_anew(count, discs, grid, ties, queue, group, numbers, counts):
     """Foresee the meetings of the discs with new paths. False if the queue is full."""
     if counts[RENEW]:
         return True
     for m in range(count):
-        i = members[MEMBER, m]
-        if discs[i, EPOCH] != numbers[NOW] or is_held(discs, i):
+        i = group.members[m]
+        if discs[i, EPOCH] != numbers[NOW] or is_held(i, discs):
             continue
-        near = neighbours(
-            i, boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3],
-            boxes, layer, levels, counts[LAYERS], numbers[CELL], heads, entries, found,
-        )  # fmt: skip
-        for k in range(near):
-            j = found[k]
-            again = members[PLACE, j] >= 0 and j < i and discs[j, EPOCH] == numbers[NOW]
-            if not (again and not is_held(discs, j)) and not expect(
-                i, j, discs, changes, first, partners, bonds, times, meetings, numbers, counts
-            ):
+        left, bottom, right, top = grid.boxes[i]
+        near = neighbours(i, left, bottom, right, top, grid, counts[LAYERS], numbers[CELL])
+        grid.found[near] = i  # and the step of its lasting contacts
+        for k in range(near + 1):
+            j = grid.found[k]
+            again = (
+                group.place[j] != NONE and j < i and discs[j, EPOCH] == numbers[NOW] and not is_held(j, discs)
+            )
+            if not again and not expect(i, j, discs, ties, queue, numbers, counts):
                 return False
     return True

@@ -7,26 +7,12 @@ All are evaluated along the path, which keeps the digits that expanded coefficie
 
 import math
 
-from systems.collision.disc import (
-    AX,
-    AY,
-    EPOCH,
-    EPSILON,
-    GX,
-    GY,
-    OX,
-    OY,
-    PLACE_NOISE,
-    RADIUS,
-    SPEED_NOISE,
-    UX,
-    UY,
-    VX,
-    VY,
-)
-from systems.kernels import compiled
+from systems.collision.arrays import AX, AY, EPOCH, EPSILON, GX, GY, OX, OY, RADIUS, UX, UY, VX, VY
+from systems.collision.kernels import compiled
 
 NEVER = math.inf
+SPEED_NOISE = 16.0 * EPSILON  # of both speeds: a slower approach is round-off
+PLACE_NOISE = 64.0 * EPSILON  # of both positions and paths: discs this near touch
 MOST_ITERATIONS = 2200  # what bisection alone needs across all exponents and bits of a double; Newton: 5
 
 
@@ -212,7 +198,7 @@ def _turn(dx, dy, vx, vy, ax, ay, low, high, falling):
         following = s - step
         if not (low < following < high):
             following = 0.5 * (low + high)
-        if abs(following - s) <= EPSILON * abs(s) or following == low or following == high:
+        if abs(following - s) <= EPSILON * abs(s) or following in (low, high):
             return following
         s = following
     return s
@@ -227,7 +213,7 @@ def _fall(dx, dy, vx, vy, ax, ay, noise, growth, low, high):
         return NEVER
     for _ in range(MOST_ITERATIONS):
         s = 0.5 * (low + high)
-        if s == low or s == high:
+        if s in (low, high):
             break
         if _slope(dx, dy, vx, vy, ax, ay, s) < -noise - growth * s:
             high = s
@@ -253,7 +239,7 @@ def _touch(dx, dy, vx, vy, ax, ay, reach, noise, growth, low, high, overlapping)
         following = s - value / _slope(dx, dy, vx, vy, ax, ay, s)
         if not (low < following < high):
             following = 0.5 * (low + high)
-        if abs(following - s) <= EPSILON * abs(s) or following == low or following == high:
+        if abs(following - s) <= EPSILON * abs(s) or following in (low, high):
             return following
         s = following
     return s

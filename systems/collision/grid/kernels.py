@@ -5,20 +5,30 @@ larger than the box. It is entered as native into the one to four cells of that 
 and as guest into those of all coarser layers. Two boxes that overlap then share a cell of the coarser one's
 layer, whatever their sizes: a very large or very fast disc costs no more than a look at all others.
 
-boxes: shape (n, 4): left, bottom, right, top, m. layer: the layer of each disc, shape (n,). levels: the cells
-of layer k have the size cell × 2^levels[k]; ascending. Entries 4 (disc × layers + layer) to + 3 of `entries`,
-shape (capacity, 3), hold the entries after and before them in their bucket (−1: none) and the hash of their
-cell; heads are the first entries of the buckets, a power of two of them.
+The entries 4 (disc × layers + layer) to + 3 are a disc's cells in a layer; those of a bucket are chained.
 """
 
 import math
 
-from systems.collision.disc import AX, AY, EPOCH, OX, OY, RADIUS, UX, UY, VX, VY
+from systems.collision.arrays import (
+    AFTER,
+    AX,
+    AY,
+    BEFORE,
+    EPOCH,
+    KEY,
+    NONE,
+    OX,
+    OY,
+    RADIUS,
+    UX,
+    UY,
+    VX,
+    VY,
+)
 from systems.collision.gap.kernels import extent
-from systems.kernels import compiled
+from systems.collision.kernels import compiled
 
-NONE = -1
-AFTER, BEFORE, KEY = 0, 1, 2
 FARTHEST_CELL = 2.0**40  # cells from the origin; farther out cells grow, so that they can be told apart
 COARSEST = 63
 MARGIN = 1e-13  # of a disc's coordinates, added to its box: above what counts as touching
@@ -37,17 +47,17 @@ def _range(u, v, a, start, end):
 
 
 @compiled
-def enclose(i, discs, boxes, now, end):
+def enclose(i, discs, grid, now, end):
     """Set the box of a disc to what its path covers from now to end."""
     start, stop = now - discs[i, EPOCH], end - discs[i, EPOCH]
     low_x, high_x = _range(discs[i, UX], discs[i, VX], discs[i, AX], start, stop)
     low_y, high_y = _range(discs[i, UY], discs[i, VY], discs[i, AY], start, stop)
     margin = MARGIN * max(extent(discs, i, now), extent(discs, i, end))
     around = discs[i, RADIUS] + margin
-    boxes[i, 0] = discs[i, OX] + low_x - around
-    boxes[i, 1] = discs[i, OY] + low_y - around
-    boxes[i, 2] = discs[i, OX] + high_x + around
-    boxes[i, 3] = discs[i, OY] + high_y + around
+    grid.boxes[i, 0] = discs[i, OX] + low_x - around
+    grid.boxes[i, 1] = discs[i, OY] + low_y - around
+    grid.boxes[i, 2] = discs[i, OX] + high_x + around
+    grid.boxes[i, 3] = discs[i, OY] + high_y + around
 
 
 @compiled
@@ -61,16 +71,18 @@ def place_box(i, discs, now):
 
 
 @compiled
-def box_size(i, boxes):
+def box_size(i, grid):
     """The longer side of a disc's box."""
+    boxes = grid.boxes
     return max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1])
 
 
 @compiled
-def level_of(i, boxes, cell):
+def level_of(i, grid, cell):
     """The finest level (0: cells of size `cell`, then doubling) that suits the box of a disc."""
+    boxes = grid.boxes
     away = max(abs(boxes[i, 0] + boxes[i, 2]), abs(boxes[i, 1] + boxes[i, 3]))
-    size = 1.001 * max(box_size(i, boxes), 0.5 * away / FARTHEST_CELL)  # a box overlaps two cells, not three
+    size = 1.001 * max(box_size(i, grid), 0.5 * away / FARTHEST_CELL)  # a box overlaps two cells, not three
     if size <= cell:
         return 0
     mantissa, exponent = math.frexp(size / cell)
@@ -78,10 +90,10 @@ def level_of(i, boxes, cell):
 
 
 @compiled
-def layer_of(level, levels, layers):
+def layer_of(level, grid, layers):
     """The finest layer of at least this level; `layers` if all are finer."""
     k = 0
-    while k < layers and levels[k] < level:
+    while k < layers and grid.levels[k] < level:
         k += 1
     return k
 
@@ -100,18 +112,19 @@ def _inverse_size(cell, level):
 
 
 @compiled
-def enter(i, boxes, layer, levels, layers, cell, heads, entries):
+def enter(i, grid, layers, cell):
     """Enter a disc into its layer and all coarser ones."""
-    for k in range(layer[i], layers):
-        inverse = _inverse_size(cell, levels[k])
+    boxes, entries = grid.boxes, grid.entries
+    for k in range(grid.layer[i], layers):
+        inverse = _inverse_size(cell, grid.levels[k])
         left, right = math.floor(boxes[i, 0] * inverse), math.floor(boxes[i, 2] * inverse)
         bottom, top = math.floor(boxes[i, 1] * inverse), math.floor(boxes[i, 3] * inverse)
-        kind = 2 * k + (1 if k > layer[i] else 0)
+        kind = 2 * k + (1 if k > grid.layer[i] else 0)
         for q in range(4):
             entry = 4 * (i * layers + k) + q
             cx, cy = left + q // 2, bottom + q % 2
             if cx <= right and cy <= top:
-                _insert(entry, _key(cx, cy, kind), heads, entries)
+                _insert(entry, _key(cx, cy, kind), grid.heads, entries)
             else:
                 entries[entry, KEY] = NONE
 
@@ -129,9 +142,10 @@ def _insert(entry, key, heads, entries):
 
 
 @compiled
-def leave(i, layer, layers, heads, entries):
+def leave(i, grid, layers):
     """Take a disc out of the grid."""
-    for entry in range(4 * (i * layers + layer[i]), 4 * (i + 1) * layers):
+    heads, entries = grid.heads, grid.entries
+    for entry in range(4 * (i * layers + grid.layer[i]), 4 * (i + 1) * layers):
         key = entries[entry, KEY]
         if key != NONE:
             previous, following = entries[entry, BEFORE], entries[entry, AFTER]
@@ -144,14 +158,15 @@ def leave(i, layer, layers, heads, entries):
 
 
 @compiled
-def neighbours(i, left, bottom, right, top, boxes, layer, levels, layers, cell, heads, entries, found):
+def neighbours(i, left, bottom, right, top, grid, layers, cell):
     """Discs other than i whose boxes overlap a part of that of i, each once, into `found`; returns how many."""
+    boxes, heads, entries, found = grid.boxes, grid.heads, grid.entries, grid.found
     count = 0
-    for k in range(layer[i], layers):
-        inverse = _inverse_size(cell, levels[k])
+    for k in range(grid.layer[i], layers):
+        inverse = _inverse_size(cell, grid.levels[k])
         for cx in range(math.floor(left * inverse), math.floor(right * inverse) + 1):
             for cy in range(math.floor(bottom * inverse), math.floor(top * inverse) + 1):
-                for guests in range(2 if k == layer[i] and k > 0 else 1):
+                for guests in range(2 if k == grid.layer[i] and k > 0 else 1):
                     key = _key(cx, cy, 2 * k + guests)
                     entry = heads[key & (heads.shape[0] - 1)]
                     while entry != NONE:
@@ -164,7 +179,7 @@ def neighbours(i, left, bottom, right, top, boxes, layer, levels, layers, cell, 
                             and math.floor(x * inverse) == cx  # of the cells both overlap, count one
                             and math.floor(y * inverse) == cy
                             and entries[entry, KEY] == key
-                            and count < found.shape[0]
+                            and count < boxes.shape[0]
                         ):
                             found[count] = j
                             count += 1

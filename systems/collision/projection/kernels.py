@@ -7,57 +7,47 @@ solution of many.
 
 import math
 
-from systems.collision.disc import EPSILON, SPEED_NOISE
-from systems.collision.group import (
-    ACTIVE,
-    BIAS,
-    CHOSEN,
-    DIRECT,
-    GIVEN,
-    INITIAL,
-    MOTION,
-    NX,
-    NY,
-    OPENING,
-    START,
-    STATE,
-)
-from systems.kernels import compiled
+from systems.collision.arrays import ACTIVE, BIAS, CHOSEN, DIRECT, EPSILON, GIVEN, NX, NY, OPENING, STATE
+from systems.collision.gap.kernels import SPEED_NOISE
+from systems.collision.kernels import compiled
 
 IDLE, FITTED, DEPENDENT = 0, 1, 2
 MOST_SWEEPS = 20000  # over the contacts of a projection; more: nearer to round-off in large groups, slower
 
 
 @compiled
-def opening_rate(c, links, contacts, motion):
+def opening_rate(c, motion, group):
     """Rate at which a contact opens; negative: it closes."""
-    a, b = links[c, 0], links[c, 1]
+    a, b = group.links[c, 0], group.links[c, 1]
     x, y = motion[b, 0] - motion[a, 0], motion[b, 1] - motion[a, 1]
-    return contacts[c, NX] * x + contacts[c, NY] * y + contacts[c, BIAS]
+    return group.contacts[c, NX] * x + group.contacts[c, NY] * y + group.contacts[c, BIAS]
 
 
 @compiled
-def compliance(c, d, links, contacts, mobility):
+def compliance(c, d, group):
     """Rate at which a unit impulse in contact d opens contact c: N_cᵀ M⁻¹ N_d, 1/kg."""
+    links, contacts = group.links, group.contacts
     total = 0.0
     for p in range(2):
         for q in range(2):
             m = links[c, p]
             if m == links[d, q]:
-                along = mobility[m, 0] * contacts[c, NX] * contacts[d, NX]
-                along += mobility[m, 1] * contacts[c, NY] * contacts[d, NY]
+                along = group.mobility[m, 0] * contacts[c, NX] * contacts[d, NX]
+                along += group.mobility[m, 1] * contacts[c, NY] * contacts[d, NY]
                 total += along if p == q else -along
     return total
 
 
 @compiled
-def push_apart(c, impulse, links, contacts, mobility, motion):
+def push_apart(c, impulse, group):
     """Give the discs of a contact opposite impulses that push them apart."""
-    a, b = links[c, 0], links[c, 1]
-    motion[a, 0] -= mobility[a, 0] * contacts[c, NX] * impulse
-    motion[a, 1] -= mobility[a, 1] * contacts[c, NY] * impulse
-    motion[b, 0] += mobility[b, 0] * contacts[c, NX] * impulse
-    motion[b, 1] += mobility[b, 1] * contacts[c, NY] * impulse
+    motion, mobility = group.motion, group.mobility
+    a, b = group.links[c, 0], group.links[c, 1]
+    x, y = group.contacts[c, NX] * impulse, group.contacts[c, NY] * impulse
+    motion[a, 0] -= mobility[a, 0] * x
+    motion[a, 1] -= mobility[a, 1] * y
+    motion[b, 0] += mobility[b, 0] * x
+    motion[b, 1] += mobility[b, 1] * y
 
 
 @compiled
@@ -68,76 +58,74 @@ def copy_motion(source, target, members):
 
 
 @compiled
-def rate_noise(c, links, motions):
+def rate_noise(c, group):
     """Rate below which a contact closes by round-off only."""
     total = 0.0
     for p in range(2):
-        m = links[c, p]
-        for note in (MOTION, INITIAL):
-            total += abs(motions[note, m, 0]) + abs(motions[note, m, 1])
+        m = group.links[c, p]
+        total += abs(group.motion[m, 0]) + abs(group.motion[m, 1])
+        total += abs(group.initial[m, 0]) + abs(group.initial[m, 1])
     return SPEED_NOISE * total
 
 
 @compiled
-def project(members, active, tolerance, links, contacts, mobility, motions, marks, matrix):
-    """Project MOTION for the first `active` contacts of marks[ACTIVE]; impulses in column GIVEN.
+def project(members, active, tolerance, group):
+    """Project the motion for the first `active` contacts of marks[ACTIVE]; impulses in column GIVEN.
 
     tolerance: rate at which a contact of a large group may still close. Large groups start from the
     impulses that GIVEN holds, small ones from none.
     """
-    motion, start = motions[MOTION], motions[START]
-    copy_motion(motion, start, members)
+    copy_motion(group.motion, group.start, members)
     if active <= DIRECT:
         for k in range(active):
-            c = marks[ACTIVE, k]
-            contacts[c, GIVEN] = 0.0
-            marks[STATE, c] = IDLE
-        _solve_by_active_set(members, active, links, contacts, mobility, motions, marks, matrix)
+            c = group.marks[ACTIVE, k]
+            group.contacts[c, GIVEN] = 0.0
+            group.marks[STATE, c] = IDLE
+        _solve_by_active_set(members, active, group)
         tolerance = 0.0
     else:
         for k in range(active):
-            c = marks[ACTIVE, k]
-            push_apart(c, contacts[c, GIVEN], links, contacts, mobility, motion)
-    _solve_by_sweeps(active, tolerance, links, contacts, mobility, motions, marks)
+            c = group.marks[ACTIVE, k]
+            push_apart(c, group.contacts[c, GIVEN], group)
+    _solve_by_sweeps(active, tolerance, group)
 
 
 @compiled
-def _solve_by_active_set(members, active, links, contacts, mobility, motions, marks, matrix):
+def _solve_by_active_set(members, active, group):
     """Non-negative least squares after Lawson and Hanson, Solving Least Squares Problems (1974), chapter 23."""
-    motion, start = motions[MOTION], motions[START]
     fitted = 0
     for _ in range(8 * DIRECT):
-        worst = _worst(active, links, contacts, motions, marks)
+        worst = _worst(active, group)
         if worst < 0:
             return
-        marks[CHOSEN, fitted] = worst
-        marks[STATE, worst] = FITTED
-        fitted = _fit(fitted + 1, links, contacts, mobility, start, marks, matrix)
-        copy_motion(start, motion, members)
+        group.marks[CHOSEN, fitted] = worst
+        group.marks[STATE, worst] = FITTED
+        fitted = _fit(fitted + 1, group)
+        copy_motion(group.start, group.motion, members)
         for r in range(fitted):
-            c = marks[CHOSEN, r]
-            push_apart(c, contacts[c, GIVEN], links, contacts, mobility, motion)
+            c = group.marks[CHOSEN, r]
+            push_apart(c, group.contacts[c, GIVEN], group)
 
 
 @compiled
-def _worst(active, links, contacts, motions, marks):
+def _worst(active, group):
     """The idle contact that closes fastest, or −1."""
     worst, fastest = -1, 0.0
     for k in range(active):
-        c = marks[ACTIVE, k]
-        if marks[STATE, c] == IDLE:
-            rate = opening_rate(c, links, contacts, motions[MOTION])
-            if rate < fastest and rate < -rate_noise(c, links, motions):
+        c = group.marks[ACTIVE, k]
+        if group.marks[STATE, c] == IDLE:
+            rate = opening_rate(c, group.motion, group)
+            if rate < fastest and rate < -rate_noise(c, group):
                 worst, fastest = c, rate
     return worst
 
 
 @compiled
-def _fit(fitted, links, contacts, mobility, start, marks, matrix):
+def _fit(fitted, group):
     """Impulses that stop the chosen contacts, without those that would have to pull; returns how many are left."""
-    values = matrix[DIRECT]
+    contacts, marks, values = group.contacts, group.marks, group.matrix[DIRECT]
     while fitted > 0:
-        if not _solve(fitted, links, contacts, mobility, start, marks, matrix):
+        if not _solve(fitted, group):
             fitted -= 1  # the newest depends on the others, which stop it already
             c = marks[CHOSEN, fitted]
             contacts[c, GIVEN] = 0.0
@@ -166,22 +154,22 @@ def _fit(fitted, links, contacts, mobility, start, marks, matrix):
 
 
 @compiled
-def _solve(count, links, contacts, mobility, start, marks, matrix):
+def _solve(count, group):
     """Impulses that bring the chosen contacts' rates to 0, into row DIRECT of the matrix, by Cholesky.
 
-    False if the last row depends on the others.
+    False if a row depends on those before it.
     """
-    values = matrix[DIRECT]
+    matrix, values = group.matrix, group.matrix[DIRECT]
     for r in range(count):
-        row = marks[CHOSEN, r]
-        values[r] = -opening_rate(row, links, contacts, start)
+        row = group.marks[CHOSEN, r]
+        values[r] = -opening_rate(row, group.start, group)
         for c in range(r + 1):
-            value = compliance(row, marks[CHOSEN, c], links, contacts, mobility)
+            value = compliance(row, group.marks[CHOSEN, c], group)
             for k in range(c):
                 value -= matrix[r, k] * matrix[c, k]
             if c < r:
                 matrix[r, c] = value / matrix[c, c]
-            elif value > 64.0 * EPSILON * contacts[row, OPENING]:
+            elif value > 64.0 * EPSILON * group.contacts[row, OPENING]:
                 matrix[r, r] = math.sqrt(value)
             else:
                 return False
@@ -196,18 +184,18 @@ def _solve(count, links, contacts, mobility, start, marks, matrix):
 
 
 @compiled
-def _solve_by_sweeps(active, tolerance, links, contacts, mobility, motions, marks):
+def _solve_by_sweeps(active, tolerance, group):
     """Gauss–Seidel, to and fro, from the impulses GIVEN so far, until rates change by less than the tolerance."""
-    motion = motions[MOTION]
+    contacts = group.contacts
     for sweep in range(MOST_SWEEPS):
         settled = True
         for k in range(active):
-            c = marks[ACTIVE, k if sweep % 2 == 0 else active - 1 - k]
-            rate = opening_rate(c, links, contacts, motion)
+            c = group.marks[ACTIVE, k if sweep % 2 == 0 else active - 1 - k]
+            rate = opening_rate(c, group.motion, group)
             impulse = max(contacts[c, GIVEN] - rate / contacts[c, OPENING], 0.0)
             change = impulse - contacts[c, GIVEN]
-            if abs(change) * contacts[c, OPENING] > max(tolerance, rate_noise(c, links, motions)):
-                push_apart(c, change, links, contacts, mobility, motion)
+            if abs(change) * contacts[c, OPENING] > max(tolerance, rate_noise(c, group)):
+                push_apart(c, change, group)
                 contacts[c, GIVEN] = impulse
                 settled = False
         if settled:

@@ -1,99 +1,91 @@
-"""A binary heap of meetings, earliest first; equal times in the order of the discs' numbers.
+"""A binary heap of meetings, earliest first; equal times in the order of the discs' numbers."""
 
-times: shape (capacity,), s. meetings: shape (capacity, 4): two discs, and how many changes of path each had
-had when the meeting was foreseen. A meeting is void once either disc has changed its path since.
-"""
-
-from systems.kernels import compiled
+from systems.collision.arrays import CHANGES
+from systems.collision.kernels import compiled
 
 
 @compiled
-def _before(time, i, j, other_time, other_i, other_j):
-    if time != other_time:
-        return time < other_time
-    if i != other_i:
-        return i < other_i
-    return j < other_j
+def _before(time, i, j, k, queue):
+    """True if a meeting comes before the one at k."""
+    other = queue.times[k]
+    if time != other:
+        return time < other
+    if i != queue.meetings[k, 0]:
+        return i < queue.meetings[k, 0]
+    return j < queue.meetings[k, 1]
 
 
 @compiled
-def _place(times, meetings, k, time, i, j, changes_i, changes_j):
-    times[k] = time
-    meetings[k, 0] = i
-    meetings[k, 1] = j
-    meetings[k, 2] = changes_i
-    meetings[k, 3] = changes_j
+def _place(queue, k, time, i, j, changes_i, changes_j):
+    queue.times[k] = time
+    queue.meetings[k, 0] = i
+    queue.meetings[k, 1] = j
+    queue.meetings[k, 2] = changes_i
+    queue.meetings[k, 3] = changes_j
 
 
 @compiled
-def _move(times, meetings, source, target):
-    times[target] = times[source]
+def _move(queue, source, target):
+    queue.times[target] = queue.times[source]
     for c in range(4):
-        meetings[target, c] = meetings[source, c]
+        queue.meetings[target, c] = queue.meetings[source, c]
 
 
 @compiled
-def push(times, meetings, size, time, i, j, changes_i, changes_j):
+def push(queue, size, time, i, j, changes_i, changes_j):
     """Add a meeting to a heap of `size` that has room for it."""
     k = size
     while k > 0:
         parent = (k - 1) // 2
-        if not _before(time, i, j, times[parent], meetings[parent, 0], meetings[parent, 1]):
+        if not _before(time, i, j, parent, queue):
             break
-        _move(times, meetings, parent, k)
+        _move(queue, parent, k)
         k = parent
-    _place(times, meetings, k, time, i, j, changes_i, changes_j)
+    _place(queue, k, time, i, j, changes_i, changes_j)
 
 
 @compiled
-def _sink(times, meetings, size, k):
+def _sink(queue, size, k):
     """Let the meeting at k sink to where it belongs."""
-    time = times[k]
-    i, j = meetings[k, 0], meetings[k, 1]
-    changes_i, changes_j = meetings[k, 2], meetings[k, 3]
-    while True:
+    time, i, j = queue.times[k], queue.meetings[k, 0], queue.meetings[k, 1]
+    changes_i, changes_j = queue.meetings[k, 2], queue.meetings[k, 3]
+    while 2 * k + 1 < size:
         child = 2 * k + 1
-        if child >= size:
-            break
         right = child + 1
         if right < size and _before(
-            times[right],
-            meetings[right, 0],
-            meetings[right, 1],
-            times[child],
-            meetings[child, 0],
-            meetings[child, 1],
+            queue.times[right], queue.meetings[right, 0], queue.meetings[right, 1], child, queue
         ):
             child = right
-        if not _before(times[child], meetings[child, 0], meetings[child, 1], time, i, j):
+        if _before(time, i, j, child, queue):
             break
-        _move(times, meetings, child, k)
+        _move(queue, child, k)
         k = child
-    _place(times, meetings, k, time, i, j, changes_i, changes_j)
+    _place(queue, k, time, i, j, changes_i, changes_j)
 
 
 @compiled
-def drop_first(times, meetings, size):
+def drop_first(queue, size):
     """Remove the earliest meeting; the heap then has size − 1."""
     if size > 1:
-        _move(times, meetings, size - 1, 0)
-        _sink(times, meetings, size - 1, 0)
+        _move(queue, size - 1, 0)
+        _sink(queue, size - 1, 0)
 
 
 @compiled
-def is_void(meetings, k, changes):
+def is_void(queue, k, discs):
     """True if a disc of the meeting has changed its path since."""
-    return meetings[k, 2] != changes[meetings[k, 0]] or meetings[k, 3] != changes[meetings[k, 1]]
+    i, j = queue.meetings[k, 0], queue.meetings[k, 1]
+    return queue.meetings[k, 2] != discs[i, CHANGES] or queue.meetings[k, 3] != discs[j, CHANGES]
 
 
 @compiled
-def purge(times, meetings, size, changes):
+def purge(queue, size, discs):
     """Remove the void meetings; returns how many are left."""
     kept = 0
     for k in range(size):
-        if not is_void(meetings, k, changes):
-            _move(times, meetings, k, kept)
+        if not is_void(queue, k, discs):
+            _move(queue, k, kept)
             kept += 1
     for k in range(kept // 2 - 1, -1, -1):
-        _sink(times, meetings, kept, k)
+        _sink(queue, kept, k)
     return kept

@@ -4,15 +4,39 @@ When a window opens, every disc gets a box around its path until the window's en
 whose boxes overlap are foreseen and queued. What is foreseen for two discs follows from their paths alone, so
 that windows, boxes, grid and queue can be thrown away and made anew at any time without changing a bit of what
 comes out.
-
-first, partners, bonds: pairs that do not collide; those of disc i are partners[first[i] : first[i + 1]].
 """
 
-from systems.collision.disc import AX, AY, EPOCH, OX, OY, RADIUS, UX, UY, VX, VY, WX, WY
-from systems.collision.gap.kernels import NEVER, first_approach, relative_motion, speed_noise
+from systems.collision.arrays import (
+    AX,
+    AY,
+    CELL,
+    CHANGES,
+    CROWDING,
+    END,
+    EPOCH,
+    FREE,
+    JOINED,
+    LAYERS,
+    LEVEL,
+    NONE,
+    NOW,
+    OX,
+    OY,
+    QUEUED,
+    RADIUS,
+    RENEW,
+    STEP,
+    UX,
+    UY,
+    VX,
+    VY,
+    WINDOW,
+    Reason,
+)
+from systems.collision.contact.kernels import find_lasting, is_held
+from systems.collision.gap.kernels import NEVER, first_approach, pull_noise, relative_motion, speed_noise
 from systems.collision.grid.kernels import (
     COARSEST,
-    NONE,
     box_size,
     enclose,
     enter,
@@ -20,23 +44,10 @@ from systems.collision.grid.kernels import (
     level_of,
     neighbours,
 )
+from systems.collision.kernels import compiled
 from systems.collision.queue.kernels import purge, push
-from systems.collision.state import (
-    CELL,
-    CROWDING,
-    END,
-    LAYERS,
-    LEVEL,
-    NOW,
-    QUEUED,
-    RENEW,
-    WINDOW,
-    Reason,
-)
-from systems.kernels import compiled
 
 DONE, QUEUE_FULL, GRID_FULL = int(Reason.DONE), int(Reason.QUEUE_FULL), int(Reason.GRID_FULL)
-FREE, JOINED, OVERLAPPING = 0, 1, 2  # bonds: none; never collide; do not collide before they have separated
 
 LONGEST_WINDOW, SHORTEST_WINDOW = 2.0**20, 2.0**-200  # s
 BOX_COST = 2.5  # of renewing a disc's box, relative to that of looking at one neighbour (measured)
@@ -45,77 +56,60 @@ SAMPLE = 128  # discs that decide the size of the grid's cells
 
 
 @compiled
-def is_held(discs, i):
-    """True if a disc cannot move at all."""
-    return discs[i, WX] == 0.0 and discs[i, WY] == 0.0
-
-
-@compiled
-def find_bond(i, j, first, partners, bonds):
+def find_bond(i, j, ties):
     """Index of the bond of i to j, or −1."""
-    for k in range(first[i], first[i + 1]):
-        if partners[k] == j and bonds[k] != FREE:
+    for k in range(ties.first[i], ties.first[i + 1]):
+        if ties.partners[k] == j and ties.bonds[k] != FREE:
             return k
     return -1
 
 
 @compiled
-def foresee(i, j, discs, first, partners, bonds, end):
-    """Time at which two discs next touch while they approach, up to `end`; NEVER if they do not."""
+def foresee(i, j, discs, ties, end):
+    """Time at which two discs next touch while they approach, up to `end`; NEVER if they do not.
+
+    For i = j: when the forces in the disc's lasting contacts are due again.
+    """
+    if i == j:
+        return discs[i, STEP]
     if i > j:
         i, j = j, i
-    if is_held(discs, i) and is_held(discs, j):
+    if (is_held(i, discs) and is_held(j, discs)) or find_lasting(i, j, ties) != NONE:
         return NEVER
-    bond = find_bond(i, j, first, partners, bonds)
-    if bond >= 0 and bonds[bond] == JOINED:
+    bond = find_bond(i, j, ties)
+    if bond >= 0 and ties.bonds[bond] == JOINED:
         return NEVER
     start = max(discs[i, EPOCH], discs[j, EPOCH])
     dx, dy, vx, vy, ax, ay = relative_motion(discs, i, j, start)
     reach = discs[i, RADIUS] + discs[j, RADIUS]
     overlapping = bond >= 0
     if overlapping and dx * dx + dy * dy > reach * reach:
-        bonds[bond] = FREE
-        bonds[find_bond(j, i, first, partners, bonds)] = FREE
+        ties.bonds[find_bond(j, i, ties)] = FREE
+        ties.bonds[bond] = FREE
         overlapping = False
-    noise = speed_noise(discs, i, j, start)
-    return start + first_approach(dx, dy, vx, vy, ax, ay, reach, noise, end - start, overlapping)
+    noise, growth = speed_noise(discs, i, j, start), pull_noise(discs, i, j)
+    return start + first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, end - start, overlapping)
 
 
 @compiled
-def expect(i, j, discs, changes, first, partners, bonds, times, meetings, numbers, counts):
+def expect(i, j, discs, ties, queue, numbers, counts):
     """Foresee a meeting and queue it if it falls into the window. False if the queue is full."""
-    time = foresee(i, j, discs, first, partners, bonds, numbers[END])
+    time = foresee(i, j, discs, ties, numbers[END])
     if time > numbers[END]:
         return True
-    if counts[QUEUED] == times.shape[0]:
-        counts[QUEUED] = purge(times, meetings, counts[QUEUED], changes)
-        if counts[QUEUED] > times.shape[0] - times.shape[0] // 8:
+    capacity = queue.times.shape[0]
+    if counts[QUEUED] == capacity:
+        counts[QUEUED] = purge(queue, capacity, discs)
+        if counts[QUEUED] > capacity - capacity // 8:
             return False
-    if i > j:
-        i, j = j, i
-    push(times, meetings, counts[QUEUED], time, i, j, changes[i], changes[j])
+    i, j = min(i, j), max(i, j)
+    push(queue, counts[QUEUED], time, i, j, int(discs[i, CHANGES]), int(discs[j, CHANGES]))
     counts[QUEUED] += 1
     return True
 
 
 @compiled
-def open_window(
-    discs,
-    changes,
-    boxes,
-    layer,
-    levels,
-    heads,
-    entries,
-    first,
-    partners,
-    bonds,
-    times,
-    meetings,
-    found,
-    numbers,
-    counts,
-):
+def open_window(discs, grid, ties, queue, numbers, counts):
     """Choose a window that begins now, box all discs and queue all meetings in it. Returns a Reason."""
     counts[RENEW] = 1
     _choose_length(discs, numbers)
@@ -123,10 +117,7 @@ def open_window(
         area, _ = _survey(discs, numbers, numbers[WINDOW])
         resting, _ = _survey(discs, numbers, 0.0)
         crowd = NEVER if area <= 2.0 * resting else CROWD * discs.shape[0]
-        reason, pairs = _fill(
-            crowd, discs, changes, boxes, layer, levels, heads, entries, first, partners, bonds, times, meetings,
-            found, numbers, counts,
-        )  # fmt: skip
+        reason, pairs = _fill(crowd, discs, grid, ties, queue, numbers, counts)
         if reason != DONE:
             return reason
         if pairs <= crowd:
@@ -138,35 +129,29 @@ def open_window(
 
 
 @compiled
-def _fill(
-    crowd, discs, changes, boxes, layer, levels, heads, entries, first, partners, bonds, times, meetings, found,
-    numbers, counts,
-):  # fmt: skip
+def _fill(crowd, discs, grid, ties, queue, numbers, counts):
     """Boxes, grid and queue of a window. Returns a Reason and how many boxes overlap; gives up above `crowd`."""
     numbers[END] = numbers[NOW] + numbers[WINDOW]
     for i in range(discs.shape[0]):
-        enclose(i, discs, boxes, numbers[NOW], numbers[END])
-    _layer(boxes, layer, levels, numbers, counts)
-    if 4 * discs.shape[0] * counts[LAYERS] > entries.shape[0]:
+        enclose(i, discs, grid, numbers[NOW], numbers[END])
+    _set_layers(grid, numbers, counts)
+    layers, cell = counts[LAYERS], numbers[CELL]
+    if 4 * discs.shape[0] * layers > grid.entries.shape[0]:
         return GRID_FULL, 0
-    heads[:] = NONE
+    grid.heads[:] = NONE
     counts[QUEUED] = 0
     pairs = 0
-    layers = counts[LAYERS]
     for i in range(discs.shape[0]):
+        left, bottom, right, top = grid.boxes[i]
+        near = neighbours(i, left, bottom, right, top, grid, layers, cell)
+        grid.found[near] = i  # and the step of its lasting contacts
+        for k in range(near + 1):
+            if not expect(i, grid.found[k], discs, ties, queue, numbers, counts):
+                return QUEUE_FULL, 0
+        enter(i, grid, layers, cell)
+        pairs += near
         if pairs > crowd:
             break
-        near = neighbours(
-            i, boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3],
-            boxes, layer, levels, layers, numbers[CELL], heads, entries, found,
-        )  # fmt: skip
-        for k in range(near):
-            if not expect(
-                i, found[k], discs, changes, first, partners, bonds, times, meetings, numbers, counts
-            ):
-                return QUEUE_FULL, 0
-        pairs += near
-        enter(i, boxes, layer, levels, layers, numbers[CELL], heads, entries)
     return DONE, pairs
 
 
@@ -201,7 +186,9 @@ def _cost(discs, numbers, window):
     area, sweep = _survey(discs, numbers, window)
     pairs = numbers[CROWDING] * area
     count = discs.shape[0]
-    return (BOX_COST * count + pairs) / window + 2.0 * numbers[CROWDING] * sweep * (BOX_COST + 2.0 * pairs / count)
+    return (BOX_COST * count + pairs) / window + 2.0 * numbers[CROWDING] * sweep * (
+        BOX_COST + 2.0 * pairs / count
+    )
 
 
 @compiled
@@ -241,45 +228,47 @@ def _spread(discs):
 
 
 @compiled
-def _layer(boxes, layer, levels, numbers, counts):
+def _set_layers(grid, numbers, counts):
     """Choose the finest cells and the layers that the boxes need, and give every disc its layer."""
-    numbers[CELL] = _cell_size(boxes)
-    needed = 0
-    for i in range(boxes.shape[0]):
-        layer[i] = level_of(i, boxes, numbers[CELL])
-        needed |= 1 << layer[i]
-    needed |= 1 << min(counts[LEVEL], COARSEST)
-    counts[LAYERS] = 0
+    count = grid.boxes.shape[0]
+    numbers[CELL] = _cell_size(grid)
+    needed = 1 << min(counts[LEVEL], COARSEST)
+    for i in range(count):
+        grid.layer[i] = level_of(i, grid, numbers[CELL])
+        needed |= 1 << grid.layer[i]
+    layers = 0
     for level in range(COARSEST + 1):
         if (needed >> level) & 1:
-            levels[counts[LAYERS]] = level
-            counts[LAYERS] += 1
-    for i in range(boxes.shape[0]):
-        layer[i] = layer_of(layer[i], levels, counts[LAYERS])
+            grid.levels[layers] = level
+            layers += 1
+    for i in range(count):
+        grid.layer[i] = layer_of(grid.layer[i], grid, layers)
+    counts[LAYERS] = layers
     counts[LEVEL] = 0
 
 
 @compiled
-def _cell_size(boxes):
+def _cell_size(grid):
     """About the largest of the boxes, but not more than a few times the small ones."""
-    if boxes.shape[0] == 0:
+    if grid.boxes.shape[0] == 0:
         return 1.0
-    stride = max(boxes.shape[0] // SAMPLE, 1)
-    small, large = _quantile(boxes, stride, 0.1), _quantile(boxes, stride, 0.9)
+    small, large = _quantile(grid, 0.1), _quantile(grid, 0.9)
     return large if large <= 8.0 * small else 2.0 * small
 
 
 @compiled
-def _quantile(boxes, stride, share):
+def _quantile(grid, share):
     """The least size of a sampled box that at least a share of the sampled boxes do not exceed."""
-    sampled = (boxes.shape[0] + stride - 1) // stride
+    count = grid.boxes.shape[0]
+    stride = max(count // SAMPLE, 1)
+    sampled = (count + stride - 1) // stride
     best = NEVER
-    for i in range(0, boxes.shape[0], stride):
-        size = box_size(i, boxes)
+    for i in range(0, count, stride):
+        size = box_size(i, grid)
         if size < best:
             smaller = 0
-            for j in range(0, boxes.shape[0], stride):
-                if box_size(j, boxes) <= size:
+            for j in range(0, count, stride):
+                if box_size(j, grid) <= size:
                     smaller += 1
             if smaller >= share * sampled:
                 best = size

@@ -1,0 +1,163 @@
+"""The arrays of colliding discs: what each is, and what its columns mean. Kernels are given them in these tuples."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+EPSILON = 2.220446049250313e-16
+NONE = -1
+
+# Columns of `discs`, shape (n, DISC_WIDTH): one row per disc, its path since its epoch t₀, the time of its last
+# change. u(t) = u₀ + v₀ (t − t₀) + a (t − t₀)²/2 is the displacement from the original position o.
+UX, UY = 0, 1  # displacement at the epoch, m
+VX, VY = 2, 3  # velocity at the epoch, m/s
+AX, AY = 4, 5  # acceleration of the path, m/s²
+EPOCH = 6  # s
+RADIUS = 7  # m
+OX, OY = 8, 9  # original position, m
+WX, WY = 10, 11  # inverse mass in each direction, 1/kg; 0 where the disc is held
+GX, GY = 12, 13  # acceleration without contact forces, m/s²
+STEP = 14  # s; when the forces in its lasting contacts are due again
+CHANGES = 15  # of its path so far
+DISC_WIDTH = 16
+
+
+class Grid(NamedTuple):
+    """Boxes around the paths of all discs, and a hash grid of them; see grid/kernels.py.
+
+    boxes: left, bottom, right, top, shape (n, 4), m. layer: of each disc, shape (n,). levels: the cells of
+    layer k have the size cell × 2^levels[k], ascending, shape (64,). heads: first entry of each bucket, a power
+    of two of them. entries: shape (capacity, 3); columns below. found: room for the discs that a search finds,
+    shape (n + 1,).
+    """
+
+    boxes: Floats
+    layer: Integers
+    levels: Integers
+    heads: Integers
+    entries: Integers
+    found: Integers
+
+
+AFTER, BEFORE, KEY = 0, 1, 2  # columns of entries: next and previous one in the bucket, hash of the cell
+
+
+class Queue(NamedTuple):
+    """Meetings to come, a binary heap; see queue/kernels.py.
+
+    times: shape (capacity,), s. meetings: shape (capacity, 4): two discs, and how often each had changed its
+    path when the meeting was foreseen; it is void once either has changed again.
+    """
+
+    times: Floats
+    meetings: Integers
+
+
+class Ties(NamedTuple):
+    """Pairs whose meetings are not foreseen.
+
+    Those of disc i that do not collide are partners[first[i] : first[i + 1]], with `bonds` as below. Those in
+    lasting contact are a chain of entries from first_lasting[i]: lasting, shape (capacity, 2), holds the other
+    disc and the next entry, forces the force, N. A lasting contact is entered for each of its discs that is
+    not held. Unused entries are chained from counts[SPARE].
+    """
+
+    first: Integers
+    partners: Integers
+    bonds: Integers
+    first_lasting: Integers
+    lasting: Integers
+    forces: Floats
+
+
+FREE, JOINED, OVERLAPPING = 0, 1, 2  # bonds: none; never collide; do not collide before they have separated
+OTHER, NEXT = 0, 1  # columns of lasting
+
+
+class Group(NamedTuple):
+    """Discs ("members" 0, 1, …) that touch now, and the contacts between them, dealt with together.
+
+    members: which disc a member is; place: which member a disc is, or −1; shape (n,) both.
+    links: the two members of each contact, shape (c, 2). contacts: shape (c, CONTACT_WIDTH), columns below.
+    mobility: inverse mass of each member in each direction, 1/kg, 0 where it is held, shape (n, 2), so that
+    N_cᵀ M⁻¹ N_d is the compliance of the contacts under the members' supports.
+    motion: what impulses change, shape (n, 2): velocities, m/s, with impulses in N·s; or accelerations, m/s²,
+    with forces in N. initial, start, other: notes of other motion.
+    marks: work space, shape (3, c); rows below. matrix: work space, shape (DIRECT + 1, DIRECT).
+    """
+
+    members: Integers
+    place: Integers
+    links: Integers
+    contacts: Floats
+    mobility: Floats
+    motion: Floats
+    initial: Floats
+    start: Floats
+    other: Floats
+    marks: Integers
+    matrix: Floats
+
+
+NX, NY = 0, 1  # columns of contacts: unit vector from the first member to the second
+DISTANCE = 2  # of their centres, m
+OPENING = 3  # compliance of the contact itself, 1/kg
+BIAS = 4  # added to the rate at which the contact opens
+GIVEN = 5  # impulse of the present projection
+IMPULSE = 6  # of the whole impact
+FORCE = 7  # that has kept the discs apart since the group's last change, N; 0: none
+CONTACT_WIDTH = 8
+
+ACTIVE, STATE, CHOSEN = 0, 1, 2  # rows of marks: contacts of a projection; how they fare; those fitted now
+DIRECT = 48  # contacts up to which a projection is solved directly; more: by sweeps
+
+
+class Report(NamedTuple):
+    """Impacts that nobody has fetched yet.
+
+    pairs: the two discs, shape (capacity, 2). details: time (s), impulse (N·s), energy lost (J), shape (capacity, 3).
+    """
+
+    pairs: Integers
+    details: Floats
+
+
+# `numbers`, float64
+NOW = 0  # s; everything up to now has happened
+END = 1  # s; of the present window, in which all meetings are foreseen
+WINDOW = 2  # s; length of a window
+CELL = 3  # m; of the finest layer of the grid
+CROWDING = 4  # neighbours found per area of boxes, 1/m²
+RESTITUTION = 5
+REST_HEIGHT = 6  # of the smaller radius; bounces that would rise less end in contact
+NUMBERS = 7
+
+# `counts`, int64
+QUEUED = 0  # meetings in the queue
+LAYERS = 1  # of the grid
+REPORTED = 2  # impacts in the report
+IMPACTS = 3  # so far, every contact of a joint impact counted
+EVENTS = 4  # so far: impacts, a joint one counted once, and steps of lasting contact
+LEVEL = 5  # coarsest level that a disc needed beyond those of the grid
+RENEW = 6  # 1: the window must be opened anew before anything else
+SPARE = 7  # first unused entry of the table of lasting contacts
+SPARES = 8  # how many are unused
+COUNTS = 9
+
+
+class Reason(IntEnum):
+    """Why the flight returned."""
+
+    DONE = 0  # arrived
+    BUSY = 1  # as many events as were allowed
+    REPORT_FULL = 2  # fetch the reported impacts and go on
+    QUEUE_FULL = 3  # enlarge the queue and go on
+    GRID_FULL = 4  # enlarge the grid and go on
+    GROUP_FULL = 5  # enlarge the room for contacts and lasting contacts and go on

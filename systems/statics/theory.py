@@ -1,0 +1,215 @@
+"""What theory says about a structure: linear answers, indeterminacy, mechanisms, self-stress, influence
+lines, all about the original positions, and vibrations about the present ones. Lengths in m, forces in kN."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import qr, svd
+
+from components.model import Model
+from systems.statics.bodies import loose_bodies, loose_event
+from systems.statics.equations import ROUND_OFF, Array, Matrix, Response, Structure
+from systems.statics.events import NoEquilibrium
+from systems.statics.explain import describe_motion
+from systems.statics.external import external_forces
+from systems.statics.factor import pseudo_random, regular, soft_count, soft_modes
+
+REFINEMENTS = 4  # of a linear solution
+BALANCED = 1e-9  # of the largest force: what a linear solution may leave unbalanced
+FULL = 600  # unknowns up to which singular values are computed
+MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
+
+
+# --- linear theory -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class LinearState:
+    """First-order answer: displacement (n, 2), axial_force (rods,), reaction (n, 2), 0 in free directions."""
+
+    displacement: Array
+    axial_force: Array
+    reaction: Array
+
+
+def linear(model: Model, factor: float = 1.0) -> LinearState:
+    """The direct stiffness method: K u = f about the original positions, all rods elastic.
+
+    Lack of fit and plastic strain act as initial forces, displacements of constrained directions as moved
+    supports. Raises NoEquilibrium, naming who moves, for a mechanism or a free body that the load moves.
+    """
+    structure = Structure.of(model, "linear")
+    load = external_forces(model).at(factor)
+    for body in loose_bodies(structure, load):
+        if body.pull:
+            raise NoEquilibrium("mechanism", loose_event(model, body, factor).message)
+    supports = np.where(structure.fixed, model.particles.displacement, 0.0)
+    initial = structure.respond(supports, model.rods.plastic_strain)
+    displacement = supports + _deflection(model, structure, load - _internal(structure, initial))
+    final = structure.respond(displacement, model.rods.plastic_strain)
+    reaction = np.where(structure.fixed, _internal(structure, final) - load, 0.0)
+    return LinearState(displacement, final.elastic_force, reaction)
+
+
+def _internal(structure: Structure, response: Response) -> Array:
+    """Forces (n, 2) that hold the particles against the rods, which do not yield in linear theory."""
+    return structure.scatter(response.elastic_force[:, None] * response.axis)
+
+
+def _deflection(model: Model, structure: Structure, load: Array) -> Array:
+    """Displacements (n, 2) of the free directions under a load (n, 2). Raises NoEquilibrium."""
+    matrix, right = _stiffness(structure), structure.gather(load)
+    factor = regular(matrix, structure.weight)
+    solution = factor.solve(right)
+    for _ in range(REFINEMENTS):
+        solution = solution + factor.solve(right - matrix @ solution)
+    left = np.abs(right - matrix @ solution).max(initial=0.0)
+    noise = 64.0 * structure.round_off(structure.spread(solution))
+    if left > BALANCED * np.abs(load).max(initial=0.0) + noise:
+        what = describe_motion(model, structure.spread(solution)[None])
+        message = f"Mechanism: the load moves {what}, which nothing resists. Add rods or supports there."
+        raise NoEquilibrium("mechanism", message)
+    modes = soft_modes(matrix, structure.weight, factor)
+    return structure.spread(solution - modes @ (modes.T @ (structure.weight * solution)))
+
+
+def _stiffness(structure: Structure) -> Matrix:
+    """Of the elastic rods without force."""
+    return structure.tangent(_unmoved(structure), np.zeros(len(structure.ends), dtype=bool), geometric=False)
+
+
+def _unmoved(structure: Structure) -> Response:
+    """The rods where the particles originally are."""
+    return structure.respond(np.zeros(structure.unknown.shape), np.zeros(len(structure.ends)))
+
+
+# --- indeterminacy -------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Indeterminacy:
+    """Degrees of static indeterminacy: in all, of the rods among themselves, and of the supports.
+
+    mechanisms: number of independent motions without elongation, of what nothing holds included
+    (kinematic indeterminacy).
+    """
+
+    static: int
+    internal: int
+    external: int
+    mechanisms: int
+
+
+def indeterminacy(model: Model) -> Indeterminacy:
+    """Counted from the rank r of the compatibility matrix, with supports and without.
+
+    m rods between particles with f free directions have m − r states of self-stress and f − r mechanisms.
+    """
+    structure = Structure.of(model, "linear").with_translations()
+    unsupported = replace(structure, fixed=np.zeros_like(structure.fixed)).with_translations()
+    rods, rank = len(structure.ends), _rank(structure)
+    static, internal = rods - rank, rods - _rank(unsupported)
+    return Indeterminacy(static, internal, static - internal, structure.size - rank)
+
+
+def mechanisms(model: Model) -> Array:
+    """Motions (k, n, 2) that elongate no rod, the largest of each 1; of large structures at most 20."""
+    structure = Structure.of(model, "linear").with_translations()
+    if structure.size <= FULL:
+        modes = _null_space(structure.compatibility(_unmoved(structure)).toarray())
+    else:
+        modes = soft_modes(_stiffness(structure), structure.weight, most=MOST_MODES)
+    fields = [structure.spread(mode) for mode in _localised(modes).T]
+    return np.array([field / np.hypot(*field.T).max() for field in fields]).reshape(
+        -1, *structure.unknown.shape
+    )
+
+
+def self_stress(model: Model) -> Array:
+    """Axial forces (k, rods) in equilibrium without load, the largest of each 1; of large ones at most 20."""
+    structure = Structure.of(model, "linear").with_translations()
+    compatibility = structure.compatibility(_unmoved(structure))
+    if structure.size <= FULL:
+        states = _null_space(compatibility.toarray().T)
+    else:  # any forces, less those with which the rods answer to what is unbalanced
+        count = min(MOST_MODES, len(structure.ends) - _rank(structure))
+        states = pseudo_random(len(structure.ends), count)
+        unit = replace(structure, stiffness=structure.rest_length)
+        factor = regular(_stiffness(unit), unit.weight)
+        for _ in range(REFINEMENTS):
+            states = states - compatibility @ factor.solve(compatibility.T @ states)
+    states = _localised(states)
+    scaled: Array = (states / np.abs(states).max(axis=0, initial=0.0)).T
+    return scaled
+
+
+def _rank(structure: Structure) -> int:
+    if structure.size == 0 or len(structure.ends) == 0:
+        return 0
+    if structure.size > FULL:
+        return structure.size - soft_count(_stiffness(structure), structure.weight)
+    matrix = structure.compatibility(_unmoved(structure)).toarray()
+    return _count(svd(matrix, compute_uv=False), matrix)
+
+
+def _count(singular: Array, matrix: Array) -> int:
+    """How many singular values are more than round-off."""
+    return int((singular > 8.0 * max(matrix.shape) * ROUND_OFF * singular.max(initial=0.0)).sum())
+
+
+def _null_space(matrix: Array) -> Array:
+    """Orthonormal vectors (columns, k) that the matrix maps to nothing."""
+    if 0 in matrix.shape:
+        return np.eye(matrix.shape[1])
+    _, singular, ways = svd(matrix)
+    space: Array = ways[_count(singular, matrix) :].T
+    return space
+
+
+def _localised(basis: Array) -> Array:
+    """Another basis (size, k) of the same space, in which each vector is 1 where all others are 0."""
+    if basis.shape[1] == 0:
+        return basis
+    pivots = qr(basis.T, mode="r", pivoting=True)[1][: basis.shape[1]]
+    turned: Array = np.linalg.solve(basis[pivots].T, basis.T).T
+    return turned
+
+
+# --- influence -------------------------------------------------------------------------------------------
+
+
+def influence_on_rod(model: Model, rod: int) -> Array:
+    """Axial force in a rod (row) per unit force on each particle along x and y, (n, 2).
+
+    Müller-Breslau: the deflection that a unit lack of fit of the rod causes. Raises NoEquilibrium.
+    """
+    structure = Structure.of(model, "linear")
+    pull = np.zeros((len(structure.ends), 2))
+    pull[rod] = structure.stiffness[rod] / structure.rest_length[rod] * _unmoved(structure).axis[rod]
+    return _deflection(model, structure, structure.scatter(pull))
+
+
+def influence_on_reaction(model: Model, particle: int, axis: int) -> Array:
+    """Reaction of a constrained direction (row, 0 or 1) per unit force on each particle along x and y, (n, 2)."""
+    structure = Structure.of(model, "linear")
+    if not structure.fixed[particle, axis]:
+        raise ValueError(f"{model.particles[particle].name} is not constrained along {'xy'[axis]}.")
+    unit = np.zeros(structure.fixed.shape)
+    unit[particle, axis] = 1.0
+    axes = _unmoved(structure).axis
+    lever = (structure.relative(unit) * axes).sum(axis=1)
+    pull = (structure.stiffness / structure.rest_length * lever)[:, None] * axes
+    return _deflection(model, structure, structure.scatter(pull)) - unit
+
+
+def influence_on_displacement(model: Model, particle: int, axis: int) -> Array:
+    """Displacement (m/kN) of a particle along an axis per unit force on each particle, (n, 2).
+
+    Maxwell: the deflection under a unit load there, the unit-load method's virtual state.
+    """
+    structure = Structure.of(model, "linear")
+    unit = np.zeros(structure.fixed.shape)
+    unit[particle, axis] = 1.0
+    return _deflection(model, structure, unit)

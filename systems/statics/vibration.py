@@ -1,0 +1,69 @@
+"""Natural vibrations of a structure about its present state."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh
+from scipy.sparse import csc_matrix, diags
+from scipy.sparse.linalg import LinearOperator, eigsh
+
+from components.model import Model
+from systems.statics.equations import Array, Structure
+from systems.statics.factor import Factor, pseudo_random
+
+FULL = 600  # unknowns up to which all modes are computed
+LOWEST = 10  # modes of larger structures, unless more are asked for
+SHIFT = 1e-9  # below zero, of the highest ω², so that mechanisms (ω = 0) can be found too
+
+
+@dataclass(frozen=True)
+class Vibrations:
+    """angular_squared: ω² (rad²/s²), ascending, (k,); negative if the equilibrium is not stable.
+
+    modes: (k, n, 2), the largest motion of each 1.
+    """
+
+    angular_squared: Array
+    modes: Array
+
+    @property
+    def hertz(self) -> Array:
+        """Frequencies (Hz), 0 for mechanisms and for motions that are not stable."""
+        frequencies: Array = np.sqrt(np.maximum(self.angular_squared, 0.0)) / (2.0 * np.pi)
+        return frequencies
+
+
+def vibrations(model: Model, count: int | None = None) -> Vibrations:
+    """The lowest natural modes of small undamped vibrations: K φ = ω² M φ, K with the present axial forces.
+
+    count: how many; None: all of a small structure, 10 of a large one. Rods do not yield in them.
+    """
+    structure = Structure.of(model).with_translations()
+    response = structure.respond(model.particles.displacement, model.rods.plastic_strain)
+    root = np.sqrt(structure.gather(np.repeat(model.particles.mass, 2).reshape(-1, 2)) / 1000.0)
+    stiffness = structure.tangent(response, np.zeros_like(response.flowing))
+    if structure.size <= FULL:
+        full = stiffness if isinstance(stiffness, np.ndarray) else stiffness.toarray()
+        values, vectors = eigh(full / root[:, None] / root)
+        values, vectors = values[:count], vectors[:, :count]
+    else:
+        values, vectors = _lowest(
+            csc_matrix(diags(1.0 / root) @ stiffness @ diags(1.0 / root)), count or LOWEST
+        )
+    fields = [structure.spread(vector / root) for vector in vectors.T]
+    modes = np.array([field / np.hypot(*field.T).max() for field in fields])
+    return Vibrations(values, modes.reshape(-1, *structure.unknown.shape))
+
+
+def _lowest(matrix: csc_matrix, count: int) -> tuple[Array, Array]:
+    """The eigenvalues nearest to zero of a large symmetric matrix, ascending, and their vectors."""
+    shift = -SHIFT * float(abs(matrix).sum(axis=0).max())
+    shifted = matrix.copy()
+    shifted.setdiag(matrix.diagonal() - shift)
+    inverse = LinearOperator(matrix.shape, matvec=Factor(shifted).solve, dtype=np.float64)
+    start = pseudo_random(matrix.shape[0], 1)[:, 0]
+    values, vectors = eigsh(matrix, count, sigma=shift, OPinv=inverse, v0=start)
+    order = np.argsort(values)
+    return values[order], vectors[:, order]

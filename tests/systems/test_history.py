@@ -1,0 +1,184 @@
+"""Random sequences of edits and runs: undone to the first bit, done again to the last, the energy accounted for."""
+
+import contextlib
+from collections.abc import Callable
+from typing import Any
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from components.field import FieldError
+from components.particle import Particle
+from components.rod import Rod
+from game import Session
+from tests.reference import bits
+from tests.reference.elements import Model
+from tests.reference.models import square
+
+Step = tuple[str, Any]
+
+ROUND_OFF = 1e-11  # of all energy that was turned over
+INTEGRATION = 0.03  # of it; the automatic step is a tenth of the stable one
+
+
+def structure() -> Model:
+    """A square that has everything, whose plan no edit below changes: one program for all examples."""
+    document = square(force=(10, -40), tensile_strength=60, compressive_strength=60, damping=8)
+    return document | {
+        "environment": {"acceleration": [0, -9.81], "drag": 2.0},
+        "loads": [{"on": "B", "force": [8, 3], "history": {"kind": "ramp", "duration": 0.01}}],
+    }
+
+
+def numbers(low: float, high: float) -> st.SearchStrategy[float]:
+    return st.integers(0, 100).map(lambda k: low + (high - low) * k / 100)
+
+
+def pairs(size: float) -> st.SearchStrategy[tuple[float, float]]:
+    return st.tuples(numbers(-size, size), numbers(-size, size))
+
+
+PARTICLES, RODS = st.sampled_from("ABC"), st.sampled_from(["AB", "BC", "CD", "DA", "AC", "BD"])
+
+EDITS = st.one_of(
+    st.tuples(st.just("force"), st.tuples(PARTICLES, pairs(60.0))),
+    st.tuples(st.just("velocity"), st.tuples(PARTICLES, pairs(2.0))),
+    st.tuples(st.just("displacement"), st.tuples(PARTICLES, pairs(1e-4))),
+    st.tuples(st.just("fixed"), st.tuples(PARTICLES, st.tuples(st.booleans(), st.booleans()))),
+    st.tuples(st.just("position"), st.tuples(PARTICLES, pairs(0.2))),
+    st.tuples(st.just("mass"), st.tuples(PARTICLES, numbers(5.0, 50.0))),
+    st.tuples(st.just("stiffness"), st.tuples(RODS, numbers(5e4, 3e5))),
+    st.tuples(st.just("tensile_strength"), st.tuples(RODS, numbers(5.0, 80.0))),
+    st.tuples(st.just("plastic_strain"), st.tuples(RODS, numbers(-1e-4, 1e-4))),
+    st.tuples(st.just("damping"), st.tuples(RODS, numbers(1.0, 20.0))),
+    st.tuples(st.just("drag"), numbers(0.1, 5.0)),
+    st.tuples(st.just("load"), pairs(30.0)),
+    st.tuples(st.just("grow"), pairs(0.5)),
+    st.tuples(st.just("shrink"), st.none()),
+)
+RUNS = st.one_of(
+    st.tuples(st.just("steps"), st.integers(1, 400)), st.tuples(st.just("time"), numbers(1e-5, 2e-3))
+)
+BACK_AND_FORTH = st.tuples(st.sampled_from(["undo", "redo", "restart"]), st.none())
+
+
+def perform(session: Session, step: Step) -> None:
+    """Do one thing that a person can do; what is refused is not done."""
+    kind, value = step
+    with contextlib.suppress(FieldError):
+        _DEEDS[kind](session, value)
+
+
+def _assign(table: str, field: str) -> Callable[[Session, Any], None]:
+    def deed(session: Session, value: Any) -> None:
+        name, new = value
+        if name in session.model.tables[table]:
+            setattr(session.model.tables[table][name], field, new)
+
+    return deed
+
+
+def _grow(session: Session, value: Any) -> None:
+    """A new particle, tied to A and C."""
+    with session.model.transaction("grow"):
+        made = session.model.create(Particle, position=[(-1.0 + value[0], 2.5 + value[1])])[0]
+        session.model.create(Rod, between=[(0, made.row), (2, made.row)], damping=5.0)
+
+
+def _shrink(session: Session, value: Any) -> None:
+    """The newest particle that was added goes, with its rods."""
+    if len(session.particles) > 4:
+        session.model.delete([session.particles[-1]])
+
+
+_DEEDS: dict[str, Callable[[Session, Any], Any]] = {
+    **{field: _assign("particles", field) for field in ("force", "velocity", "displacement", "fixed", "mass")},
+    **{f: _assign("rods", f) for f in ("stiffness", "tensile_strength", "plastic_strain", "damping")},
+    "position": lambda s, v: _move(s, v[0], v[1]),
+    "drag": lambda s, v: setattr(s.environment, "drag", v),
+    "load": lambda s, v: setattr(s.loads[0], "force", v),
+    "grow": _grow,
+    "shrink": _shrink,
+    "steps": lambda s, v: s.run(steps=v),
+    "time": lambda s, v: s.run(time=v),
+    "undo": lambda s, v: s.undo(),
+    "redo": lambda s, v: s.redo(),
+    "restart": lambda s, v: s.restart(),
+}
+
+
+def _move(session: Session, name: str, by: tuple[float, float]) -> None:
+    x, y = session.particles[name].position
+    session.particles[name].position = (x + by[0], y + by[1])
+
+
+@settings(max_examples=40)
+@given(st.lists(st.one_of(EDITS, RUNS, BACK_AND_FORTH), min_size=2, max_size=14))
+def test_undo_all_is_the_start_and_redo_all_the_end(steps: list[Step]) -> None:
+    session = Session.open(structure())
+    start = bits.columns(session.model)
+    for step in steps:
+        perform(session, step)
+    while session.can_redo:
+        session.redo()
+    end = bits.columns(session.model)
+    while session.can_undo:
+        session.undo()
+    assert bits.different(bits.columns(session.model), start) == []
+    while session.can_redo:
+        session.redo()
+    assert bits.different(bits.columns(session.model), end) == []
+
+
+@settings(max_examples=25)
+@given(st.lists(st.one_of(EDITS, RUNS), min_size=1, max_size=8))
+def test_undo_goes_back_entry_by_entry_through_every_state(steps: list[Step]) -> None:
+    session = Session.open(structure())
+    seen = [bits.columns(session.model)]
+    for step in steps:
+        before = len(seen)
+        perform(session, step)
+        now = bits.columns(session.model)
+        if now != seen[-1]:
+            seen.append(now)
+        assert len(seen) <= before + 1
+    for expected in reversed(seen[:-1]):
+        assert session.undo()
+        assert bits.different(bits.columns(session.model), expected) == []
+    for expected in seen[1:]:
+        assert session.redo()
+        assert bits.different(bits.columns(session.model), expected) == []
+
+
+@settings(max_examples=40)
+@given(st.lists(st.one_of(EDITS, RUNS, BACK_AND_FORTH), min_size=2, max_size=14))
+def test_edits_count_as_work_and_leave_the_energy_balanced(steps: list[Step]) -> None:
+    """An edit changes the imbalance by round-off only, a run by the error of integration."""
+    session = Session.open(structure())
+    turnover = 1e-3
+    for kind, value in steps:
+        before = session.energy
+        perform(session, (kind, value))
+        after = session.energy
+        turnover = max([turnover, *(abs(e) for energy in (before, after) for e in energy.as_dict().values())])
+        if kind in ("steps", "time"):
+            assert abs(after.imbalance - before.imbalance) <= INTEGRATION * turnover
+        elif kind not in ("undo", "redo", "restart"):
+            assert abs(after.imbalance - before.imbalance) <= ROUND_OFF * turnover
+        assert abs(after.imbalance) <= 3 * INTEGRATION * turnover
+
+
+def test_work_of_an_edit_is_the_energy_that_it_gives() -> None:
+    """A velocity given to a particle at rest does ½mv²; a force given where it is displaced does none yet."""
+    session = Session.open(structure())
+    session.run(until="rest")
+    before = session.energy
+    particle = session.particles["B"]
+    particle.velocity = (3.0, 4.0)
+    session.simulation.advance(0)
+    kinetic = particle.mass * 25.0 / 2
+    assert abs(session.energy.work - before.work - kinetic) <= 1e-9 * kinetic
+    work = session.energy.work
+    particle.force = (100.0, 0.0)
+    session.simulation.advance(0)
+    assert abs(session.energy.work - work) <= 1e-9 * kinetic

@@ -1,0 +1,292 @@
+"""The six scenes: their transitions, and the keys and clicks of pause and simulation."""
+
+import pytest
+
+from components.particle import Particle
+from components.rod import Rod
+from components.tags import DiagramShown
+from game import Session
+from game.scenes import SceneError, all_scenes
+from tests.reference import bits
+
+SCENES = ["pause", "simulation", "properties", "save", "load", "force method"]
+FRAME = 1.0 / 60.0
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session.open("isostatic")
+
+
+def go(session: Session, scene: str) -> None:
+    """From pause to any scene."""
+    if scene != "pause":
+        session.scenes.request(scene)
+        session.scenes.apply(session)
+    assert session.scene == scene
+
+
+def run_frames(session: Session, frames: int = 30) -> None:
+    """Let time pass in the window's way; the first frame may only announce that it compiles."""
+    for _ in range(frames):
+        session.frame(FRAME)
+
+
+# --- the state machine -----------------------------------------------------------------------------------
+
+
+def test_there_are_six_and_pause_is_the_first(session: Session) -> None:
+    assert [scene.name for scene in all_scenes()] == SCENES
+    assert session.scene == "pause"
+
+
+@pytest.mark.parametrize("start", SCENES)
+@pytest.mark.parametrize("target", SCENES)
+def test_pause_is_the_hub(session: Session, start: str, target: str) -> None:
+    """From pause to any other, from any other to pause, and nothing else."""
+    go(session, start)
+    if (start == "pause") != (target == "pause"):
+        session.scenes.request(target)
+        assert session.scene == start  # until the one point of the frame where it happens
+        session.frame(0.0)
+        assert session.scene == target
+    else:
+        with pytest.raises(SceneError, match=f"From {start} one cannot go to {target}"):
+            session.scenes.request(target)
+        session.frame(0.0)
+        assert session.scene == start
+
+
+def test_an_unknown_scene_is_refused_by_name(session: Session) -> None:
+    with pytest.raises(SceneError, match=r"no scene 'kitchen'.*pause, simulation"):
+        session.scenes.request("kitchen")
+
+
+def test_a_chain_of_transitions_is_checked_link_by_link(session: Session) -> None:
+    session.scenes.request("save", "pause", "simulation")
+    session.frame(0.0)
+    assert session.scene == "simulation"
+    with pytest.raises(SceneError, match="From save one cannot go to load"):
+        session.scenes.request("pause", "save", "load")
+    session.frame(0.0)
+    assert session.scene == "simulation"  # a chain with an illegal link does nothing at all
+
+
+@pytest.mark.parametrize(
+    ("key", "scene"),
+    [
+        ("escape", "simulation"),
+        ("space", "simulation"),
+        ("return", "properties"),
+        ("s", "save"),
+        ("d", "load"),
+        ("k", "force method"),
+    ],
+)
+def test_keys_of_pause_lead_to_scenes_and_escape_leads_back(session: Session, key: str, scene: str) -> None:
+    session.press(key)
+    assert session.scene == scene
+    session.press("escape")
+    if session.scene != "pause":  # a box was selected
+        session.press("escape")
+    assert session.scene == "pause"
+
+
+@pytest.mark.parametrize("scene", ["properties", "save", "load", "force method"])
+def test_entering_and_leaving_changes_nothing(session: Session, scene: str) -> None:
+    """Panels leave the model alone; the force method works on copies."""
+    before = bits.columns(session.model)
+    go(session, scene)
+    run_frames(session, 3)
+    while session.scene != "pause":
+        session.press("escape")
+    assert bits.different(bits.columns(session.model), before) == []
+    assert not session.can_undo
+
+
+def test_time_passes_in_simulation_only(session: Session) -> None:
+    for scene in SCENES:
+        go(session, scene)
+        before = session.time
+        run_frames(session, 5)
+        assert (session.time > before) == (scene == "simulation"), scene
+        while session.scene != "pause":
+            session.press("escape")
+
+
+def test_heading_and_state_are_shown(session: Session) -> None:
+    session.frame(FRAME)
+    assert session.view.heading == "Pause"
+    assert session.view.status.state == "paused"
+    assert session.view.status.speed == 0.0
+    session.press("space")
+    run_frames(session, 2)
+    assert session.view.heading == ""
+    assert session.view.status.state.startswith("running")
+    assert session.view.status.speed > 0.0
+    while not session.simulation.halted:
+        session.run(steps=100)
+    session.frame(FRAME)
+    assert session.view.status.state == "at rest"
+
+
+def test_a_key_without_meaning_does_nothing(session: Session) -> None:
+    before = bits.columns(session.model)
+    for key in ("f7", "ctrl+shift+q", "nonsense"):
+        session.press(key)
+    assert session.scene == "pause"
+    assert bits.different(bits.columns(session.model), before) == []
+
+
+# --- selection, diagrams, grids --------------------------------------------------------------------------
+
+
+def test_escape_drops_the_selection_before_it_runs(session: Session) -> None:
+    session.click(1, 1)
+    assert session.selected == [session.particles["B"]]
+    session.press("escape")
+    assert (session.scene, session.selected) == ("pause", [])
+    session.press("escape")
+    assert session.scene == "simulation"
+
+
+def test_a_click_selects_particle_rod_or_grid(session: Session) -> None:
+    """Particles before rods before lines of the shown grid, each within its reach in pixels."""
+    scale = session.view.camera.scale
+    middle = (0.5, 0.5)  # of AB
+    across = 1.0 / (scale * 2**0.5)  # 1 px at right angles to AB, in each coordinate
+    for (x, y), expected in [
+        ((1.0, 1.0), session.particles["B"]),
+        ((middle[0] - 9 * across, middle[1] + 9 * across), session.rods["AB"]),
+        ((middle[0] - 11 * across, middle[1] + 11 * across), None),
+        ((2.5 + 4 / scale, 0.75), session.model.grids[0]),
+        ((2.5 + 6 / scale, 0.75), None),
+    ]:
+        session.click(x, y)
+        assert session.selected == ([] if expected is None else [expected])
+
+
+def test_i_shows_the_diagrams_of_the_selected_or_of_all(session: Session) -> None:
+    session.press("i")
+    assert session.view.all_diagrams
+    session.press("i")
+    assert not session.view.all_diagrams
+    session.click(1, 1)
+    session.press("i")
+    assert session.model.tagged(DiagramShown) == [session.particles["B"]]
+    session.press("i")
+    assert session.model.tagged(DiagramShown) == []
+
+
+def test_g_makes_a_grid_that_is_then_shown_and_h_goes_through_them(session: Session) -> None:
+    grids = session.model.grids
+    for _ in range(2):
+        session.press("g")
+    assert [grid.shown for grid in grids] == [False, False, True]
+    seen = []
+    for _ in range(5):
+        session.press("h")
+        seen.append([grid.shown for grid in grids].index(True) if any(g.shown for g in grids) else None)
+    assert seen == [None, 0, 1, 2, None]
+
+
+# --- undo, redo, restart ---------------------------------------------------------------------------------
+
+
+def test_undo_and_redo_of_runs_and_edits_bit_for_bit(session: Session) -> None:
+    """Every state on the way back and forth again, document and state."""
+    seen = [bits.columns(session.model)]
+
+    def did(action: object) -> None:
+        seen.append(bits.columns(session.model))
+
+    did(session.run(steps=77))
+    did(session.particles.handles[1].__setattr__("force", (50, -60)))
+    did(session.run(time=1e-3))
+    did(session.press("g"))
+    session.press("space")
+    run_frames(session)
+    did(session.press("space"))
+    did(session.model.create(Particle, position=[(3, 3)]))
+    did(session.model.create(Rod, between=[(1, 3)]))
+    did(session.run(steps=200))
+    did(session.model.delete([session.particles["A"]]))
+    did(session.run(until="rest"))
+    for expected in reversed(seen[:-1]):
+        session.press("ctrl+z")
+        assert bits.different(bits.columns(session.model), expected) == []
+    assert not session.can_undo
+    for expected in seen[1:]:
+        session.press("ctrl+y")
+        assert bits.different(bits.columns(session.model), expected) == []
+    assert not session.can_redo
+
+
+def test_a_run_goes_on_after_undo_as_it_did_before(session: Session) -> None:
+    """Back at the start, and in the middle, the same steps give the same bits."""
+    for before in (0, 100):
+        session.run(steps=before)
+        session.run(steps=250)
+        expected = bits.columns(session.model)
+        session.undo()
+        session.run(steps=250)
+        assert bits.different(bits.columns(session.model), expected) == []
+
+
+def test_undo_while_it_runs_goes_back_to_the_edit_and_the_run_goes_on(session: Session) -> None:
+    session.press("space")
+    run_frames(session)
+    at_edit = session.time
+    session.particles["B"].force = (10, 20)
+    run_frames(session)
+    assert session.time > at_edit > 0.0
+    session.press("ctrl+z")
+    assert (session.time, session.particles["B"].force) == (at_edit, (10, 20))
+    session.press("ctrl+z")
+    assert (session.time, session.particles["B"].force) == (at_edit, (120, -160))
+    session.press("ctrl+z")
+    assert (session.time, session.scene) == (0.0, "simulation")
+    run_frames(session)
+    assert session.time > 0.0
+    assert abs(session.energy.imbalance) < 0.05 * session.energy.work
+
+
+def test_restart_goes_back_to_the_beginning_keeps_edits_and_can_be_undone(session: Session) -> None:
+    start = bits.state(session.model)
+    session.press("space")
+    run_frames(session)
+    session.particles["B"].force = (10, 20)
+    run_frames(session)
+    run = bits.state(session.model)
+    session.press("r")
+    assert bits.different(bits.state(session.model), start) == []
+    assert session.particles["B"].force == (10, 20)
+    session.press("space")
+    session.press("ctrl+z")
+    assert bits.different(bits.state(session.model), run) == []
+
+
+def test_a_restarted_run_is_the_same_run(session: Session) -> None:
+    session.run(steps=321)
+    expected = bits.columns(session.model)
+    session.press("r")
+    session.run(steps=321)
+    assert bits.different(bits.columns(session.model), expected) == []
+
+
+def test_a_run_restarted_after_an_edit_is_the_run_of_the_edited_model(session: Session) -> None:
+    session.run(steps=321)
+    session.rods["AB"].stiffness = 200_000
+    session.press("r")
+    session.run(steps=321)
+    fresh = Session.open("isostatic")
+    fresh.rods["AB"].stiffness = 200_000
+    fresh.run(steps=321)
+    assert bits.different(bits.columns(session.model), bits.columns(fresh.model)) == []
+
+
+def test_restart_before_any_run_does_nothing(session: Session) -> None:
+    before = bits.columns(session.model)
+    session.press("r")
+    assert bits.different(bits.columns(session.model), before) == []
+    assert not session.can_undo

@@ -1,0 +1,189 @@
+"""The scheduler: order, ties, cycles, conflicts by name; and that what a model does not need is left out."""
+
+import random
+from typing import Any
+
+import pytest
+
+from components.model import Model
+from game import Session, models
+from game.catalogue import step_systems
+from game.schedule import Schedule, ScheduleError
+from systems.base import Phase, System
+from tests.reference.models import model, oscillator, particle
+
+
+def system(name: str, **attributes: Any) -> System:
+    """A frame system that notes in `frame` that it ran."""
+
+    def process(self: System, frame: list[str]) -> None:
+        frame.append(self.name)
+
+    return type("Noted", (System,), {"name": name, "process": process} | attributes)()
+
+
+def order(*systems: System, phase: Phase = Phase.EDIT) -> list[str]:
+    return [s.name for s in Schedule(systems).frame_plan(phase, "pause", Model())]
+
+
+# --- order -----------------------------------------------------------------------------------------------
+
+
+def test_ties_are_in_the_order_of_registration() -> None:
+    assert order(system("c"), system("a"), system("b")) == ["c", "a", "b"]
+
+
+def test_before_and_after_decide() -> None:
+    assert order(system("c", after=("b",)), system("a", before=("b",)), system("b")) == ["a", "b", "c"]
+
+
+def test_order_holds_through_others_whatever_the_registration() -> None:
+    chain = [system(f"s{i}", after=(f"s{i - 1}",)) for i in range(8)]
+    for seed in range(20):
+        random.Random(seed).shuffle(chain)
+        assert order(*chain) == [f"s{i}" for i in range(8)]
+
+
+def test_names_that_are_absent_are_allowed() -> None:
+    assert order(system("a", after=("some.mod",)), system("b", before=("other.mod",))) == ["a", "b"]
+
+
+def test_phases_run_apart() -> None:
+    early, late = system("early", phase=Phase.INPUT), system("late", phase=Phase.RENDER)
+    assert order(late, early, phase=Phase.INPUT) == ["early"]
+    assert order(late, early, phase=Phase.RENDER) == ["late"]
+
+
+def test_systems_run_in_the_scenes_that_they_name() -> None:
+    everywhere, paused = system("everywhere"), system("paused", scenes=("pause",))
+    schedule = Schedule([everywhere, paused])
+    for scene, expected in [("pause", ["everywhere", "paused"]), ("simulation", ["everywhere"])]:
+        ran: list[str] = []
+        schedule.run(Phase.EDIT, scene, Model(), ran)
+        assert ran == expected
+
+
+def test_each_system_is_timed_and_what_the_model_does_not_need_is_left_out() -> None:
+    idle = system("idle", needs=lambda self, model: False)
+    schedule = Schedule([system("busy"), idle])
+    ran: list[str] = []
+    schedule.run(Phase.EDIT, "pause", Model(), ran)
+    assert ran == ["busy"]
+    assert schedule.seconds.keys() == {"busy"}
+    assert schedule.seconds["busy"] > 0.0
+
+
+# --- mistakes --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("systems", "says"),
+    [
+        ([system("a", after=("b",)), system("b", after=("a",))], "wait for each other: .*drop one"),
+        ([system("a", before=("a",))], "wait for each other: a → a"),
+        ([system("a"), system("a")], "Two systems are called a"),
+        ([system("")], "Noted has no name"),
+        (
+            [system("a", phase=Phase.INPUT), system("b", after=("a",))],
+            "b asks to be ordered with a, which runs in another phase",
+        ),
+        (
+            [system("a", writes=("rods.strain",)), system("b", reads=("rods.strain",))],
+            "a and b both touch rods.strain, .*declare before",
+        ),
+        ([system("a", writes=("x.y",)), system("b", writes=("x.y",))], "a and b both touch x.y"),
+        ([system("a", adds=("x.y",)), system("b", reads=("x.y",))], "a and b both touch x.y"),
+        ([system("a", adds=("x.y",)), system("b", writes=("x.y",))], "a and b both touch x.y"),
+    ],
+)
+def test_mistakes_are_named_with_the_remedy(systems: list[System], says: str) -> None:
+    with pytest.raises(ScheduleError, match=says):
+        Schedule(systems)
+
+
+@pytest.mark.parametrize(
+    "systems",
+    [
+        [system("a", reads=("x.y",)), system("b", reads=("x.y",))],
+        [system("a", adds=("x.y",)), system("b", adds=("x.y",))],
+        [system("a", writes=("x.y",)), system("b", reads=("x.y",), after=("a",))],
+        [system("a", writes=("x.y",)), system("m", after=("a",)), system("b", reads=("x.y",), after=("m",))],
+        [system("a", writes=("x.y",), phase=Phase.INPUT), system("b", writes=("x.y",))],
+    ],
+    ids=["reads", "additions", "ordered", "ordered through another", "other phase"],
+)
+def test_what_cannot_conflict_is_allowed(systems: list[System]) -> None:
+    Schedule(systems)
+
+
+# --- skipping --------------------------------------------------------------------------------------------
+
+ELASTIC, DAMPED = ("physics.elasticity",), ("physics.elasticity", "physics.axial_damping")
+YIELDING = (
+    "physics.elasticity_after_yielding",
+    "physics.axial_damping",
+    "plasticity.strength",
+    "plasticity.yielding",
+)
+RAMP, DRAG = ("loads.ramp",), ("physics.drag",)
+
+PLANS = {
+    "isostatic": YIELDING,
+    "isostatic_10x": YIELDING,
+    "isostatic_collapse": YIELDING + RAMP,
+    "hyperstatic": YIELDING,
+    "hyperstatic_10x": YIELDING,
+    "hyperstatic_yield": YIELDING + RAMP,
+    "three_bar_plastic": YIELDING + RAMP,
+    "overshoot_yield": YIELDING,
+    "snap_through": DAMPED,
+    "von_mises": DAMPED + RAMP,
+    "pendulum": ELASTIC,
+    "hanging_net": DAMPED + DRAG,
+    "tower": YIELDING + RAMP,
+    "warren_bridge": YIELDING + RAMP,
+} | {f"collision_{number}": () for number in ("i", "ii", "iii", "iv", "v", "vi")}
+
+
+def plan(document: Any) -> set[str]:
+    return {s.name for s in Schedule(step_systems()).step_plan(models.load(document))}
+
+
+@pytest.mark.parametrize("name", models.bundled())
+def test_bundled_models_are_run_by_what_they_need(name: str) -> None:
+    """Forces and history only; what finds impacts has its own tests."""
+    mechanics = {s for s in plan(name) if not s.startswith("collision.")}
+    assert mechanics == set(PLANS[name])
+
+
+def test_nothing_is_done_for_what_is_not_there() -> None:
+    """A single property brings in the system that it needs, and no other."""
+    bare = oscillator(100.0)
+    assert plan(bare) == set(ELASTIC)
+    assert plan(oscillator(100.0, 0.1)) == set(DAMPED)
+    assert plan(bare | {"environment": {"drag": 0.1}}) == set(ELASTIC + DRAG)
+    load = {"on": "B", "force": [1, 0]}
+    assert plan(bare | {"loads": [load]}) == set(ELASTIC)
+    assert plan(bare | {"loads": [load | {"history": {"kind": "ramp"}}]}) == set(ELASTIC + RAMP)
+    bare["rods"][0]["tensile_strength"] = 0
+    assert plan(bare) == set(ELASTIC)
+    bare["rods"][0]["tensile_strength"] = 5
+    assert plan(bare) == set(YIELDING) - {"physics.axial_damping"}
+    assert plan(bare | {"settings": {"plasticity": False}}) == set(ELASTIC)
+    bare["rods"][0] |= {"tensile_strength": 0, "plastic_strain": 0.01}
+    assert plan(bare) == {"physics.elasticity_after_yielding"}
+    assert plan(model([particle("p", 0, 0)], [])) == set()
+
+
+def test_the_plan_follows_edits() -> None:
+    session = Session.open(oscillator(100.0, displacement=[0.01, 0]))
+    session.run(steps=10)
+    names = [[s.name for s in session.simulation.program.systems]]
+    session.environment.drag = 1.0
+    session.run(steps=10)
+    names.append([s.name for s in session.simulation.program.systems])
+    session.undo()
+    session.undo()
+    session.run(steps=10)
+    names.append([s.name for s in session.simulation.program.systems])
+    assert names == [["physics.elasticity"], ["physics.elasticity", "physics.drag"], ["physics.elasticity"]]
