@@ -11,8 +11,10 @@ from hypothesis import HealthCheck, settings
 
 ROOT = Path(__file__).resolve().parents[1]
 
-# The first example of a plan may compile for seconds, so no example has a deadline.
-settings.register_profile("pinjoint", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+# The first example of a plan may compile for seconds, so no example has a deadline. The same examples every
+# time, so that a change is judged by what it changed; `--hypothesis-profile=explore` looks for new ones.
+settings.register_profile("explore", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile("pinjoint", settings.get_profile("explore"), derandomize=True)
 settings.load_profile("pinjoint")
 
 

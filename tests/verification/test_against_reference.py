@@ -18,6 +18,7 @@ from tests.reference.models import model, particle
 
 STEPS = 200
 AGREEMENT = 1e-11  # of the largest value of its kind in the run; both round in another order, 200 times
+ROUNDING = 1e-14  # of a strain, whose force is this times the stiffness; both round positions near 1 m
 
 NOTHING = 1e-20  # kN, m, …: what rounding leaves where all values of a kind are zero
 
@@ -179,6 +180,8 @@ def assert_agreement(document: Document, integrator: str, share: float) -> None:
         "axial_force": dict(zip(session.rods.names, session.rods.axial_force.tolist(), strict=True)),
         "plastic_strain": dict(zip(session.rods.names, session.rods.plastic_strain.tolist(), strict=True)),
     }
+    stiffest = max((rod["stiffness"] for rod in document["rods"]), default=0.0)
+    largest.values["axial_force"] += ROUNDING / AGREEMENT * stiffest
     for quantity, values in found.items():
         assert_same(quantity, values, expected[quantity], largest.values[quantity])
     assert_same_energy(session, expected["energy"], largest.values["energy"])
@@ -221,8 +224,12 @@ class Largest:
 
 
 def _step(document: Document, share: float) -> float:
-    """A share of the stable step of Verlet in the initial state."""
-    session = Session.open(document)
+    """A share of the stable step of Verlet in the initial state.
+
+    Without supports, whose directions would hide the stiffness of rods that turn during the run.
+    """
+    free = [body | {"fixed": [False, False]} for body in document["particles"]]
+    session = Session.open(document | {"particles": free})
     session.simulation.advance(0)
     limit = session.simulation.stable_step
     return share * limit if math.isfinite(limit) else 1e-3 * share

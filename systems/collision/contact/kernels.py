@@ -37,7 +37,7 @@ from systems.collision.kernels import compiled
 from systems.collision.projection.kernels import copy_motion, opening_rate, project, rate_noise
 
 STILL = 1e-10  # of the speed and acceleration that gravity gives; what moves less is at rest
-STEP_ANGLE = 0.0156  # of a step's slide, relative to the distance of the centres; error ∝ its square
+STEP_ANGLE = 0.0156  # by which discs turn around one another in a step; discs sink by its cube / 8 of a radius
 MOST_CORRECTIONS = 40  # of the forces in a step; 3 are usual
 
 
@@ -124,7 +124,7 @@ def support(count, touching, discs, group, numbers):
     project(count, closed, 0.0, group)
     duration = NEVER
     if not _stop_where_still(count, closed, discs, group):
-        duration = _duration(closed, group)
+        duration = _duration(closed, discs, group)
         _meet_at_end(duration, count, closed, discs, group, numbers)
     for k in range(closed):
         c = group.marks[ACTIVE, k]
@@ -195,16 +195,22 @@ def _size(motion, m):
 
 
 @compiled
-def _duration(closed, group):
-    """For how long the discs that push one another turn around one another by at most STEP_ANGLE."""
+def _duration(closed, discs, group):
+    """For how long the discs that push one another turn around one another by about STEP_ANGLE.
+
+    At rest they would turn by it under the pull of their weight across the line of centres.
+    """
     duration = NEVER
     for k in range(closed):
         c = group.marks[ACTIVE, k]
         if group.contacts[c, GIVEN] > 0.0:
-            slide = STEP_ANGLE * group.contacts[c, DISTANCE]
+            distance = group.contacts[c, DISTANCE]
             speed = math.hypot(*_relative(c, group.other, group))
-            pull = math.hypot(*_relative(c, group.motion, group))
-            duration = min(duration, 2.0 * slide / (speed + math.sqrt(speed * speed + 2.0 * pull * slide)))
+            duration = min(duration, STEP_ANGLE * distance / speed)
+            for p in range(2):
+                i = group.members[group.links[c, p]]
+                pull = math.hypot(discs[i, GX], discs[i, GY])
+                duration = min(duration, STEP_ANGLE * math.sqrt(distance / pull))
     return duration
 
 
