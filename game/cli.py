@@ -16,7 +16,7 @@ from components.settings import INTEGRATORS
 from game import __version__, bench, models, script
 from game.desk import ModelFile, file_of
 from game.overrides import OverrideError, apply_override
-from game.report import FOUND, run_at, run_static, run_until_rest
+from game.report import FOUND, Analysis
 from game.results import as_csv, as_json, as_table
 from game.session import DEFAULT_LIMIT, Session
 from systems.render.theme import theme_names
@@ -100,6 +100,17 @@ def _run(words: Sequence[str]) -> int:
         prog="pinjoint run", description="Compute a model without a window and print what came of it."
     )
     _add_model(parser)
+    _add_analysis(parser)
+    parser.add_argument("--format", choices=tuple(_FORMATS), default="table")
+    parser.add_argument("--output", metavar="FILE", help="write to a file instead of standard output")
+    options = parser.parse_args(words)
+    session = _session(options)
+    run = _analysis(options).run(session, options.model)
+    _write(_FORMATS[options.format](run), options.output)
+    return ANSWERED if run["status"] in FOUND else NOT_ANSWERED
+
+
+def _add_analysis(parser: argparse.ArgumentParser) -> None:
     how = parser.add_mutually_exclusive_group()
     how.add_argument("--until-rest", action="store_true", help="run until nothing moves (the default)")
     how.add_argument(
@@ -114,20 +125,16 @@ def _run(words: Sequence[str]) -> int:
         metavar="SECONDS",
         help="simulated time to wait for rest",
     )
-    parser.add_argument("--format", choices=tuple(_FORMATS), default="table")
-    parser.add_argument("--output", metavar="FILE", help="write to a file instead of standard output")
-    options = parser.parse_args(words)
-    session = _session(options)
+
+
+def _analysis(options: argparse.Namespace) -> Analysis:
     if options.load_factors is not None and not options.static:
         raise Refusal("--load-factors goes with --static; add it.")
-    if options.static:
-        run = run_static(session, options.model, _numbers("--load-factors", options.load_factors or "1"))
-    elif options.at is not None:
-        run = run_at(session, options.model, _times(options.at))
-    else:
-        run = run_until_rest(session, options.model, options.limit)
-    _write(_FORMATS[options.format](run), options.output)
-    return ANSWERED if run["status"] in FOUND else NOT_ANSWERED
+    return Analysis(
+        load_factors=_numbers("--load-factors", options.load_factors or "1") if options.static else None,
+        times=_times(options.at) if options.at is not None else None,
+        limit=options.limit,
+    )
 
 
 def _add_model(parser: argparse.ArgumentParser) -> None:
@@ -164,9 +171,9 @@ def _positive(text: str) -> float:
     return value
 
 
-def _numbers(option: str, text: str) -> list[float]:
+def _numbers(option: str, text: str) -> tuple[float, ...]:
     try:
-        numbers = [float(part) for part in text.split(",")]
+        numbers = tuple(float(part) for part in text.split(","))
     except ValueError:
         raise Refusal(f"{option} {text}: write numbers separated by commas, such as 0.1,0.5.") from None
     if not all(map(math.isfinite, numbers)):
@@ -174,9 +181,9 @@ def _numbers(option: str, text: str) -> list[float]:
     return numbers
 
 
-def _times(text: str) -> list[float]:
+def _times(text: str) -> tuple[float, ...]:
     times = _numbers("--at", text)
-    if times[0] < 0.0 or times != sorted(times):
+    if times[0] < 0.0 or list(times) != sorted(times):
         raise Refusal(f"--at {text}: times must be at least 0 s and ascending.")
     return times
 

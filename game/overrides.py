@@ -1,9 +1,11 @@
-"""Overrides of the command line: `--set PATH=VALUE`, such as particles.B.force=120,-160."""
+"""Paths such as particles.B.force.x, and the overrides of the command line: `--set PATH=VALUE`."""
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+import re
+from collections.abc import Callable, Container, Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import msgspec
@@ -26,6 +28,34 @@ class OverrideError(ValueError):
     """An override that cannot be applied; the message quotes it and says why and what to write."""
 
 
+@dataclass(frozen=True)
+class Target:
+    """What a path names: one fact of the elements of a table, or its component along an axis.
+
+    handles: the elements; element: their name in the path, "*" for all, "" where there is one only.
+    axis: "x", "y" or "" for the whole.
+    """
+
+    table: Table[Any]
+    handles: list[Handle]
+    element: str
+    field: Field[Any]
+    key: str
+    axis: str
+
+    def path(self, element: str) -> str:
+        """The path to the same fact of another element."""
+        return ".".join(part for part in (self.table.name, element, self.key, self.axis) if part)
+
+    def read(self, text: str) -> Any:
+        """The value that a text means for this fact; the text itself if none, for a check to refuse."""
+        whole = self.field.shape and not self.axis
+        return _vector(self.field, text) if whole else _scalar(self.field, text)
+
+
+Keys = Callable[[Table[Any]], Mapping[str, Field[Any]]]
+
+
 def apply_override(model: Model, override: str) -> None:
     """Give one key of one element, or of all of a table ("*"), the value that a person typed.
 
@@ -36,17 +66,33 @@ def apply_override(model: Model, override: str) -> None:
     One undoable command. Raises OverrideError.
     """
     try:
-        section, _, rest = override.partition(".")
-        table = model.tables[_TABLES[_known(section.strip(), _TABLES, "table")]]
-        handles, rest = _elements(table, rest)
-        path, equals, value = rest.partition("=")
-        if not equals:
+        target, rest = locate(model, override)
+        if not rest.startswith("="):
             raise OverrideError(f"it has no value; {FORM}.")
-        key, _, axis = path.strip().partition(".")
-        field = _field(table, key)
-        model.assign(handles, field.name, _values(field, axis, value.strip(), handles))
+        model.assign(target.handles, target.field.name, _values(target, rest[1:].strip()))
     except (OverrideError, FieldError) as error:
         raise OverrideError(f"{override}: {error}") from None
+
+
+def locate(model: Model, text: str, keys: Keys | None = None) -> tuple[Target, str]:
+    """What the path that a text begins with names, and what follows the path: from "=" or "~" on, or "".
+
+    keys: the facts of a table that may be named, by key; None: those that can be set. Raises OverrideError.
+    """
+    section, _, rest = text.partition(".")
+    table = model.tables[_TABLES[_known(section.strip(), _TABLES, "table")]]
+    known = (keys or _settable)(table)
+    element, rest = _element(table, rest, known)
+    handles = list(table) if element in ("", EVERY) else [table[element]]
+    path = _before_value(rest)
+    key, _, axis = path.strip().partition(".")
+    if keys is None:
+        _refuse_unsettable(table, key, known)
+    field = known[_known(key, known, "key")]
+    if axis and (not field.shape or axis not in ("x", "y")):
+        remedy = f"write {field.key}.x or {field.key}.y" if field.shape else f"write {field.key} only"
+        raise OverrideError(f"{field.title} has no part '{axis}'; {remedy}.")
+    return Target(table, handles, element, field, key, axis), rest[len(path) :]
 
 
 def _known(name: str, names: Iterable[str], what: str) -> str:
@@ -57,27 +103,26 @@ def _known(name: str, names: Iterable[str], what: str) -> str:
     raise OverrideError(f"there is no {what} '{name}'; {remedy}")
 
 
-def _elements(table: Table[Any], rest: str) -> tuple[list[Handle], str]:
-    """The elements that `rest` begins with the name of, and what follows the name."""
+def _element(table: Table[Any], rest: str, known: Container[str]) -> tuple[str, str]:
+    """The name of the element that `rest` begins with ("" where there is one only), and what follows it."""
     if table.kind.single:
-        return [table[0]], rest
+        return "", rest
     cuts = [index for index, character in enumerate(rest) if character == "."]
     named = [cut for cut in cuts if rest[:cut] == EVERY or rest[:cut] in table]
     if not named:
         _refuse_name(table, rest)
     # Of the names "B" and "B.1", the longest that a key follows is meant.
-    with_key = [cut for cut in named if _key_after(rest, cut) in _settable(table)]
+    with_key = [cut for cut in named if _before_value(rest[cut + 1 :]).strip().partition(".")[0] in known]
     cut = (with_key or named)[-1]
-    handles = list(table) if rest[:cut] == EVERY else [table[rest[:cut]]]
-    return handles, rest[cut + 1 :]
+    return rest[:cut], rest[cut + 1 :]
 
 
-def _key_after(rest: str, cut: int) -> str:
-    return rest[cut + 1 :].partition("=")[0].strip().partition(".")[0]
+def _before_value(rest: str) -> str:
+    return re.split("[=~]", rest, maxsplit=1)[0]  # "=" gives a value, "~" a distribution of values
 
 
 def _refuse_name(table: Table[Any], rest: str) -> None:
-    parts = rest.partition("=")[0].split(".")
+    parts = _before_value(rest).split(".")
     name = ".".join(parts[: -2 if parts[-1] in ("x", "y") else -1])
     if not name:
         raise OverrideError(
@@ -91,24 +136,19 @@ def _settable(table: Table[Any]) -> dict[str, Field[Any]]:
     return {field.key: field for field in fields if field.references is None}
 
 
-def _field(table: Table[Any], key: str) -> Field[Any]:
-    fields = _settable(table)
-    if key not in fields and key in table.fields:
+def _refuse_unsettable(table: Table[Any], key: str, settable: Iterable[str]) -> None:
+    if key not in settable and key in table.fields:
         made_by = "is computed" if table.fields[key].role is Role.DERIVED else "refers to other elements"
-        raise OverrideError(f"'{key}' {made_by} and cannot be set here; choose one of {', '.join(fields)}.")
-    return fields[_known(key, fields, "key")]
+        raise OverrideError(f"'{key}' {made_by} and cannot be set here; choose one of {', '.join(settable)}.")
 
 
-def _values(field: Field[Any], axis: str, text: str, handles: list[Handle]) -> list[Any]:
+def _values(target: Target, text: str) -> list[Any]:
     """One value per element."""
-    if not axis:
-        return [_vector(field, text) if field.shape else _scalar(field, text)] * len(handles)
-    if not field.shape or axis not in ("x", "y"):
-        remedy = f"write {field.key}.x or {field.key}.y" if field.shape else f"write {field.key} only"
-        raise OverrideError(f"{field.title} has no part '{axis}'; {remedy}.")
-    new = _scalar(field, text)
-    old = [getattr(handle, field.name) for handle in handles]
-    return [(new, y) if axis == "x" else (x, new) for x, y in old]
+    new = target.read(text)
+    if not target.axis:
+        return [new] * len(target.handles)
+    old = [getattr(handle, target.field.name) for handle in target.handles]
+    return [(new, y) if target.axis == "x" else (x, new) for x, y in old]
 
 
 def _vector(field: Field[Any], text: str) -> tuple[Any, ...]:

@@ -4,18 +4,41 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from components.snapshot import Snapshot
 from game.results import ENERGIES, Run, State, state
-from game.session import Session
+from game.session import DEFAULT_LIMIT, Session
+from systems.base import StopReason
 
 if TYPE_CHECKING:
     from systems.statics.settle import StaticState
 
 FOUND = ("equilibrium", "at rest", "time reached")  # statuses of a run that found what was asked for
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """What is asked of a model: its equilibria, its state at certain times, or its state at rest.
+
+    load_factors: settle at each in turn (statics). times: run through these, in s, ascending; None for both:
+    run until at rest, at most `limit` s of simulated time.
+    """
+
+    load_factors: tuple[float, ...] | None = None
+    times: tuple[float, ...] | None = None
+    limit: float = DEFAULT_LIMIT
+
+    def run(self, session: Session, name: str) -> Run:
+        """Compute it; `name` is what the result calls the model."""
+        if self.load_factors is not None:
+            return run_static(session, name, self.load_factors)
+        if self.times is not None:
+            return run_at(session, name, self.times)
+        return run_until_rest(session, name, self.limit)
 
 
 def run_until_rest(session: Session, name: str, limit: float) -> Run:
@@ -87,18 +110,15 @@ def _static_state(session: Session, found: StaticState) -> State:
 
 def _run_before(session: Session, target: float) -> str:
     """Take all full steps that end at or before a time; at rest, time passes without steps."""
-    session.run(steps=0)
-    clock = session.model.clock
-    status = "time reached"
     while not session.simulation.halted:
         full = session.simulation.full_steps_to(target)
         if full == 0:
-            return status
-        status = session.run(steps=min(full, 1 << 20))
-    if status == "at rest":
-        session.model.writable("clock.time")[0] = max(target, clock.time)
-        return "time reached"
-    return status
+            return "time reached"
+        session.run(steps=min(full, 1 << 20))
+    if session.simulation.reason is StopReason.DIVERGED:
+        return "diverged"
+    session.model.writable("clock.time")[0] = max(target, session.time)
+    return "time reached"
 
 
 def _state(session: Session) -> State:

@@ -360,6 +360,7 @@ class Simulation:
 
     def full_steps_to(self, target: float) -> int:
         """How many full steps end at or before a time (s), rounding apart."""
+        self._arm()
         clock = self.model.clock
         return max(int((target - clock.time) / clock.step_size * (1.0 + 1e-12)), 0)
 
