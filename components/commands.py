@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from components.world import Handle
+    from components.world import Handle, World
 
 
 @dataclass(frozen=True)
@@ -67,4 +67,12 @@ class Group:
     title: str = ""
 
 
-Command = Create | Delete | Restore | Assign | Group
+@runtime_checkable
+class Custom(Protocol):
+    """A command of a mod's own, for what is not in a table: applying it returns what takes it exactly back."""
+
+    def apply(self, world: World) -> Command:
+        """Make the change; returns the inverse."""
+
+
+Command = Create | Delete | Restore | Assign | Group | Custom

@@ -56,10 +56,12 @@ class Field(Generic[T]):
     overridden_by: on a derived Field, the one that assigning to it sets instead.
     choices: the values that a text may take (None: any); a register may grow later.
     key: the name in model files, where it differs from the attribute's.
+    component: the mod's component that it is part of, such as "wind.Sail"; "": of Pinjoint's own.
     checker: replaces the built-in check for values of dtype object.
     """
 
     name: str = ""
+    component: str = ""
 
     def __init__(
         self,

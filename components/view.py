@@ -54,6 +54,14 @@ class Page:
     table: tuple[tuple[str, ...], ...] = ()
 
 
+@dataclass(frozen=True)
+class Readout:
+    """A small panel beside the model: a title and rows of (what, value)."""
+
+    title: str
+    rows: tuple[tuple[str, str], ...] = ()
+
+
 @dataclass
 class View:
     """How one model is shown in one viewport.
@@ -64,7 +72,7 @@ class View:
     caption: lines at the top: what this is, and facts about it. page: text that is shown instead.
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
-    theme: the name of its colours.
+    theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -82,6 +90,7 @@ class View:
     page: Page | None = None
     toolbar: Toolbar = field(default_factory=Toolbar)
     theme: str = "light"
+    readouts: tuple[Readout, ...] = ()
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model."""

@@ -14,7 +14,7 @@ import esper
 import numpy as np
 from numpy.typing import NDArray
 
-from components.commands import Assign, Command, Create, Delete, Group, Removed, Restore
+from components.commands import Assign, Command, Create, Custom, Delete, Group, Removed, Restore
 from components.field import Column, Field, FieldError, Role, same
 from components.table import Table, living
 
@@ -82,6 +82,7 @@ class World:
     on_command: called with the inverse of every executed command (the undo log listens here).
     before_change: called before any command is applied (a running simulation notes what it starts from).
     revision: grows by one at every change of anything.
+    changing: a command is being applied; code that is interrupted now would leave half of it.
     """
 
     def __init__(self, kinds: Sequence[type[Handle]], derivations: Iterable[Derivation] = ()) -> None:
@@ -93,6 +94,7 @@ class World:
         self.tables: dict[str, Table[Any]] = {}
         self.tags_revision = 0
         self._tagged: dict[type, tuple[Any, dict[str, NDArray[np.intp]]]] = {}  # found at these revisions
+        self.changing = False
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}
         self._derived_at: dict[Derivation, int] = {}  # revision at which it was last up to date
@@ -312,8 +314,12 @@ class World:
             with self.transaction(command.title):
                 for part in command.commands:
                     self.execute(part)
-        else:
+            return
+        outer, self.changing = self.changing, True
+        try:
             self._report(self.apply(command))
+        finally:
+            self.changing = outer
 
     def _report(self, inverse: Command) -> None:
         if self._open is not None:
@@ -324,17 +330,18 @@ class World:
     @contextmanager
     def transaction(self, title: str) -> Iterator[None]:
         """Make all commands inside one entry of the log; if one raises, none of them happened."""
-        outer, self._open = self._open, []
+        inverses: list[Command] = []
+        outer, self._open = self._open, inverses
         try:
             yield
         except BaseException:
-            for inverse in reversed(self._open):
+            for inverse in reversed(inverses):
                 self.apply(inverse)
             self._open = outer
             raise
-        inverses, self._open = tuple(reversed(self._open)), outer
+        self._open = outer
         if inverses:
-            self._report(Group(inverses, title))
+            self._report(Group(tuple(reversed(inverses)), title))
 
     def apply(self, command: Command) -> Command:
         """Apply a command without telling the log; returns its exact inverse."""
@@ -351,6 +358,8 @@ class World:
                 return self._assign(command)
             case Group(commands, title):
                 return Group(tuple(reversed([self.apply(part) for part in commands])), title)
+            case Custom():
+                return command.apply(self)
 
     def _create(self, command: Create) -> Command:
         self.activate()
@@ -408,6 +417,26 @@ class World:
         if command.field == "name":
             table.renamed(rows, old)
         return Assign(command.table, command.field, command.entities, old)
+
+    def check_entities(self) -> None:
+        """Raise LookupError, and put them back, if entities were deleted through esper, past the tables."""
+        self.activate()
+        esper.clear_dead_entities()
+        whole = (len(esper.get_component(t.kind)) == t.count for t in self.tables.values() if t.count)
+        if all(whole):
+            return
+        handles = {handle.entity: handle for table in self.tables.values() for handle in table.handles}
+        present = set(esper.get_entities())
+        tags: dict[int, list[Any]] = {}
+        for entity in handles.keys() & present:
+            parts: tuple[Any, ...] = esper.components_for_entity(entity)
+            tags[entity] = [part for part in parts if not isinstance(part, Handle)]
+        _delete_context(self.context)
+        self.activate()
+        for entity in range(1, max([*handles, *present]) + 1):  # esper numbers them in order
+            esper.create_entity(*([handles[entity], *tags.get(entity, ())] if entity in handles else []))
+        self.tags_revision = self.next_revision()
+        raise LookupError("elements were deleted through esper; use model.delete(handles), which can be undone")
 
     # --- tags: rare marks that esper answers for -----------------------------------------------------
 

@@ -7,7 +7,7 @@ import json
 import math
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
@@ -15,6 +15,8 @@ from components.field import FieldError
 from components.settings import INTEGRATORS
 from game import __version__, bench, models, script
 from game.desk import ModelFile, file_of
+from game.mods import ModError, command
+from game.mods.command import load_as_asked
 from game.overrides import OverrideError, apply_override
 from game.report import FOUND, Analysis
 from game.results import as_csv, as_json, as_table
@@ -46,9 +48,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # standard output is for results
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
+        words = load_as_asked(words)
         command = words[0] if words and words[0] in COMMANDS else "open"
         return COMMANDS[command](words[1:] if command in words[:1] else words)
-    except (Refusal, models.ModelError, OverrideError, FieldError, script.ScriptError) as error:
+    except (Refusal, models.ModelError, OverrideError, FieldError, script.ScriptError, ModError) as error:
         print(f"pinjoint: {error}", file=sys.stderr)
         return getattr(error, "status", BAD_INPUT)
     except KeyboardInterrupt:
@@ -65,8 +68,8 @@ def _open(words: Sequence[str]) -> int:
     parser = Parser(
         prog="pinjoint",
         description="A laboratory for particles and pin-jointed structures.",
-        epilog="commands: run, render, force-method, play, bench (each with --help). Bundled models: "
-        + ", ".join(models.bundled()),
+        epilog=f"commands: {', '.join(sorted(COMMANDS))} (each with --help). Every command takes --mods DIR, for mods"
+        " in a folder, and --no-mods, to leave yours out. Bundled models: " + ", ".join(models.bundled()),
     )
     parser.add_argument("model", nargs="?", help="a model file, or the name of a bundled model")
     parser.add_argument("--record", metavar="FILE", help="write what you do to a script for: pinjoint play")
@@ -325,11 +328,20 @@ def _bench(words: Sequence[str]) -> int:
     return ANSWERED
 
 
-COMMANDS = {
+# --- mods --------------------------------------------------------------------------------------------------
+
+
+def _mods(words: Sequence[str]) -> int:
+    parser = Parser(prog="pinjoint mods", description="Extensions of the program; see assets/mods/README.md.")
+    return command.run(words, parser, __version__)
+
+
+COMMANDS: dict[str, Callable[[list[str]], int]] = {
     "open": _open,
     "run": _run,
     "render": _render,
     "bench": _bench,
     "play": _play,
     "force-method": _force_method,
+    "mods": _mods,
 }

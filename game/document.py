@@ -140,7 +140,7 @@ def _section(path: str, kind: type[Handle], value: Any) -> _Section:
         if not isinstance(element, Mapping):
             _fail(path if kind.single else f"{path}[{row}]", f"it must be an object, not {_kind_of(element)}.")
     section = _Section(path, kind, elements, set().union(*elements))
-    known = [*(field.key for field in _saved_fields(kind)), FOREIGN]
+    known = [*(field.key for field in _saved_fields(kind) if not field.component), FOREIGN]
     if not section.keys <= set(known):
         for row, element in enumerate(elements):
             _refuse_unknown(element, known, section.where(row), kind)
@@ -155,13 +155,22 @@ def _saved_fields(kind: type[Handle]) -> list[Field[Any]]:
     return [field for field in fields_of(kind) if field.role in _SAVED]
 
 
+def _components(kind: type[Handle]) -> dict[str, dict[str, Field[Any]]]:
+    """The Fields of mods' components of a kind, by component and key."""
+    found: dict[str, dict[str, Field[Any]]] = {}
+    for field in _saved_fields(kind):
+        if field.component:
+            found.setdefault(field.component, {})[field.key] = field
+    return found
+
+
 def _refuse_unknown(
     element: Mapping[Any, Any], keys: Sequence[str], where: str, kind: type[Handle] | None = None
 ) -> None:
     for key in element:
         if key in keys:
             continue
-        if kind is not None and key in {field.key for field in fields_of(kind)}:
+        if kind is not None and key in {field.key for field in fields_of(kind) if not field.component}:
             _fail(where, f"'{key}' is computed from the rest and is no part of a model file; remove it.")
         nearest = difflib.get_close_matches(str(key), keys, n=1)
         remedy = f"did you mean '{nearest[0]}'?" if nearest else f"the keys are {', '.join(keys)}."
@@ -176,6 +185,8 @@ def _kind_of(value: Any) -> str:
 def _read(model: Model, section: _Section) -> None:
     """Put the elements of a section into the model."""
     kind = section.kind
+    if FOREIGN in section.keys:
+        _check_components(section)
     columns = {field.name: _column(model, section, field) for field in _saved_fields(kind)}
     if kind in _CHECKS:
         _CHECKS[kind](model, section, columns)
@@ -197,6 +208,8 @@ def _column(model: Model, section: _Section, field: Field[Any]) -> Column:
     """The checked values of one field for all elements of a section, its default where none is given."""
     if field.name == "name":
         return _names(section, field)
+    if field.component:
+        section = _component_section(section, field.component)
     if field.key not in section.keys:
         return field.allocate(len(section.elements))
     if field.references is not None:
@@ -304,8 +317,10 @@ _CHECKS: Mapping[type[Handle], Callable[[Model, _Section, Columns], None]] = Map
 # --- what belongs to mods ------------------------------------------------------------------------------
 
 
-def _keep_foreign(model: Model, section: _Section, handles: Sequence[Handle]) -> None:
-    for row, (element, handle) in enumerate(zip(section.elements, handles, strict=True)):
+def _check_components(section: _Section) -> None:
+    """What mods keep at elements has the form {"mod.Component": {…}}, with the keys of those that are loaded."""
+    known = _components(section.kind)
+    for row, element in enumerate(section.elements):
         if FOREIGN not in element:
             continue
         where, components = section.where(row, FOREIGN), element[FOREIGN]
@@ -314,7 +329,31 @@ def _keep_foreign(model: Model, section: _Section, handles: Sequence[Handle]) ->
         for name, values in components.items():
             if not isinstance(name, str) or "." not in name or not isinstance(values, Mapping):
                 _fail(where, f'{name!r} must be like "mod.Component": {{…}}.')
-        model.foreign[handle.entity] = _copied(components, where)
+            if name in known:
+                _refuse_unknown(values, list(known[name]), f"{where}: {name}")
+
+
+def _component_section(section: _Section, component: str) -> _Section:
+    """What the elements of a section hold for one component."""
+    parts = [element.get(FOREIGN, {}).get(component, {}) for element in section.elements]
+    path = f"{section.path}: {component}" if section.kind.single else section.path
+    return _Section(path, section.kind, parts, set().union(*parts))
+
+
+def _keep_foreign(model: Model, section: _Section, handles: Sequence[Handle]) -> None:
+    """Keep what belongs to components that are not loaded."""
+    known = _components(section.kind)
+    for row, (element, handle) in enumerate(zip(section.elements, handles, strict=True)):
+        if FOREIGN not in element:
+            continue
+        foreign = {name: part for name, part in element[FOREIGN].items() if name not in known}
+        if foreign or not element[FOREIGN]:  # an empty object stays too
+            model.foreign[handle.entity] = _copied(foreign, section.where(row, FOREIGN))
+
+
+def missing_mods(model: Model) -> list[str]:
+    """Names of the mods, not loaded, whose data a model keeps."""
+    return sorted({name.partition(".")[0] for kept in model.foreign.values() for name in kept})
 
 
 def _copied(value: Any, where: str) -> Any:
@@ -352,17 +391,26 @@ def _elements(model: Model, kind: type[Handle]) -> list[dict[str, Any]]:
     for field in _saved_fields(kind):
         column = table.column(field.name)
         _refuse_non_finite(model, kind, field, column)
-        if field.key in always or (kind.single and field.role is Role.DOCUMENT):
+        if not field.component and (field.key in always or (kind.single and field.role is Role.DOCUMENT)):
             rows = list(range(table.count))
         else:
             rows = np.flatnonzero(_differs_from_default(field, column)).tolist()
             column = column[rows]
         for row, value in zip(rows, _json_values(model, field, column), strict=True):
-            elements[row][field.key] = value
+            _part_for(elements[row], field)[field.key] = value
     for handle, element in zip(table.handles, elements, strict=True):
         if handle.entity in model.foreign:
-            element[FOREIGN] = _copied(model.foreign[handle.entity], model.describe(handle))
+            kept = _copied(model.foreign[handle.entity], model.describe(handle))
+            element[FOREIGN] = dict(sorted({**element.pop(FOREIGN, {}), **kept}.items()))
     return elements
+
+
+def _part_for(element: dict[str, Any], field: Field[Any]) -> dict[str, Any]:
+    """The object that holds a field's value: the element, or its part for a mod's component."""
+    if not field.component:
+        return element
+    part: dict[str, Any] = element.setdefault(FOREIGN, {}).setdefault(field.component, {})
+    return part
 
 
 def _differs_from_default(field: Field[Any], column: Column) -> NDArray[np.bool_]:

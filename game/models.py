@@ -22,14 +22,19 @@ from game.document import ModelError, document, parse
 __all__ = ["ModelError", "bundled", "document", "laid_out", "load", "parse", "replace", "save"]
 
 
+FOLDERS: list[Path] = []  # of mods, with models that are opened by name
+
+
 def bundled() -> list[str]:
-    """Names of the models that come with the program, in alphabetical order."""
+    """Names of the models that come with the program and its mods, in alphabetical order."""
     names = (entry.name for entry in _bundled_files())
     return sorted(name.removesuffix(".json") for name in names if name.endswith(".json"))
 
 
 def _bundled_files() -> Iterable[Traversable]:
-    return files("assets").joinpath("models").iterdir()
+    yield from files("assets").joinpath("models").iterdir()
+    for folder in FOLDERS:
+        yield from folder.iterdir()
 
 
 # --- reading ---------------------------------------------------------------------------------------

@@ -133,7 +133,7 @@ def _refuse_name(table: Table[Any], rest: str) -> None:
 
 def _settable(table: Table[Any]) -> dict[str, Field[Any]]:
     fields = table.fields_in(Role.DOCUMENT, Role.STATE)
-    return {field.key: field for field in fields if field.references is None}
+    return {field.name if field.component else field.key: field for field in fields if field.references is None}
 
 
 def _refuse_unsettable(table: Table[Any], key: str, settable: Iterable[str]) -> None:

@@ -29,6 +29,20 @@ def preferred_theme() -> str:
     return name if isinstance(name, str) and name in theme_names() else DEFAULT_THEME
 
 
+def preferred_keys() -> list[tuple[str, str, str]]:
+    """(scene, key, action) of every key that a person chose: {"keys": {"pause": {"w": "wind.toggle"}}}."""
+    by_scene = _read().get("keys")
+    if not isinstance(by_scene, dict):
+        return []
+    return [
+        (scene, key, action)
+        for scene, keys in by_scene.items()
+        if isinstance(keys, dict)
+        for key, action in keys.items()
+        if isinstance(action, str)
+    ]
+
+
 def remember_theme(name: str) -> None:
     """Keep the choice of a theme; all other entries stay. Where nothing can be written, it is not kept."""
     path = settings_path()

@@ -38,12 +38,21 @@ def _facts(kind: type[Handle], *names: str) -> tuple[Field[Any], ...]:
 
 
 # What is reported of every element: key in a state → its facts, under their names and in their units.
-REPORTED: Mapping[str, tuple[Field[Any], ...]] = {
+_OWN: Mapping[str, tuple[Field[Any], ...]] = {
     "particles": _facts(Particle, "position", "displacement", "velocity", "reaction", "mass"),
     "rods": _facts(Rod, "axial_force", "length", "strain", "plastic_strain", "yielding"),
 }
+_KINDS: Mapping[str, type[Handle]] = {"particles": Particle, "rods": Rod}
 _NOUNS = {"particles": Particle.noun, "rods": Rod.noun}
 _IN_TABLES = {Particle.displacement.name: ("mm", 1000.0)}  # else units as in files
+
+
+def reported(group: str) -> tuple[Field[Any], ...]:
+    """The facts that are reported of the elements of a table: Pinjoint's, then those of mods' components."""
+    of_mods = (
+        field for field in fields_of(_KINDS[group]) if field.component and field.dtype in (float, int, bool)
+    )
+    return (*_OWN[group], *of_mods)
 
 
 class ResultError(ValueError):
@@ -83,14 +92,16 @@ def state(
 def _elements(model: Model, name: str, given: Mapping[str, Column]) -> dict[str, dict[str, Any]]:
     table = model.tables[name]
     columns = []
-    for field in REPORTED[name]:
+    for field in reported(name):
         key = f"{name}.{field.name}"
         column = given[key] if key in given else table.column(field.name)
-        for row in np.argwhere(~np.isfinite(column))[:1, 0].tolist():
+        absent = np.isnan(column) if field.nullable else False
+        for row in np.argwhere(~(np.isfinite(column) | absent))[:1, 0].tolist():
             element, value = model.describe(table[row]), field.loaded(column[row])
             raise ResultError(f"{element}: {field.title} is {value}, not finite; report a state before it.")
-        columns.append(column.tolist())
-    keys = [field.name for field in REPORTED[name]]
+        values = column.tolist()
+        columns.append([None if v != v else v for v in values] if field.nullable else values)
+    keys = [field.name for field in reported(name)]
     rows = zip(*columns, strict=True)
     return {name: dict(zip(keys, row, strict=True)) for name, row in zip(table.names, rows, strict=True)}
 
@@ -132,10 +143,9 @@ def as_csv(run: Run) -> str:
 
 def _quantities(made: State) -> Iterator[tuple[Any, ...]]:
     """(element, name, quantity, value, unit) of every number in a state."""
-    for group, fields in REPORTED.items():
-        noun = _NOUNS[group]
+    for group, noun in _NOUNS.items():
         for name, values in made[group].items():
-            for field in fields:
+            for field in reported(group):
                 value = values[field.name]
                 if field.shape:
                     yield noun, name, f"{field.name}_x", value[0], field.unit
@@ -168,7 +178,7 @@ def as_table(run: Run) -> str:
 def _state_lines(made: State) -> Iterator[str]:
     factor = made["load_factor"]
     yield f"At time {_shown(made['time'])} s" if factor is None else f"At load factor {_shown(factor)}"
-    for group in REPORTED:
+    for group in _NOUNS:
         if made[group]:
             yield ""
             yield from _aligned(_element_rows(group, made[group]))
@@ -184,7 +194,7 @@ def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list
     """Two rows of headings, then one row per element."""
     columns = [
         (field, axis, *_IN_TABLES.get(field.name, (field.unit, 1.0)))
-        for field in REPORTED[group]
+        for field in reported(group)
         for axis in (range(2) if field.shape else (None,))
     ]
     titles = [field.title + ("" if axis is None else " " + "xy"[axis]) for field, axis, _, _ in columns]
@@ -193,12 +203,15 @@ def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list
         cells = [name]
         for field, axis, _, factor in columns:
             value = values[field.name] if axis is None else values[field.name][axis]
-            cells.append(_shown(value if isinstance(value, bool) else value * factor))
+            plain = value is None or isinstance(value, bool)
+            cells.append(_shown(value if plain else value * factor))
         rows.append(cells)
     return rows
 
 
 def _shown(value: Any) -> str:
+    if value is None:
+        return "–"
     if isinstance(value, bool):
         return "yes" if value else "no"
     return f"{value + 0.0:.7g}"  # + 0.0: no minus before a zero

@@ -26,8 +26,11 @@ from game.actions import ACTIONS, WHILE_DRAWING
 from game.catalogue import step_systems
 from game.clock import FrameClock
 from game.desk import Desk, Desks, ModelFile, file_of
+from game.document import missing_mods
 from game.gestures import TOOL_HINTS, Gesture
 from game.history import History
+from game.mods.mod import FAULTS
+from game.registry import PANELS, SYSTEMS
 from game.scenes import Scenes, Stage, all_scenes
 from game.schedule import Schedule
 from game.simulation import Energy, Simulation
@@ -36,7 +39,8 @@ from game.toolbar import toolbar_of
 from systems.base import Phase, StopReason, System
 from systems.edit.pull import Pull
 from systems.edit.refusal import Refusal
-from systems.input.bindings import LIVE, PANELS, TEXT, action_for, help_lines
+from systems.input.bindings import LIVE, TEXT, action_for, help_lines
+from systems.input.bindings import PANELS as FORMS
 
 CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
 ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
@@ -100,7 +104,7 @@ class Session:
         file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
     ) -> None:
         self.pull = Pull()
-        self.schedule = Schedule([*step_systems(), self.pull, *systems])
+        self.schedule = Schedule([*step_systems(), self.pull, *(make() for make in SYSTEMS), *systems])
         self.desks = Desks(model, self.schedule, self.pull, file)
         self.scenes = Scenes(all_scenes())
         self.view: View = view or View()
@@ -111,12 +115,26 @@ class Session:
         self.on_press: Callable[[str, Vector | None], None] | None = None  # a recorder listens here
         self.spares: Spares | None = None  # unsaved work is kept in them, in a window
         self._keyed = ""  # the scene in which a key was pressed last
+        self._faults = len(FAULTS)  # those that were told, or are from before
         self._offer_tools()
-        self.view.fit(model)
+        self._begin_at_desk()
 
     @classmethod
-    def open(cls, source: str | Path | Mapping[str, Any], systems: Iterable[System] = ()) -> Session:
-        """Open a model file, a bundled model by name, or a document. Raises ModelError."""
+    def open(
+        cls,
+        source: str | Path | Mapping[str, Any],
+        systems: Iterable[System] = (),
+        mods: Iterable[str | Path] = (),
+    ) -> Session:
+        """Open a model file, a bundled model by name, or a document. Raises ModelError.
+
+        systems: further ones for this session. mods: folders of mods to load first, for the whole program;
+        raises ModError if one of them cannot be used.
+        """
+        if folders := list(mods):
+            from game.mods import load_all
+
+            load_all(folders)
         return cls(models.load(source), systems, file=file_of(source))
 
     # --- files -------------------------------------------------------------------------------------
@@ -158,6 +176,11 @@ class Session:
 
     def _begin_at_desk(self) -> None:
         self.view.fit(self.model)
+        if missing := missing_mods(self.model):
+            self.notice = (
+                f"This model holds data of mods that are not loaded: {', '.join(missing)}. They are kept and"
+                " saved again, but have no effect."
+            )
         if self.scene == "simulation":
             self.history.begin_run()
 
@@ -226,7 +249,12 @@ class Session:
     @property
     def message(self) -> str:
         """Why the run stopped, or what to beware of; "" if there is nothing to say."""
-        return self.simulation.message or self.simulation.warning or self.notice
+        return self.fault or self.simulation.message or self.simulation.warning or self.notice
+
+    @property
+    def fault(self) -> str:
+        """The mod that failed last and why, until Escape is pressed; "" if none did."""
+        return FAULTS[-1] if len(FAULTS) > self._faults else ""
 
     # --- time --------------------------------------------------------------------------------------
 
@@ -411,7 +439,7 @@ class Session:
 
     def _offer_tools(self) -> None:
         """Let the toolbar show what can be done now; behind a panel it stays as it was."""
-        if self.scene not in PANELS:
+        if self.scene not in FORMS:
             self.view.toolbar = toolbar_of(self)
 
     def leave_gesture(self) -> None:
@@ -432,7 +460,9 @@ class Session:
             return
         pixel = pixel if pixel is not None else self.pointer
         name = self._action_at(key, pixel)
-        if name is not None:
+        if key == "escape" and self.fault:
+            self._faults = len(FAULTS)
+        elif name is not None:
             if self.on_press is not None:
                 self.on_press(key, pixel)
             self.notice = ""
@@ -440,7 +470,7 @@ class Session:
 
     def _action_at(self, key: str, pixel: Vector) -> str | None:
         """What a key or button does, with the pointer at a pixel: on the toolbar, clicks do what it offers."""
-        if key not in ON_TOOLBAR or self.scene in PANELS or not self.view.strip.contains(pixel):
+        if key not in ON_TOOLBAR or self.scene in FORMS or not self.view.strip.contains(pixel):
             return action_for(self.scene, key)
         buttons = self.view.toolbar.buttons(self.view.camera.viewport, self.view.pixel_ratio)
         hit = (button.tool for button in buttons if button.contains(pixel))
@@ -539,7 +569,7 @@ class Session:
     def stages(self) -> Sequence[Stage]:
         """What the active scene shows: models, each in its view, and the toolbar if it has one."""
         stages = list(self.scenes.active.stages(self))
-        return stages if self.scene in PANELS else [*stages, (self.view.toolbar, self.view)]
+        return stages if self.scene in FORMS else [*stages, (self.view.toolbar, self.view)]
 
     @property
     def busy(self) -> bool:
@@ -553,6 +583,7 @@ class Session:
         view.heading = scene.heading
         self._offer_tools()
         view.keys = help_lines(scene.name) if view.help else []
+        view.readouts = tuple(readout for panel in PANELS if (readout := panel(self)) is not None)
         view.status = Status(
             time=self.time,
             speed=self.clock.shown_pace if self.busy else 0.0,
@@ -582,6 +613,8 @@ class Session:
         return "running, slower than asked" if self.clock.lagging else "running"
 
     def _problem(self) -> str:
+        if self.fault:
+            return f"{self.fault} Esc takes this away."
         if self.simulation.reason is StopReason.DIVERGED and self.simulation.halted:
             return self.simulation.message
         return self.simulation.warning

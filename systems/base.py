@@ -46,6 +46,7 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
         that touch the same thing, one writing, must be ordered by before/after.
     adds: columns that it adds to; additions never conflict.
     scenes: names of the scenes it is active in; None: all.
+    mod: the mod that brought it, if one did; set by the program.
     """
 
     name: ClassVar[str] = ""
@@ -56,6 +57,7 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
     writes: ClassVar[tuple[str, ...]] = ()
     adds: ClassVar[tuple[str, ...]] = ()
     scenes: ClassVar[tuple[str, ...] | None] = None
+    mod: Any = None
 
     def needs(self, model: Model) -> bool:
         """False if this model has nothing for the system to do; it is then left out of the plan."""

@@ -1,5 +1,6 @@
 """Scenes: the modes of the program, a state machine with pause as its hub."""
 
+from game.registry import SCENES
 from game.scenes.base import Scene, SceneError, Scenes, Stage
 from game.scenes.force_method import ForceMethod
 from game.scenes.load import Load
@@ -12,5 +13,5 @@ __all__ = ["Scene", "SceneError", "Scenes", "Stage", "all_scenes"]
 
 
 def all_scenes() -> list[Scene]:
-    """The six modes; the first is the one the program starts in."""
-    return [Pause(), Simulation(), Properties(), Save(), Load(), ForceMethod()]
+    """The six modes, the first of which the program starts in, and those of mods."""
+    return [Pause(), Simulation(), Properties(), Save(), Load(), ForceMethod(), *(scene() for scene in SCENES)]

@@ -23,12 +23,14 @@ class SceneError(ValueError):
 class Scene:
     """One mode. Systems say by their `scenes` in which they are active; keys are in input/bindings.py.
 
-    heading: the word shown top left in red. targets: scenes that may follow.
+    heading: the word shown top left in red. targets: scenes that may follow. sources: further scenes that
+    this one may follow, which need not know it.
     """
 
     name: ClassVar[str]
     heading: ClassVar[str] = ""
     targets: ClassVar[tuple[str, ...]] = ("pause",)
+    sources: ClassVar[tuple[str, ...]] = ()
 
     def enter(self, session: Session) -> None:
         """Called once when the scene becomes the active one."""
@@ -86,7 +88,7 @@ class Scenes:
             if name not in self._by_name:
                 known = ", ".join(self._by_name)
                 raise SceneError(f"There is no scene '{name}'; there are {known}.")
-            if name not in here.targets:
+            if name not in here.targets and here.name not in self._by_name[name].sources:
                 targets = ", ".join(here.targets)
                 raise SceneError(f"From {here.name} one cannot go to {name}, only to {targets}.")
             here = self._by_name[name]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 SIMULATION, PAUSE = "simulation", "pause"
@@ -30,7 +30,7 @@ class Binding:
     repeats: bool = False
 
 
-BINDINGS: tuple[Binding, ...] = (
+BINDINGS: list[Binding] = [
     Binding("escape", "escape", (SIMULATION,), "put the tool away, or pause"),
     Binding("escape", "escape", (PAUSE,), "put the tool away, drop the selection, or run"),
     Binding("escape", "back", (FORCE_METHOD,), "back to pause"),
@@ -127,7 +127,7 @@ BINDINGS: tuple[Binding, ...] = (
     Binding("wheel up", "zoom in", LIVE, "zoom in at the pointer"),
     Binding("wheel down", "zoom out", LIVE, "zoom out"),
     Binding("drag middle", "pan", LIVE, "move the view (or right button)"),
-)
+]
 
 # What the toolbar offers, in groups from the top to the bottom.
 TOOLBAR: tuple[tuple[str, ...], ...] = (
@@ -143,15 +143,55 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
 _BY_KEY = {(scene, binding.key): binding for binding in BINDINGS for scene in binding.scenes}
 
 
+def add_binding(binding: Binding) -> list[Binding]:
+    """Let a key perform an action in those of its scenes in which it does nothing yet; returns what has it elsewhere."""
+    taken = {scene: _BY_KEY[scene, binding.key] for scene in binding.scenes if (scene, binding.key) in _BY_KEY}
+    free = tuple(scene for scene in binding.scenes if scene not in taken)
+    if free:
+        BINDINGS.append(replace(binding, scenes=free))
+        _index()
+    return list(dict.fromkeys(taken.values()))
+
+
+def remove_bindings(action: str) -> None:
+    """Let no key perform an action any more."""
+    BINDINGS[:] = [binding for binding in BINDINGS if binding.action != action]
+    _index()
+
+
+def prefer(scene: str, key: str, action: str) -> None:
+    """Let a key perform what a person chose for it, whatever else it was for."""
+    titles = (binding.title for binding in BINDINGS if binding.action == action)
+    old = _BY_KEY.get((scene, key))
+    if old is not None:
+        BINDINGS[BINDINGS.index(old)] = replace(old, scenes=tuple(s for s in old.scenes if s != scene))
+    BINDINGS.append(Binding(key, action, (scene,), next(titles, action)))
+    _index()
+
+
+def _index() -> None:
+    _BY_KEY.clear()
+    _BY_KEY.update({(scene, binding.key): binding for binding in BINDINGS for scene in binding.scenes})
+    toolbar.cache_clear()
+
+
+def _binding(scene: str, key: str) -> Binding | None:
+    """In a mod's scene, the keys that do the same in every one of ours do so too."""
+    found = _BY_KEY.get((scene, key))
+    if found is None and scene not in EVERY:
+        found = next((b for b in BINDINGS if b.key == key and set(EVERY) <= set(b.scenes)), None)
+    return found
+
+
 def action_for(scene: str, key: str) -> str | None:
     """The action that a key performs in a scene, or None."""
-    binding = _BY_KEY.get((scene, key))
+    binding = _binding(scene, key)
     return binding.action if binding else None
 
 
 def repeats(scene: str, key: str) -> bool:
     """True if holding a key performs its action again and again in a scene."""
-    binding = _BY_KEY.get((scene, key))
+    binding = _binding(scene, key)
     return binding is not None and binding.repeats
 
 
@@ -168,4 +208,5 @@ def toolbar(scene: str) -> tuple[tuple[Binding, ...], ...]:
 
 def help_lines(scene: str) -> list[tuple[str, str]]:
     """(key, title) of everything that can be pressed in a scene."""
-    return [(binding.key, binding.title) for binding in BINDINGS if scene in binding.scenes and binding.title]
+    shown = (b for b in BINDINGS if b.title and _binding(scene, b.key) is b)
+    return [(binding.key, binding.title) for binding in shown]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from components.form import Form
@@ -9,11 +10,12 @@ from components.toolbar import Toolbar
 from components.view import View, drawn_positions
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.labels import place_labels
-from systems.render.marks import Picture
+from systems.render.marks import Mark, Picture
 from systems.render.overlays import draw_overlays, draw_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
-from systems.render.sheet import measure
+from systems.render.readouts import draw_readouts
+from systems.render.sheet import Sheet, measure
 from systems.render.structure import draw_ghost, draw_grid, draw_halos, draw_particles, draw_rods, label_names
 from systems.render.supports import crowding, draw_supports, support_sides
 from systems.render.theme import Theme
@@ -23,7 +25,12 @@ from systems.render.tools import draw_preview
 if TYPE_CHECKING:
     from components.model import Model
 
-__all__ = ["compose", "drawn_positions"]
+__all__ = ["ABOVE", "BELOW", "Layer", "compose", "drawn_positions"]
+
+Layer = Callable[[Sheet], Iterable[Mark]]
+
+BELOW: list[Layer] = []  # what mods draw below the elements of a model
+ABOVE: list[Layer] = []  # and above them
 
 
 def compose(model: Model | Form | Toolbar, view: View, theme: Theme) -> Picture:
@@ -39,6 +46,8 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme) -> Picture:
     if view.page is not None:
         return Picture(sheet.viewport, theme.background, draw_page(sheet))
     draw_grid(sheet)
+    for layer in BELOW:
+        sheet.marks += layer(sheet)
     draw_rod_diagrams(sheet)
     draw_ghost(sheet)
     draw_halos(sheet)
@@ -49,7 +58,10 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme) -> Picture:
     draw_particles(sheet)
     draw_particle_diagrams(sheet, crowd, sides)
     label_names(sheet)
+    for layer in ABOVE:
+        sheet.marks += layer(sheet)
     overlays, room = draw_overlays(sheet)
+    overlays += draw_readouts(sheet, room)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit)
     scale = draw_scale(sheet, room) if model.particles.count else []
     over = [*scale, *draw_preview(sheet), *overlays]

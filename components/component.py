@@ -1,0 +1,53 @@
+"""Component: facts that a mod adds to elements of one kind."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from components.field import Role
+from components.table import fields_of
+from components.world import Handle
+
+
+class Component:
+    """Facts that a mod adds to elements of one kind; a subclass declares them as Fields.
+
+    Every element of the kind has them, at their defaults to begin with. In Python and in kernels they go by
+    `<mod>_<field>`: `particle.wind_area`, `particles_wind_area`. Files keep them at the element, under
+    "components": {"<mod>.<Component>": {…}}.
+
+    of: the kind of element, such as Particle, Rod, Environment or Settings.
+    """
+
+    of: ClassVar[type[Handle]]
+
+
+def add_component(mod: str, component: type[Component]) -> list[str]:
+    """Let all worlds made from now on have a mod's component; returns its columns' names in the table.
+
+    Raises ValueError if a column of that name is there, or a Field is none that a mod can add.
+    """
+    kind, fields = component.of, fields_of(component)
+    names = [f"{mod}_{field.name.removeprefix(f'{mod}_')}" for field in fields]
+    for field, name in zip(fields, names, strict=True):
+        if hasattr(kind, name):
+            raise ValueError(
+                f"{component.__name__}: {kind.table} have a '{name}' already; call this Field something else."
+            )
+        if field.references is not None or field.role is Role.DERIVED:
+            raise ValueError(
+                f"{component.__name__}.{field.name}: a mod's Field holds values that a person or time made;"
+                " references and derived columns cannot be added."
+            )
+    for field, name in zip(fields, names, strict=True):
+        key = field.key
+        field.name, field.component = name, f"{mod}.{component.__name__}"
+        field._key = key.removeprefix(f"{mod}_")
+        setattr(kind, name, field)
+    return names
+
+
+def remove_component(component: type[Component], names: list[str]) -> None:
+    """Take back what `add_component` did."""
+    for name in names:
+        delattr(component.of, name)

@@ -1,0 +1,12 @@
+"""Mods: extensions by others, and those of ours that are written as theirs are.
+
+>>> from game import mods
+>>> [mod.name for mod in mods.MODS if mod.problem]
+[]
+"""
+
+from game.mods.app import App
+from game.mods.loading import MODS, include, load, load_all, unload
+from game.mods.mod import FAULTS, Mod, ModError
+
+__all__ = ["FAULTS", "MODS", "App", "Mod", "ModError", "include", "load", "load_all", "unload"]

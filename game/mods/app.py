@@ -1,0 +1,220 @@
+"""App: what a mod's `plugin(app)` registers with."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from components.component import Component, add_component, remove_component
+from components.field import FieldError, Vector
+from components.load import HISTORIES, HistoryKind, register_history
+from components.settings import INTEGRATORS
+from components.view import Readout
+from game import models, registry
+from game.actions.registry import ACTIONS, WHILE_DRAWING, Action, action
+from game.catalogue import DRIVERS, register_driver
+from game.mods.guard import guarded_scene, guarded_system
+from game.mods.mod import Mod, ModError
+from game.scenes import Scene, all_scenes
+from systems.base import Driver, System
+from systems.edit.refusal import Refusal
+from systems.input.bindings import LIVE, Binding, add_binding, remove_bindings
+from systems.loads.system import VaryingLoads
+from systems.render.picture import ABOVE, BELOW, Layer
+
+if TYPE_CHECKING:
+    from game.session import Session
+
+T = TypeVar("T")
+Panel = Callable[["Session"], Readout | None]
+
+
+class App:
+    """The program, as a mod's `plugin(app)` sees it while it registers what it adds.
+
+    All or nothing: if `plugin` raises, nothing of it stays. What is registered is called only while the mod
+    works; an exception in it switches the whole mod off, and the session goes on.
+    """
+
+    def __init__(self, mod: Mod) -> None:
+        self._mod = mod
+        self._undo: list[Callable[[], object]] = []
+
+    @property
+    def name(self) -> str:
+        """The mod's name."""
+        return self._mod.name
+
+    # --- data and physics ----------------------------------------------------------------------------
+
+    def component(self, component: type[Component]) -> None:
+        """Add the Fields of a component to all elements of its kind; see components.Component."""
+        try:
+            names = add_component(self.name, component)
+        except ValueError as error:
+            raise ModError(str(error)) from None
+        self._undo.append(lambda: remove_component(component, names))
+
+    def system(self, system: Callable[[], System]) -> None:
+        """Add a frame system, a law or a commit, by its class: every session makes one of its own."""
+        name = getattr(system, "name", "")
+        self._check_prefix("system", name or getattr(system, "__name__", "?"))
+        self._add(registry.SYSTEMS, lambda: guarded_system(self._mod, system()))
+
+    def integrator(self, driver: type[Driver]) -> None:
+        """Add an integrator that models, the command line and the properties can choose."""
+        self._check_prefix("integrator", driver.name)
+        key = driver.name.rpartition(".")[2]
+        if key in INTEGRATORS:
+            raise ModError(f"There is an integrator '{key}' already; call {driver.name} something else.")
+        register_driver(driver())
+        self._undo.append(lambda: (DRIVERS.pop(key), INTEGRATORS.pop(key)))
+
+    def history(self, kind: HistoryKind) -> None:
+        """Add a way in which loads change in time."""
+        try:
+            register_history(kind)
+        except ValueError as error:
+            raise ModError(str(error)) from None
+        self._undo.append(lambda: HISTORIES.pop(kind.name))
+        self._add(registry.SYSTEMS, lambda: guarded_system(self._mod, VaryingLoads(kind)))
+
+    def models(self, folder: str | Path) -> None:
+        """Let the models in a folder be opened by name, like those that come with Pinjoint."""
+        path = Path(folder)
+        if not path.is_dir():
+            raise ModError(f"The folder of models {path} is not there.")
+        taken = {entry.name for entry in path.glob("*.json")} & {f"{name}.json" for name in models.bundled()}
+        if taken:
+            raise ModError(f"There is a bundled model '{min(taken)}' already; give the file another name.")
+        self._add(models.FOLDERS, path)
+
+    # --- scenes, actions, keys -------------------------------------------------------------------------
+
+    def scene(self, scene: type[Scene]) -> None:
+        """Add a mode. Its `sources` are the scenes from which it can be reached; "pause" must be a target."""
+        if scene.name in {other.name for other in all_scenes()}:
+            raise ModError(f"There is a scene '{scene.name}' already; call this one something else.")
+        if "pause" not in scene.targets:
+            raise ModError(f"From the scene '{scene.name}' one must be able to go to pause; add it to targets.")
+        guarded: Callable[[], Scene] = guarded_scene(self._mod, scene)
+        self._add(registry.SCENES, guarded)
+
+    def action(
+        self,
+        name: str,
+        *,
+        key: str = "",
+        scenes: Sequence[str] = LIVE,
+        title: str = "",
+        while_drawing: bool = False,
+    ) -> Callable[[Action], Action]:
+        """Register a function(session, pixel) as a named action, and perhaps a key for it.
+
+        Everything that it changes in the model is one step of undo, dropped whole if it raises.
+        """
+        self._check_prefix("action", name)
+
+        def register(function: Action) -> Action:
+            if name in ACTIONS:
+                raise ModError(f"There is an action '{name}' already; call this one something else.")
+            action(name, while_drawing=while_drawing)(self._guarded_action(name, function))
+            self._undo += [lambda: ACTIONS.pop(name), lambda: WHILE_DRAWING.discard(name)]
+            if key:
+                self.key(key, name, scenes, title)
+            return function
+
+        return register
+
+    def key(self, key: str, name: str, scenes: Sequence[str] = LIVE, title: str = "") -> None:
+        """Let a key, such as "w" or "ctrl+w", perform a named action in some scenes.
+
+        A key that does something there already goes on doing it, and that is reported; a person can decide
+        otherwise in the settings file, {"keys": {"pause": {"w": "wind.toggle"}}}.
+        """
+        if name not in ACTIONS:
+            raise ModError(f"The key '{key}' is for an action '{name}' that is not registered.")
+        for other in add_binding(Binding(key, name, tuple(scenes), title or name)):
+            self._mod.notes.append(
+                f"The key '{key}' for {name} does '{other.action}' already in {', '.join(other.scenes)}; to"
+                f' change that: {{"keys": {{"{other.scenes[0]}": {{"{key}": "{name}"}}}}}} in the settings file.'
+            )
+        self._undo.append(lambda: remove_bindings(name))
+
+    def command(self, name: str, run: Callable[[list[str]], int], about: str = "") -> None:
+        """Add `pinjoint <name> …`: `run` gets the words after it and returns the exit status."""
+        from game.cli import COMMANDS
+
+        if name in COMMANDS:
+            raise ModError(f"There is a command '{name}' already; call this one something else.")
+        COMMANDS[name] = lambda words: int(
+            self._mod.call(f"the command '{name}'", run, list(words), otherwise=2)
+        )
+        self._undo.append(lambda: COMMANDS.pop(name))
+
+    # --- what is seen ------------------------------------------------------------------------------------
+
+    def layer(self, draw: Layer, *, below: bool = False) -> None:
+        """Draw marks with every picture of a model, above its elements or below them; see systems/render/marks.py."""
+        drawn: Layer = lambda sheet: self._mod.call("its drawing layer", _as_list(draw), sheet, otherwise=[])  # noqa: E731
+        self._add(BELOW if below else ABOVE, drawn)
+
+    def panel(self, read: Panel) -> None:
+        """Show a small panel beside the model: `read(session)` returns its Readout, or None for none now."""
+        self._add(registry.PANELS, lambda session: self._mod.call("its panel", _checked(read), session))
+
+    # --- all or nothing ------------------------------------------------------------------------------------
+
+    def withdraw(self) -> None:
+        """Take back everything that was registered, the last first."""
+        while self._undo:
+            self._undo.pop()()
+
+    def _add(self, entries: list[T], entry: T) -> None:
+        entries.append(entry)
+        self._undo.append(lambda: entries.remove(entry))
+
+    def _check_prefix(self, what: str, name: str) -> None:
+        if not name.startswith(f"{self.name}."):
+            raise ModError(f"The {what} '{name}' must be named after its mod, such as '{self.name}.{name}'.")
+
+    def _guarded_action(self, name: str, function: Action) -> Action:
+        mod = self._mod
+
+        def act(session: Session, pixel: Vector) -> None:
+            if mod.off:
+                raise Refusal(f"The mod '{mod.name}' is switched off: {mod.problem}")
+            try:
+                with session.model.transaction(name):
+                    function(session, pixel)
+            except (Refusal, FieldError):
+                raise
+            except Exception as error:  # whatever a stranger's code raises
+                mod.fail(f"the action '{name}'", error)
+
+        return act
+
+
+def _as_list(draw: Layer) -> Callable[[Any], list[Any]]:
+    return lambda sheet: list(draw(sheet))
+
+
+def _checked(read: Panel) -> Panel:
+    def checked(session: Session) -> Readout | None:
+        made = read(session)
+        if made is not None and not isinstance(made, Readout):
+            raise TypeError(f"{getattr(read, '__name__', 'a panel')} returned {made!r}, not a Readout or None")
+        return made
+
+    return checked
+
+
+def check_plugin(plugin: object) -> Callable[[App], object]:
+    """The function `plugin(app)` of a mod. Raises ModError."""
+    if not callable(plugin):
+        raise ModError("It has no function plugin(app); write `def plugin(app): …` in its __init__.py.")
+    if len(inspect.signature(plugin).parameters) != 1:
+        raise ModError("Its function plugin must take one argument: def plugin(app).")
+    return plugin

@@ -1,0 +1,73 @@
+"""Guards: code of mods is called through them; when it fails, the mod is switched off and the session goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from components.snapshot import Snapshot
+from game.mods.mod import Mod
+from game.mods.watchdog import interrupted_after
+from game.scenes import Scene
+from systems.base import StepSystem, System
+
+if TYPE_CHECKING:
+    from components.model import Model
+
+PATIENCE = 2.0  # s that a frame system may take; a longer one is interrupted
+
+
+def guarded_system(mod: Mod, system: System) -> System:
+    """The system of a mod, so wrapped that it is left out once the mod is switched off.
+
+    The commands of a frame system are one step of undo. If it raises or takes too long they are dropped
+    whole, and the columns that it declares it writes are as before.
+    """
+    needs, process = system.needs, system.process
+
+    def needed(model: Model) -> bool:
+        return bool(mod.call(f"the question whether '{system.name}' is needed", needs, model, otherwise=False))
+
+    def processed(frame: Any) -> None:
+        model: Model = frame.session.model
+        tables = {column.partition(".")[0] for column in (*system.writes, *system.adds)}
+        before = Snapshot.take(model, *tables & model.tables.keys()) if tables else None
+        try:
+            with model.transaction(system.name):
+                try:
+                    with interrupted_after(PATIENCE, lambda: not model.changing):
+                        process(frame)
+                finally:
+                    model.check_entities()
+        except Exception as error:  # whatever a stranger's code raises
+            if before is not None:
+                before.restore(model)
+            mod.fail(f"the system '{system.name}'", error)
+
+    system.mod = mod
+    vars(system)["needs"] = needed
+    if not isinstance(system, StepSystem):
+        vars(system)["process"] = processed
+    return system
+
+
+_METHODS = ("enter", "exit", "advance", "busy", "focus", "type", "stages", "hint")
+
+
+def guarded_scene(mod: Mod, kind: type[Scene]) -> type[Scene]:
+    """The scene of a mod, so wrapped that it does nothing and leads to pause once the mod is switched off."""
+    return type(kind.__name__, (kind,), {name: _guarded_method(mod, kind, name) for name in _METHODS})
+
+
+def _guarded_method(mod: Mod, kind: type[Scene], name: str) -> Callable[..., Any]:
+    own, plain = getattr(kind, name), getattr(Scene, name)
+
+    def method(scene: Scene, session: Any, *arguments: Any) -> Any:
+        made = mod.call(f"the scene '{kind.name}'", own, scene, session, *arguments, otherwise=mod)
+        if made is not mod:
+            return made
+        if name == "advance":
+            session.scenes.request("pause")
+        return plain(scene, session, *arguments)
+
+    return method

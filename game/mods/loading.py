@@ -1,0 +1,135 @@
+"""Loading mods: find, put in order, import, register; each mod wholly or not at all."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from types import ModuleType
+
+from game.catalogue import step_systems
+from game.mods import finding
+from game.mods.app import App, check_plugin
+from game.mods.manifest import MANIFEST
+from game.mods.mod import Mod, ModError
+from game.mods.order import in_order, required
+from game.mods.watchdog import interrupted_after
+from game.preferences import preferred_keys
+from game.registry import SYSTEMS
+from game.schedule import Schedule
+from systems.input.bindings import prefer
+
+PATIENCE = 30.0  # s that loading one mod may take
+
+MODS: list[Mod] = []  # all that were found in this process, those that come with the program first
+
+
+def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list[Mod]:
+    """Load the mods in these folders (and, if `installed`, the person's own and those of packages).
+
+    Returns all that were found, each with its `problem` if it was left out. What is loaded already stays.
+    """
+    from game import __version__
+
+    found = [mod for folder in folders for mod in finding.in_folder(Path(folder))]
+    if installed:
+        found += [*finding.in_folder(finding.mods_folder()), *finding.in_packages()]
+    known = {mod.folder: mod for mod in MODS if mod.loaded}
+    new = [mod for mod in found if mod.folder not in known]
+    ordered = in_order(new, __version__, [mod for mod in MODS if mod.loaded])
+    MODS.extend(new)
+    for mod in ordered:
+        _load(mod)
+    for scene, key, action in preferred_keys() if new else ():
+        prefer(scene, key, action)
+    return [known.get(mod.folder, mod) for mod in found]
+
+
+def load_all(folders: Iterable[str | Path]) -> None:
+    """Load the mods in these folders, every one of them. Raises ModError."""
+    for folder in folders:
+        found = load([folder])
+        if not found:
+            raise ModError(f"There is no mod in {folder}; a mod is a folder with a {MANIFEST}.")
+        for mod in found:
+            if mod.off:
+                raise ModError(f"The mod '{mod.name}' cannot be used: {mod.problem}")
+
+
+def include(module: ModuleType, description: str) -> None:
+    """Load a module of ours that is written as a mod is."""
+    from game import __version__
+
+    mod = Mod(module.__name__.rpartition(".")[2], module.__name__, __version__, description)
+    app = App(mod)
+    module.plugin(app)
+    mod.withdraw = app.withdraw
+    MODS.append(mod)
+
+
+def unload(mods: Sequence[Mod]) -> None:
+    """Forget mods as if they had never been loaded, the last first; for tests."""
+    for mod in reversed(mods):
+        if mod.withdraw is not None:
+            mod.withdraw()
+            _forget(mod.module)
+        if mod in MODS:
+            MODS.remove(mod)
+
+
+def _load(mod: Mod) -> None:
+    app = App(mod)
+    try:
+        for name in required(mod):
+            if any(other.name == name and other.off for other in MODS):
+                raise ModError(f"It requires the mod '{name}', which cannot be used.")
+        with interrupted_after(PATIENCE, lambda: True):
+            module = _import(mod)
+            check_plugin(getattr(module, "plugin", None))(app)
+            Schedule([*step_systems(), *(system() for system in SYSTEMS)])
+    except ModError as error:
+        mod.problem = str(error)
+    except Exception as error:  # whatever a stranger's code raises
+        mod.problem = mod.describe(error)
+    if mod.off:
+        app.withdraw()
+        _forget(mod.module)
+    else:
+        mod.withdraw = app.withdraw
+
+
+def _import(mod: Mod) -> ModuleType:
+    if not mod.source.startswith("package "):
+        _find(mod)
+    return importlib.import_module(mod.module)
+
+
+def _find(mod: Mod) -> None:
+    """Make the folder of a mod the package of its name. Raises ModError if another has that name."""
+    assert mod.folder is not None
+    file = mod.folder / "__init__.py"
+    if not file.is_file():
+        raise ModError("It has no __init__.py with a function plugin(app).")
+    present = sys.modules.get(mod.name)
+    if present is not None and _is_from(getattr(present, "__file__", None), file):
+        return
+    spec = None if present is not None else importlib.util.find_spec(mod.name)
+    if present is not None or (spec is not None and not _is_from(spec.origin, file)):
+        raise ModError(f"There is a Python module '{mod.name}' already; give the mod another name.")
+    spec = importlib.util.spec_from_file_location(mod.name, file, submodule_search_locations=[str(mod.folder)])
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[mod.name] = module
+    spec.loader.exec_module(module)
+
+
+def _is_from(origin: str | None, file: Path) -> bool:
+    return origin is not None and Path(origin).resolve() == file.resolve()
+
+
+def _forget(module: str) -> None:
+    for name in [name for name in sys.modules if name == module or name.startswith(f"{module}.")]:
+        del sys.modules[name]

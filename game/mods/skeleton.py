@@ -1,0 +1,90 @@
+"""The skeleton of a mod: a folder that works, with a test that passes, to begin with."""
+
+from __future__ import annotations
+
+import keyword
+from pathlib import Path
+
+from game.mods.manifest import MANIFEST
+from game.mods.mod import ModError
+
+_MANIFEST = """\
+name = "{name}"
+version = "0.1"
+description = "A steady wind on all particles"
+requires = ["pinjoint>={version}"]
+"""
+
+_CODE = '''\
+"""A steady wind on all particles: a law, the fact that it needs, and what a person sees of it."""
+
+from components import Component, Environment, Field, Readout
+from numba import njit
+from systems.base import Law
+
+
+class Air(Component):
+    of = Environment
+    speed: Field[float] = Field("m/s", title="wind speed", doc="To the right; 0: no wind.")
+
+
+@njit
+def push(particles_mass, particles_velocity, environment_{name}_speed):
+    """Force (x, y) in kN on one particle."""
+    return 0.001 * particles_mass * (environment_{name}_speed - particles_velocity[0]), 0.0
+
+
+class Wind(Law):
+    name = "{name}.wind"
+    each = "particles"
+    kernel = push
+    reads = ("particles.mass", "particles.velocity", "environment.{name}_speed")
+
+    def needs(self, model):
+        return model.environment.{name}_speed != 0.0
+
+
+def plugin(app):
+    app.component(Air)
+    app.system(Wind)
+    app.panel(lambda s: Readout("{name}", (("speed", f"{{s.environment.{name}_speed:g}} m/s"),)))
+'''
+
+_TEST = '''\
+"""Run by: pytest {name}"""
+
+from pathlib import Path
+
+from game import Session
+
+HERE = Path(__file__).parent
+
+
+def test_the_wind_blows_to_the_right():
+    document = {{"format": "pinjoint model", "version": 1, "particles": [{{"name": "A", "position": [0, 0]}}]}}
+    session = Session.open(document, mods=[HERE])
+    session.environment.{name}_speed = 10.0
+    session.run(time=0.1)
+    # 1 kg with the force m (u − v): v = u (1 − exp(−t))
+    assert abs(session.particles["A"].velocity[0] - 0.95162582) < 1e-6
+'''
+
+_FILES = {MANIFEST: _MANIFEST, "__init__.py": _CODE, "test_{name}.py": _TEST}
+
+
+def write_skeleton(name: str, parent: Path, version: str) -> list[Path]:
+    """Write a new mod into a folder of its name; returns its files. Raises ModError."""
+    if not name.isidentifier() or keyword.iskeyword(name) or "__" in name:
+        raise ModError(f"The name '{name}' must be like a Python name, such as 'wind'.")
+    folder = parent / name
+    try:
+        folder.mkdir(parents=True)
+        paths = []
+        for pattern, text in _FILES.items():
+            paths.append(folder / pattern.format(name=name))
+            paths[-1].write_text(text.format(name=name, version=version), encoding="utf-8")
+    except FileExistsError:
+        raise ModError(f"{folder} is there already; choose another name.") from None
+    except OSError as error:
+        raise ModError(f"{folder} cannot be written: {error.strerror}.") from None
+    return paths

@@ -1,0 +1,84 @@
+"""Watchdog: an exception in a thread that runs Python code for too long."""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+RETRY = 1e-4  # s
+
+
+class TooLong(Exception):
+    """Raised inside Python code that took longer than it may."""
+
+    limit = 0.0
+
+    def __str__(self) -> str:
+        return f"it ran for more than {self.limit:g} s"
+
+
+class _Watchdog:
+    """One thread for the whole program, started when first needed, that sleeps between deadlines."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._deadline: float | None = None
+        self._may: Callable[[], bool] = bool
+        self._thread = 0  # who is watched
+        self._started = False
+
+    def watch(self, seconds: float, may: Callable[[], bool]) -> None:
+        """Interrupt the calling thread in so many seconds, or then as soon as it may be."""
+        with self._changed:
+            if not self._started:
+                threading.Thread(target=self._run, name="watchdog", daemon=True).start()
+                self._started = True
+            self._thread, TooLong.limit = threading.get_ident(), seconds
+            self._may, self._deadline = may, time.monotonic() + seconds
+            self._changed.notify()
+
+    def stop(self) -> None:
+        """Do not interrupt it any more, not even if that was about to happen."""
+        with self._changed:
+            fired, self._deadline = self._deadline is None, None
+            if fired:
+                _raise_in(self._thread, None)
+
+    def _run(self) -> None:
+        with self._changed:
+            while True:
+                left = None if self._deadline is None else self._deadline - time.monotonic()
+                if left is not None and left <= 0.0 and not self._may():
+                    self._changed.wait(RETRY)
+                elif left is not None and left <= 0.0:
+                    self._deadline = None
+                    _raise_in(self._thread, TooLong)
+                else:
+                    self._changed.wait(left)
+
+
+_watchdog = _Watchdog()
+
+
+def _raise_in(thread: int, exception: type[Exception] | None) -> None:
+    """Let an exception be raised in a thread before its next Python instruction; None: not any more."""
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(
+        ctypes.c_ulong(thread), ctypes.py_object(exception) if exception else None
+    )
+
+
+@contextmanager
+def interrupted_after(seconds: float, may: Callable[[], bool]) -> Iterator[None]:
+    """Raise TooLong inside, if it takes longer; compiled code is only interrupted when it returns.
+
+    may: whether it may be interrupted just now. Since only one thread runs Python code at a time, the
+    watched one is interrupted exactly where it was when this was asked.
+    """
+    _watchdog.watch(seconds, may)
+    try:
+        yield
+    finally:
+        _watchdog.stop()

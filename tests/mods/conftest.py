@@ -1,0 +1,39 @@
+"""What the tests of mods share."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from game import mods
+
+Write = Callable[..., Path]
+
+
+@pytest.fixture
+def unloaded(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
+    """A program without a person's files; the mods that a test loads are unloaded after it."""
+    monkeypatch.setenv("PINJOINT_DATA", str(tmp_path / "data"))
+    monkeypatch.setenv("PINJOINT_CONFIG", str(tmp_path / "config"))
+    before = len(mods.MODS)
+    yield
+    mods.unload(mods.MODS[before:])
+    mods.FAULTS.clear()
+
+
+@pytest.fixture
+def write_mod(tmp_path: Path, unloaded: None) -> Write:
+    """Write a mod into the folder tmp_path/mods/NAME; `manifest` adds lines, `code` is its __init__.py."""
+
+    def write(name: str, code: str = "def plugin(app): pass", manifest: str = "", version: str = "1.0") -> Path:
+        folder = tmp_path / "mods" / name
+        folder.mkdir(parents=True)
+        head = f'name = "{name}"\nversion = "{version}"\n'
+        (folder / "mod.toml").write_text(head + manifest + "\n", encoding="utf-8")
+        (folder / "__init__.py").write_text(textwrap.dedent(code), encoding="utf-8")
+        return folder
+
+    return write

@@ -1,0 +1,332 @@
+"""Which mods are loaded, in which order, and what is said of the others. Nothing of these stays loaded."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from components import Particle
+from game import Session, mods
+from game.actions import ACTIONS
+from game.cli import COMMANDS, main
+from systems.input.bindings import BINDINGS, action_for
+from tests.mods.conftest import Write
+
+BALL = {"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}]}
+SAIL = """
+    from components import Component, Field, Particle
+
+    class Sail(Component):
+        of = Particle
+        area: Field[float] = Field("m²", title="sail area", doc="Of the sail.", minimum=0.0)
+
+    def plugin(app):
+        app.component(Sail)
+"""
+
+
+def load(tmp_path: Path) -> dict[str, mods.Mod]:
+    return {mod.name: mod for mod in mods.load([tmp_path / "mods"])}
+
+
+# --- order -------------------------------------------------------------------------------------------------
+
+
+def test_a_mod_is_loaded_after_those_it_requires_else_by_name(tmp_path: Path, write_mod: Write) -> None:
+    note = "from game.mods import FAULTS\ndef plugin(app): FAULTS.append(app.name)"
+    write_mod("apple", note, 'requires = ["pear>=1", "pinjoint>=0.1"]')
+    for name in ("plum", "pear", "fig"):
+        write_mod(name, note)
+    load(tmp_path)
+    assert mods.FAULTS == ["fig", "pear", "apple", "plum"]
+
+
+def test_a_missing_requirement_is_named(tmp_path: Path, write_mod: Write) -> None:
+    write_mod("apple", manifest='requires = ["pear"]')
+    assert "'pear', which is not there" in load(tmp_path)["apple"].problem
+
+
+@pytest.mark.parametrize("requirement", ["pinjoint>=99", "pear>=2,<3"])
+def test_a_wrong_version_is_named(tmp_path: Path, write_mod: Write, requirement: str) -> None:
+    write_mod("apple", manifest=f'requires = ["{requirement}"]')
+    write_mod("pear")
+    found = load(tmp_path)
+    name, _, version = requirement.partition(">=")
+    assert f"It requires {name} " in found["apple"].problem
+    assert version.partition(",")[0] in found["apple"].problem
+    assert not found["pear"].problem
+
+
+def test_mods_that_require_each_other_are_named_and_others_go_on(tmp_path: Path, write_mod: Write) -> None:
+    write_mod("apple", manifest='requires = ["pear"]')
+    write_mod("pear", manifest='requires = ["plum"]')
+    write_mod("plum", manifest='requires = ["apple"]')
+    write_mod("quince", manifest='requires = ["plum"]')
+    write_mod("fig")
+    found = load(tmp_path)
+    for name in ("apple", "pear", "plum"):
+        assert all(other in found[name].problem for other in ("apple", "pear", "plum"))
+        assert "require each other" in found[name].problem
+    assert "'plum', which cannot be used" in found["quince"].problem
+    assert not found["fig"].problem
+
+
+def test_of_two_mods_of_one_name_the_first_found_is_used(tmp_path: Path, write_mod: Write) -> None:
+    first = write_mod("apple")
+    other = tmp_path / "other" / "apple"
+    other.parent.mkdir()
+    first.rename(other)
+    second = write_mod("apple")
+    found = mods.load([second, other])
+    assert [mod.off for mod in found] == [False, True]
+    assert str(second) in found[1].problem
+
+
+def test_what_requires_a_mod_that_fails_is_left_out(tmp_path: Path, write_mod: Write) -> None:
+    write_mod("apple", manifest='requires = ["pear"]')
+    write_mod("pear", "def plugin(app): 1 / 0")
+    found = load(tmp_path)
+    assert "ZeroDivisionError" in found["pear"].problem
+    assert "'pear', which cannot be used" in found["apple"].problem
+
+
+# --- wrong mods ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("code", "said"),
+    [
+        ("def plugin(app:\n    pass", "SyntaxError", ),
+        ("import no_such_package\ndef plugin(app): pass", "no_such_package"),
+        ("x = 1", "no function plugin"),
+        ("plugin = 3", "no function plugin"),
+        ("def plugin(): pass", "must take one argument"),
+        ("def plugin(app):\n    raise RuntimeError('no luck')", "no luck (apple/__init__.py, line 2)"),
+        ("def plugin(app): app.component(3)", "apple/__init__.py, line 1"),
+        ("def plugin(app): app.action('toggle')(print)", "'apple.toggle'"),
+        ("def plugin(app): app.command('run', print)", "command 'run' already"),
+        ("def plugin(app): app.models('nowhere')", "nowhere is not there"),
+        (
+            "from game.scenes import Scene\nclass P(Scene):\n    name = 'pause'\n"
+            "def plugin(app): app.scene(P)",
+            "a scene 'pause' already",
+        ),
+        (
+            "from systems.base import System\nclass A(System):\n    name = 'apple.a'\n"
+            "def plugin(app):\n    app.system(A)\n    app.system(A)",
+            "Two systems are called apple.a",
+        ),
+        (
+            "from components import Component, Field, Particle\nclass C(Component):\n    of = Particle\n"
+            "    x: Field[float] = Field(title='x', doc='')\n"
+            "class D(C):\n    pass\ndef plugin(app):\n    app.component(C)\n    app.component(D)",
+            "'apple_x' already",
+        ),
+    ],
+)  # fmt: skip
+def test_a_wrong_mod_is_left_out_with_its_reason(
+    tmp_path: Path, write_mod: Write, code: str, said: str
+) -> None:
+    write_mod("apple", code)
+    write_mod("pear", SAIL)
+    columns = set(vars(Particle))
+    found = load(tmp_path)
+    assert said in found["apple"].problem
+    assert not found["pear"].problem
+    assert set(vars(Particle)) - columns == {"pear_area"}
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("requires = 3", "requires is 3"),
+        ('requires = ["a b c"]', "'a b c'"),
+        ('author = "me"', "the key 'author'"),
+        ("description = 1", "description is 1"),
+        ("description = ", "not TOML"),
+    ],
+)
+def test_a_wrong_manifest_is_named(tmp_path: Path, write_mod: Write, line: str, said: str) -> None:
+    write_mod("apple", manifest=line)
+    assert said in load(tmp_path)["apple"].problem
+
+
+@pytest.mark.parametrize("version", ["", "new"])
+def test_a_version_is_needed(tmp_path: Path, write_mod: Write, version: str) -> None:
+    write_mod("apple", version=version)
+    assert "version" in load(tmp_path)["apple"].problem
+
+
+@pytest.mark.parametrize("name", ["my mod", "class", "a__b"])
+def test_a_name_that_python_cannot_use_is_refused(tmp_path: Path, write_mod: Write, name: str) -> None:
+    write_mod(name)
+    assert "must be like a Python name" in load(tmp_path)[name].problem
+
+
+def test_a_mod_cannot_take_the_name_of_a_python_module(tmp_path: Path, write_mod: Write) -> None:
+    write_mod("statistics")
+    assert "a Python module 'statistics' already" in load(tmp_path)["statistics"].problem
+
+
+def test_a_folder_without_a_manifest_is_told_of(tmp_path: Path, write_mod: Write) -> None:
+    (write_mod("apple") / "mod.toml").unlink()
+    assert "mod.toml cannot be read" in load(tmp_path)["apple"].problem
+
+
+def test_of_a_plugin_that_raises_nothing_stays(tmp_path: Path, write_mod: Write) -> None:
+    write_mod(
+        "apple",
+        """
+        from components import Component, Field, Particle, HistoryKind
+        from game.scenes import Scene
+
+        class Sail(Component):
+            of = Particle
+            area: Field[float] = Field("m²", title="area", doc="")
+
+        class Show(Scene):
+            name = "show"
+
+        def plugin(app):
+            app.component(Sail)
+            app.scene(Show)
+            app.history(HistoryKind("apple", {}, "systems.loads.kernels:constant", 1.0, lambda h: 0.0))
+            app.action("apple.a", key="ctrl+shift+f12")(lambda session, pixel: None)
+            app.command("apple", lambda words: 0)
+            raise RuntimeError("at last")
+        """,
+    )
+    before = len(BINDINGS), set(ACTIONS), set(COMMANDS), set(vars(Particle))
+    assert "at last" in load(tmp_path)["apple"].problem
+    assert (len(BINDINGS), set(ACTIONS), set(COMMANDS), set(vars(Particle))) == before
+    session = Session.open(BALL)
+    with pytest.raises(KeyError):
+        session.scenes["show"]
+
+
+# --- keys ------------------------------------------------------------------------------------------------------
+
+KEY = "def plugin(app): app.action('{0}.a', key='{1}', scenes=('pause',))(lambda s, p: None)"
+
+
+def test_a_key_that_is_taken_stays_and_that_is_reported(tmp_path: Path, write_mod: Write) -> None:
+    write_mod("apple", KEY.format("apple", "s"))
+    write_mod("pear", KEY.format("pear", "j"))
+    write_mod("plum", KEY.format("plum", "j"))
+    found = load(tmp_path)
+    assert action_for("pause", "s") == "save"
+    assert action_for("pause", "j") == "pear.a"
+    assert "does 'save' already in pause" in found["apple"].notes[0]
+    assert "does 'pear.a' already" in found["plum"].notes[0]
+    assert not any(mod.off for mod in found.values())
+
+
+def test_the_key_that_a_person_chose_is_kept(tmp_path: Path, write_mod: Write) -> None:
+    (tmp_path / "config").mkdir()
+    choice = '{"keys": {"pause": {"j": "plum.a"}}}'
+    (tmp_path / "config" / "settings.json").write_text(choice, encoding="utf-8")
+    write_mod("pear", KEY.format("pear", "j"))
+    write_mod("plum", KEY.format("plum", "j"))
+    load(tmp_path)
+    assert action_for("pause", "j") == "plum.a"
+    assert action_for("simulation", "j") is None
+
+
+# --- components ----------------------------------------------------------------------------------------------------
+
+
+def test_a_component_is_in_python_files_properties_and_results(tmp_path: Path, write_mod: Write) -> None:
+    session = Session.open(BALL, mods=[write_mod("pear", SAIL)])
+    ball = session.particles["A"]
+    ball.pear_area = 2.5  # type: ignore[attr-defined]
+    assert session.particles.pear_area.tolist() == [2.5]
+    session.save(tmp_path / "ball.json")
+    assert '"components": {"pear.Sail": {"area": 2.5}}' in (tmp_path / "ball.json").read_text(encoding="utf-8")
+    assert Session.open(tmp_path / "ball.json").particles.pear_area.tolist() == [2.5]
+    session.select(ball)
+    session.act("properties")
+    session.click_box("sail area")
+    session.type("4")
+    session.press("return")
+    session.press("escape")
+    assert ball.pear_area == 4.0  # type: ignore[attr-defined]
+    session.undo()
+    assert ball.pear_area == 2.5  # type: ignore[attr-defined]
+
+
+def test_a_model_with_a_mods_data_opens_without_the_mod_and_is_saved_unchanged(
+    tmp_path: Path, write_mod: Write
+) -> None:
+    session = Session.open(BALL, mods=[write_mod("pear", SAIL)])
+    session.particles["A"].pear_area = 2.5  # type: ignore[attr-defined]
+    session.save(tmp_path / "with.json")
+    mods.unload(mods.MODS[-1:])
+    without = Session.open(tmp_path / "with.json")
+    assert "mods that are not loaded: pear" in without.message
+    without.save(tmp_path / "without.json")
+    assert (tmp_path / "with.json").read_bytes() == (tmp_path / "without.json").read_bytes()
+
+
+def test_a_key_that_a_component_does_not_have_is_refused(write_mod: Write) -> None:
+    Session.open(BALL, mods=[write_mod("pear", SAIL)])
+    wrong = {"name": "A", "position": [0, 0], "components": {"pear.Sail": {"aera": 1.0}}}
+    with pytest.raises(ValueError, match=r"particles\[0\].components.*pear.Sail.*'aera'.*did you mean 'area'"):
+        Session.open({**BALL, "particles": [wrong]})
+
+
+# --- the command line ------------------------------------------------------------------------------------------------
+
+
+def test_a_new_mod_works_at_the_first_try(tmp_path: Path, unloaded: None) -> None:
+    assert main(["mods", "new", "gust", "--into", str(tmp_path)]) == 0
+    assert main(["mods", "check", str(tmp_path / "gust")]) == 0
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "gust"],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout
+    assert "1 passed" in done.stdout
+
+
+def test_mods_are_listed_checked_and_left_out(
+    tmp_path: Path, write_mod: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_mod("apple", "def plugin(app): 1 / 0")
+    write_mod("pear", SAIL)
+    folder = str(tmp_path / "mods")
+    assert main(["mods", "list", "--mods", folder]) == 1
+    out = capsys.readouterr().out
+    assert "apple 1.0: LEFT OUT" in out
+    assert "ZeroDivisionError: division by zero (apple/__init__.py, line 1)" in out
+    assert "pear 1.0: loaded" in out
+    assert main(["mods", "new", "my mod"]) == 2
+    assert main(["mods", "check", str(tmp_path)]) == 2
+
+
+def test_a_persons_own_mods_are_loaded_unless_they_are_left_out(
+    tmp_path: Path, write_mod: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_mod("pear", SAIL)
+    (tmp_path / "data").mkdir()
+    (tmp_path / "mods").rename(tmp_path / "data" / "mods")
+    main(["mods", "list", "--no-mods"])
+    assert "pear" not in capsys.readouterr().out.replace(str(tmp_path), "")
+    main(["mods", "list"])
+    assert "pear 1.0: loaded" in capsys.readouterr().out
+
+
+def test_installed_packages_bring_mods(
+    tmp_path: Path, write_mod: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_mod("pear", SAIL)
+    info = tmp_path / "mods" / "pear-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: pear\nVersion: 1.0\n", encoding="utf-8")
+    (info / "entry_points.txt").write_text("[pinjoint.mods]\npear = pear\nfig = fig:plugin\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path / "mods"))
+    found = {mod.name: mod for mod in mods.load(installed=True)}
+    assert not found["pear"].problem
+    assert "There is no module 'fig'" in found["fig"].problem
