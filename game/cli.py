@@ -201,6 +201,46 @@ def _write(text: str, output: str | None) -> None:
         raise Refusal(f"{output} cannot be written: {error.strerror}. Choose another --output.") from None
 
 
+# --- theory beside the simulation --------------------------------------------------------------------------
+
+
+def _verify(words: Sequence[str]) -> int:
+    parser = Parser(
+        prog="pinjoint verify",
+        description="Simulation run to rest, linear theory and exact theory side by side, with their differences.",
+    )
+    _add_model(parser)
+    parser.add_argument(
+        "--influence",
+        nargs="+",
+        metavar="NAME",
+        help="influence lines instead: of a rod AB, a reaction A.y, or a displacement B.y (unit-load method)",
+    )
+    parser.add_argument("--theory-only", action="store_true", help="without the simulation")
+    parser.add_argument(
+        "--limit", type=_positive, default=DEFAULT_LIMIT, metavar="SECONDS", help="simulated time for rest"
+    )
+    parser.add_argument("--format", choices=("table", "json"), default="table")
+    parser.add_argument("--output", metavar="FILE", help="write to a file instead of standard output")
+    options = parser.parse_args(words)
+    session = _session(options)
+    from game import verify_report
+    from systems.statics.events import NoEquilibrium
+    from systems.statics.force_method import ForceMethodError
+
+    try:
+        if options.influence:
+            found = verify_report.influence(session.model, options.influence)
+        else:
+            found = verify_report.verify(
+                session, options.model, options.limit, simulate=not options.theory_only
+            )
+    except (ForceMethodError, NoEquilibrium) as error:
+        raise Refusal(str(error), NOT_ANSWERED if isinstance(error, NoEquilibrium) else BAD_INPUT) from None
+    _write(as_json(found) if options.format == "json" else verify_report.as_table(found), options.output)
+    return ANSWERED if found.get("status") != verify_report.NOT_VERIFIED else NOT_ANSWERED
+
+
 # --- force method ------------------------------------------------------------------------------------------
 
 
@@ -342,6 +382,7 @@ COMMANDS: dict[str, Callable[[list[str]], int]] = {
     "render": _render,
     "bench": _bench,
     "play": _play,
+    "verify": _verify,
     "force-method": _force_method,
     "mods": _mods,
 }

@@ -85,7 +85,7 @@ def state(
         "collisions": model.clock.collisions,
     }
     for key in ("time", "load_factor", "energy", "residual"):
-        made[key] = _plain(made[key], key)
+        made[key] = plain(made[key], key)
     return made
 
 
@@ -106,16 +106,16 @@ def _elements(model: Model, name: str, given: Mapping[str, Column]) -> dict[str,
     return {name: dict(zip(keys, row, strict=True)) for name, row in zip(table.names, rows, strict=True)}
 
 
-def _plain(value: Any, where: str) -> Any:
+def plain(value: Any, where: str) -> Any:
     """A value as JSON has them, numpy's included, every number finite."""
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, float) and not math.isfinite(value):
         raise ResultError(f"{where} is {value}, not finite; report a state before it.")
     if isinstance(value, Mapping):
-        return {str(key): _plain(item, f"{where}.{key}") for key, item in value.items()}
+        return {str(key): plain(item, f"{where}.{key}") for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(item, f"{where}[{index}]") for index, item in enumerate(value)]
+        return [plain(item, f"{where}[{index}]") for index, item in enumerate(value)]
     return value
 
 
@@ -124,7 +124,7 @@ def _plain(value: Any, where: str) -> Any:
 
 def as_json(run: Run) -> str:
     """A run as JSON in full double precision, one element a line. Raises ResultError."""
-    return laid_out(_plain(run, "run"), depth=4) + "\n"
+    return laid_out(plain(run, "run"), depth=4) + "\n"
 
 
 def as_csv(run: Run) -> str:
@@ -136,7 +136,7 @@ def as_csv(run: Run) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["time", "load_factor", "element", "name", "quantity", "value", "unit"])
-    for made in _plain(run, "run")["states"]:
+    for made in plain(run, "run")["states"]:
         writer.writerows([made["time"], made["load_factor"], *row] for row in _quantities(made))
     return text.getvalue()
 
@@ -160,16 +160,18 @@ def _quantities(made: State) -> Iterator[tuple[Any, ...]]:
 
 def as_table(run: Run) -> str:
     """A run as aligned tables to read: displacements in mm, all else in the units of files."""
-    run = _plain(run, "run")
+    run = plain(run, "run")
     lines = [f"{run['model']}: {run['status']}"]
     lines += [run["message"]] if run["message"] else []
     if run["integrator"] is None:
         lines.append("static equilibrium, exact geometry")
     else:
-        step = f" of {_shown(run['time_step'])} s" if run["time_step"] else ""
-        taken = f"time {_shown(run['time'])} s, {run['steps']} steps{step}"
+        step = f" of {as_written(run['time_step'])} s" if run["time_step"] else ""
+        taken = f"time {as_written(run['time'])} s, {run['steps']} steps{step}"
         lines.append(f"{taken}, integrator {run['integrator']}")
-    lines.append(f"computed in {_shown(run['wall_seconds'])} s, compiled in {_shown(run['compile_seconds'])} s")
+    lines.append(
+        f"computed in {as_written(run['wall_seconds'])} s, compiled in {as_written(run['compile_seconds'])} s"
+    )
     for made in run["states"]:
         lines += ["", *_state_lines(made)]
     return "\n".join(lines) + "\n"
@@ -177,16 +179,16 @@ def as_table(run: Run) -> str:
 
 def _state_lines(made: State) -> Iterator[str]:
     factor = made["load_factor"]
-    yield f"At time {_shown(made['time'])} s" if factor is None else f"At load factor {_shown(factor)}"
+    yield f"At time {as_written(made['time'])} s" if factor is None else f"At load factor {as_written(factor)}"
     for group in _NOUNS:
         if made[group]:
             yield ""
-            yield from _aligned(_element_rows(group, made[group]))
+            yield from aligned(_element_rows(group, made[group]))
     yield ""
-    energies = [[name.replace("_", " "), _shown(value)] for name, value in made["energy"].items()]
-    yield from _aligned([["energy", "J"], *energies])
+    energies = [[name.replace("_", " "), as_written(value)] for name, value in made["energy"].items()]
+    yield from aligned([["energy", "J"], *energies])
     yield ""
-    residual = [] if made["residual"] is None else [f"residual {_shown(made['residual'])}"]
+    residual = [] if made["residual"] is None else [f"residual {as_written(made['residual'])}"]
     yield ", ".join([*residual, f"collisions {made['collisions']}"])
 
 
@@ -203,13 +205,13 @@ def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list
         cells = [name]
         for field, axis, _, factor in columns:
             value = values[field.name] if axis is None else values[field.name][axis]
-            plain = value is None or isinstance(value, bool)
-            cells.append(_shown(value if plain else value * factor))
+            unscaled = value is None or isinstance(value, bool)
+            cells.append(as_written(value if unscaled else value * factor))
         rows.append(cells)
     return rows
 
 
-def _shown(value: Any) -> str:
+def as_written(value: Any) -> str:
     if value is None:
         return "–"
     if isinstance(value, bool):
@@ -217,7 +219,7 @@ def _shown(value: Any) -> str:
     return f"{value + 0.0:.7g}"  # + 0.0: no minus before a zero
 
 
-def _aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
+def aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
     """The rows with their first column to the left and the others to the right."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for name, *numbers in rows:

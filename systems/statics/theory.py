@@ -14,10 +14,9 @@ from systems.statics.equations import ROUND_OFF, Array, Matrix, Response, Struct
 from systems.statics.events import NoEquilibrium
 from systems.statics.explain import describe_motion
 from systems.statics.external import external_forces
-from systems.statics.factor import pseudo_random, regular, soft_count, soft_modes
+from systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes
 
 REFINEMENTS = 4  # of a linear solution
-BALANCED = 1e-9  # of the largest force: what a linear solution may leave unbalanced
 FULL = 600  # unknowns up to which singular values are computed
 MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 
@@ -65,13 +64,11 @@ def _deflection(model: Model, structure: Structure, load: Array) -> Array:
     solution = factor.solve(right)
     for _ in range(REFINEMENTS):
         solution = solution + factor.solve(right - matrix @ solution)
-    left = np.abs(right - matrix @ solution).max(initial=0.0)
-    noise = 64.0 * structure.round_off(structure.spread(solution))
-    if left > BALANCED * np.abs(load).max(initial=0.0) + noise:
+    if float(right @ solution) < SOFT * float(solution @ (structure.weight * solution)):
         what = describe_motion(model, structure.spread(solution)[None])
         message = f"Mechanism: the load moves {what}, which nothing resists. Add rods or supports there."
         raise NoEquilibrium("mechanism", message)
-    modes = soft_modes(matrix, structure.weight, factor)
+    modes = soft_modes(matrix, structure.weight, factor, most=soft_count(matrix, structure.weight))
     return structure.spread(solution - modes @ (modes.T @ (structure.weight * solution)))
 
 
@@ -122,9 +119,8 @@ def mechanisms(model: Model) -> Array:
     else:
         modes = soft_modes(_stiffness(structure), structure.weight, most=MOST_MODES)
     fields = [structure.spread(mode) for mode in _localised(modes).T]
-    return np.array([field / np.hypot(*field.T).max() for field in fields]).reshape(
-        -1, *structure.unknown.shape
-    )
+    scaled = [field / np.hypot(*field.T).max() for field in fields]
+    return np.array(scaled).reshape(len(fields), *structure.unknown.shape)
 
 
 def self_stress(model: Model) -> Array:

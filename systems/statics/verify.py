@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from components.model import Model
 from systems.statics.equations import Array
 from systems.statics.events import NoEquilibrium
+from systems.statics.explain import rod_names
 from systems.statics.settle import Settlement, settle
-from systems.statics.theory import Indeterminacy, LinearState, indeterminacy, linear
+from systems.statics.theory import LinearState, linear
 
 QUANTITIES = {
     "axial_force": ("rods", "kN"),
@@ -28,7 +28,6 @@ class Answer:
     axial_force: Array
     displacement: Array
     reaction: Array
-    plastic_strain: Array
 
 
 @dataclass(frozen=True)
@@ -40,9 +39,16 @@ class Theories:
 
     linear: LinearState | None
     refusal: str
-    exact: Settlement
-    indeterminacy: Indeterminacy
+    settlement: Settlement
     plastic_strain: Array
+
+    @property
+    def exact(self) -> Answer | None:
+        """The equilibrium in exact geometry, or None if there is none under the whole load."""
+        final = self.settlement.final
+        if final.status != "equilibrium":
+            return None
+        return Answer(final.axial_force, final.displacement, final.reaction)
 
 
 def theories(model: Model) -> Theories:
@@ -52,26 +58,21 @@ def theories(model: Model) -> Theories:
         first_order = linear(model)
     except NoEquilibrium as reason:
         refusal = str(reason)
-    return Theories(first_order, refusal, settle(model), indeterminacy(model), model.rods.plastic_strain.copy())
+    return Theories(first_order, refusal, settle(model), model.rods.plastic_strain.copy())
 
 
 def observed(model: Model) -> Answer:
     """The present state of a model, as a simulation left it."""
     particles, rods = model.particles, model.rods
-    return Answer(
-        rods.axial_force.copy(),
-        particles.displacement.copy(),
-        particles.reaction.copy(),
-        rods.plastic_strain.copy(),
-    )
+    return Answer(rods.axial_force.copy(), particles.displacement.copy(), particles.reaction.copy())
 
 
 @dataclass(frozen=True)
 class Row:
     """One quantity of one element: its values by the three ways, None where one has no answer.
 
-    component: "", "x" or "y". Errors are against the exact value, relative to the largest exact value of
-    the same quantity in the model.
+    element: "rod" or "particle". component: "", "x" or "y". Errors are against the exact value, relative to
+    the largest exact value of the same quantity in the model (absolute, if that is zero).
     """
 
     element: str
@@ -81,23 +82,22 @@ class Row:
     unit: str
     simulation: float | None
     linear: float | None
-    exact: float
+    exact: float | None
     simulation_error: float | None
     linear_error: float | None
+
+    @property
+    def title(self) -> str:
+        """What it is a quantity of, such as "displacement y of particle B"."""
+        quantity = f"{self.quantity.replace('_', ' ')} {self.component}".rstrip()
+        return f"{quantity} of {self.element} {self.name.removeprefix(self.element + ' ')}"
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """All rows, the degrees of indeterminacy, and what a person should know about the answers.
-
-    overshoot: rods that yielded in the simulation only, though their static force is below their strength.
-    """
+    """Three answers side by side, element by element."""
 
     rows: tuple[Row, ...]
-    indeterminacy: Indeterminacy
-    status: str
-    messages: tuple[str, ...]
-    overshoot: tuple[str, ...]
 
     @property
     def worst_simulation(self) -> Row | None:
@@ -111,67 +111,63 @@ class Comparison:
         rows = [row for row in self.rows if row.linear_error is not None]
         return max(rows, key=lambda row: row.linear_error or 0.0, default=None)
 
-    def as_dict(self) -> dict[str, Any]:
-        """Plain data."""
-        worst = {"simulation": self.worst_simulation, "linear": self.worst_linear}
-        return {
-            "status": self.status,
-            "messages": list(self.messages),
-            "indeterminacy": vars(self.indeterminacy).copy(),
-            "overshoot": list(self.overshoot),
-            "worst": {way: vars(row).copy() if row else None for way, row in worst.items()},
-            "elements": [vars(row).copy() for row in self.rows],
-        }
-
 
 def compare(model: Model, theory: Theories, simulated: Answer | None) -> Comparison:
     """Put the three answers side by side; simulated: None if there is no simulation at rest."""
-    overshoot: tuple[str, ...] = ()
-    messages = [text for text in (theory.exact.message, theory.refusal) if text]
-    if simulated is not None:
-        overshoot, told = _overshoot(model, theory, simulated)
-        messages += told
-    rows = tuple(row for quantity in QUANTITIES for row in _rows(model, quantity, theory, simulated))
-    return Comparison(rows, theory.indeterminacy, theory.exact.status, tuple(messages), overshoot)
+    answers = {"simulation": simulated, "linear": theory.linear, "exact": theory.exact}
+    return Comparison(tuple(row for quantity in QUANTITIES for row in _rows(model, quantity, answers)))
 
 
-def _rows(model: Model, quantity: str, theory: Theories, simulated: Answer | None) -> Iterator[Row]:
+def _rows(model: Model, quantity: str, answers: Mapping[str, Answer | LinearState | None]) -> Iterator[Row]:
     table, unit = QUANTITIES[quantity]
-    exact = getattr(theory.exact.final, quantity)
-    others = {"simulation": simulated, "linear": theory.linear}
-    values = {way: getattr(answer, quantity) for way, answer in others.items() if answer is not None}
-    largest = float(np.abs(exact).max(initial=0.0))
-    for place in np.ndindex(exact.shape):
-        if quantity == "reaction" and not model.particles.fixed[place]:
+    values: dict[str, Array] = {w: getattr(a, quantity) for w, a in answers.items() if a is not None}
+    exact = values.get("exact")
+    largest = float(np.abs(exact).max(initial=0.0)) if exact is not None else 0.0
+    names = model.tables[table].column("name")
+    for place in np.ndindex(model.particles.displacement.shape if table == "particles" else (len(names),)):
+        if table == "particles" and model.particles.fixed[place] == (quantity == "displacement"):
             continue
         found = {way: float(array[place]) for way, array in values.items()}
-        truth = float(exact[place])
-        errors = {way: abs(value - truth) / largest if largest else abs(value) for way, value in found.items()}
+        errors = {}
+        if "exact" in found:
+            errors = {way: abs(value - found["exact"]) / (largest or 1.0) for way, value in found.items()}
         yield Row(
             element=table.removesuffix("s"),
-            name=str(model.tables[table].column("name")[place[0]]),
+            name=str(names[place[0]]),
             quantity=quantity,
             component="" if len(place) == 1 else "xy"[place[1]],
             unit=unit,
             simulation=found.get("simulation"),
             linear=found.get("linear"),
-            exact=truth,
+            exact=found.get("exact"),
             simulation_error=errors.get("simulation"),
             linear_error=errors.get("linear"),
         )
 
 
-def _overshoot(model: Model, theory: Theories, simulated: Answer) -> tuple[tuple[str, ...], list[str]]:
-    """Rods that yielded in the simulation but not in statics, and a sentence about each."""
-    exact, names = theory.exact.final, model.rods.column("name")
-    unyielded = exact.plastic_strain == theory.plastic_strain
-    rows = np.flatnonzero(unyielded & (simulated.plastic_strain != theory.plastic_strain)).tolist()
-    sentences = []
-    for row in rows:
-        stretched = simulated.plastic_strain[row] > theory.plastic_strain[row]
+@dataclass(frozen=True)
+class Overshoot:
+    """A rod that yielded in a simulation only because the load came suddenly; message: a sentence about it."""
+
+    rod: str
+    message: str
+
+
+def overshoots(model: Model, theory: Theories) -> list[Overshoot]:
+    """Rods that yielded on the way to the model's present state, but do not when the load grows slowly."""
+    final, names = theory.settlement.final, model.rods.column("name")
+    if theory.exact is None:
+        return []
+    unyielded = final.plastic_strain == theory.plastic_strain
+    present = model.rods.plastic_strain
+    found = []
+    for row in np.flatnonzero(unyielded & (present != theory.plastic_strain)).tolist():
+        stretched = present[row] > theory.plastic_strain[row]
         strength = float((model.rods.tension_limit if stretched else model.rods.compression_limit)[row])
-        sentences.append(
-            f"Rod {names[row]} yielded only in the overshoot: static force {abs(exact.axial_force[row]):.4g} kN"
-            f" < strength {strength:.4g} kN. Load it more slowly or raise its damping."
+        message = (
+            f"{rod_names(model, np.array([row]))} yielded only in the overshoot of a sudden load: static force"
+            f" {abs(final.axial_force[row]):.4g} kN < strength {strength:.4g} kN."
+            " Load it more slowly, or raise its damping."
         )
-    return tuple(str(names[row]) for row in rows), sentences
+        found.append(Overshoot(str(names[row]), message[:1].upper() + message[1:]))
+    return found

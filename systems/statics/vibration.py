@@ -1,4 +1,4 @@
-"""Natural vibrations of a structure about its present state."""
+"""Natural vibrations of a structure: unloaded, or about an equilibrium under load."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from components.model import Model
-from systems.statics.equations import Array, Structure
+from systems.statics.equations import ROUND_OFF, Array, Matrix, Structure
 from systems.statics.factor import Factor, pseudo_random
+from systems.statics.settle import StaticState
 
 FULL = 600  # unknowns up to which all modes are computed
 LOWEST = 10  # modes of larger structures, unless more are asked for
@@ -35,26 +36,36 @@ class Vibrations:
         return frequencies
 
 
-def vibrations(model: Model, count: int | None = None) -> Vibrations:
-    """The lowest natural modes of small undamped vibrations: K φ = ω² M φ, K with the present axial forces.
+def vibrations(model: Model, state: StaticState | None = None, count: int | None = None) -> Vibrations:
+    """The lowest natural modes of small undamped vibrations, K φ = ω² M φ; rods do not yield in them.
 
-    count: how many; None: all of a small structure, 10 of a large one. Rods do not yield in them.
+    state: the equilibrium that they are about, whose axial forces stiffen or soften the structure; None: the
+    original positions, without axial forces. count: how many; None: all of a small structure, 10 of a
+    large one.
     """
     structure = Structure.of(model).with_translations()
-    response = structure.respond(model.particles.displacement, model.rods.plastic_strain)
     root = np.sqrt(structure.gather(np.repeat(model.particles.mass, 2).reshape(-1, 2)) / 1000.0)
-    stiffness = structure.tangent(response, np.zeros_like(response.flowing))
+    stiffness = _stiffness(structure, state)
     if structure.size <= FULL:
         full = stiffness if isinstance(stiffness, np.ndarray) else stiffness.toarray()
         values, vectors = eigh(full / root[:, None] / root)
-        values, vectors = values[:count], vectors[:, :count]
+        noise = 8.0 * len(root) * ROUND_OFF * np.abs(values).max(initial=0.0)
+        values, vectors = np.where(np.abs(values) > noise, values, 0.0)[:count], vectors[:, :count]
     else:
         values, vectors = _lowest(
             csc_matrix(diags(1.0 / root) @ stiffness @ diags(1.0 / root)), count or LOWEST
         )
     fields = [structure.spread(vector / root) for vector in vectors.T]
     modes = np.array([field / np.hypot(*field.T).max() for field in fields])
-    return Vibrations(values, modes.reshape(-1, *structure.unknown.shape))
+    return Vibrations(values, modes.reshape(len(fields), *structure.unknown.shape))
+
+
+def _stiffness(structure: Structure, state: StaticState | None) -> Matrix:
+    elastic = np.zeros(len(structure.ends), dtype=bool)
+    if state is not None:
+        return structure.tangent(structure.respond(state.displacement, state.plastic_strain), elastic)
+    unmoved = structure.respond(np.zeros(structure.unknown.shape), np.zeros(len(elastic)))
+    return structure.tangent(unmoved, elastic, geometric=False)
 
 
 def _lowest(matrix: csc_matrix, count: int) -> tuple[Array, Array]:

@@ -3,6 +3,8 @@
 import math
 from typing import Any
 
+import numpy as np
+
 from tests.reference.elements import Document, Model
 
 Pair = tuple[float, float]
@@ -133,6 +135,39 @@ def panel_truss(force: float = -10.0) -> Model:
     posts = [("L2", "U2"), ("L3", "U3"), ("L4", "U4")]
     diagonals = [("L1", "U2"), ("U2", "L3"), ("L3", "U4"), ("U4", "L5")]
     return model(lower + upper, [rod(start, end) for start, end in chords + posts + diagonals])
+
+
+def random_truss(seed: int, nodes: int = 6, redundant: int = 2, load: float = 100.0) -> Model:
+    """Return a stable truss drawn by lot: every node after two supports is tied to two others at an angle.
+
+    `redundant` more rods; stiffnesses over a decade, forces up to `load` [kN] on all nodes.
+    """
+    lot = np.random.default_rng(seed)
+    points = [np.array([0.0, 0.0]), np.array([2.0, 0.0])]
+    pairs = [(0, 1)]
+    while len(points) < nodes:
+        first, second = sorted(lot.choice(len(points), 2, replace=False).tolist())
+        point = lot.uniform(-3.0, 5.0, 2)
+        arms = points[first] - point, points[second] - point
+        lengths = [math.hypot(*arm) for arm in arms]
+        sine = abs(arms[0][0] * arms[1][1] - arms[0][1] * arms[1][0]) / math.prod(lengths)
+        if sine > 0.3 and min(math.dist(point, other) for other in points) > 0.7:
+            pairs += [(first, len(points)), (second, len(points))]
+            points.append(point)
+    others = [(i, j) for j in range(nodes) for i in range(j) if (i, j) not in pairs]
+    pairs += [others[k] for k in lot.permutation(len(others))[:redundant].tolist()]
+    names = [f"n{number}" for number in range(nodes)]
+    forces = lot.uniform(-load, load, (nodes, 2)).tolist()
+    particles = [
+        particle(name, *point.tolist(), force=force)
+        for name, point, force in zip(names, points, forces, strict=True)
+    ]
+    particles[0]["fixed"], particles[1]["fixed"] = [True, True], [False, True]
+    stiffness = 10.0 ** lot.uniform(5.0, 6.0, len(pairs))
+    return model(
+        particles,
+        [rod(names[i], names[j], stiffness=k) for (i, j), k in zip(pairs, stiffness.tolist(), strict=True)],
+    )
 
 
 def opensees_truss() -> Model:

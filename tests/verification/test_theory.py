@@ -1,0 +1,343 @@
+"""Theory beside the simulation: linear answers, indeterminacy, influence lines, vibrations, `pinjoint verify`."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.linalg import eigh
+
+from components.model import Model
+from game import models
+from game.cli import main
+from game.verify_report import influence
+from systems.statics.events import NoEquilibrium
+from systems.statics.settle import settle
+from systems.statics.theory import indeterminacy, linear, mechanisms, self_stress
+from systems.statics.verify import compare, theories
+from systems.statics.vibration import vibrations
+from tests.reference import closed_forms, pynite, statics
+from tests.reference import models as trusses
+from tests.reference.elements import Model as Document
+from tests.reference.elements import read
+
+RELATIVE = 1e-9  # of the largest like quantity
+
+TRUSSES = {
+    "triangle": trusses.triangle(),
+    "square": trusses.square(),
+    "panels": trusses.panel_truss(),
+    "opensees": trusses.opensees_truss(),
+}
+
+
+def agree(found: dict[str, Any], expected: dict[str, Any]) -> None:
+    """Values by name agree to 1e-9 of the largest."""
+    values = np.array([found[name] for name in expected])
+    wanted = np.array(list(expected.values()))
+    assert np.abs(values - wanted).max() <= RELATIVE * np.abs(wanted).max()
+
+
+def linear_by_names(document: Document) -> dict[str, dict[str, Any]]:
+    model = models.load(document)
+    state = linear(model)
+    return {
+        "axial_force": dict(zip(model.rods.names, state.axial_force.tolist(), strict=True)),
+        "displacement": dict(zip(model.particles.names, state.displacement.tolist(), strict=True)),
+        "reaction": dict(zip(model.particles.names, state.reaction.tolist(), strict=True)),
+    }
+
+
+# --- linear theory -------------------------------------------------------------------------------------
+
+
+def check_against_pynite(document: Document) -> None:
+    found, expected = linear_by_names(document), pynite.linear_truss(document)
+    for quantity in ("axial_force", "displacement", "reaction"):
+        agree(found[quantity], expected[quantity])
+
+
+@pytest.mark.parametrize("name", TRUSSES)
+def test_linear_theory_agrees_with_pynite(name: str) -> None:
+    check_against_pynite(TRUSSES[name])
+
+
+@settings(max_examples=15)
+@given(seed=st.integers(0, 10_000), redundant=st.integers(0, 4))
+def test_linear_theory_agrees_with_pynite_on_trusses_drawn_by_lot(seed: int, redundant: int) -> None:
+    check_against_pynite(trusses.random_truss(seed, nodes=7, redundant=redundant))
+
+
+def test_the_manual_of_opensees() -> None:
+    found = linear_by_names(trusses.opensees_truss())["displacement"]["4"]
+    assert found == pytest.approx((0.530092777132284, -0.177893638469318), rel=1e-12)
+
+
+def test_lack_of_fit_and_a_moved_support_act_in_linear_theory() -> None:
+    document = trusses.square()
+    document["rods"][4]["rest_length"] = 1.5 * math.sqrt(2.0) - 1e-3
+    document["particles"][0]["displacement"] = [0, -2e-3]
+    found, expected = linear_by_names(document), statics.direct_stiffness(document)
+    for quantity in ("axial_force", "displacement", "reaction"):
+        agree(found[quantity], expected[quantity])
+
+
+@pytest.mark.parametrize(("name", "who"), [("pendulum", "bob along y"), ("hanging_net", "along y")])
+def test_linear_theory_refuses_a_mechanism_and_names_who_moves(name: str, who: str) -> None:
+    with pytest.raises(NoEquilibrium, match=who):
+        linear(models.load(name))
+
+
+def test_linear_theory_refuses_a_free_body_that_is_pulled() -> None:
+    document = trusses.triangle((1, 0))
+    for particle in document["particles"]:
+        particle["fixed"] = [False, True]
+    with pytest.raises(NoEquilibrium, match="A, B and C along x"):
+        linear(models.load(document))
+
+
+def test_a_mechanism_carries_a_load_that_does_not_move_it() -> None:
+    hanging = trusses.pendulum(0.0)
+    found = linear_by_names(hanging)
+    assert found["axial_force"]["OP"] == pytest.approx(9.81e-3, rel=1e-12)
+    assert found["displacement"]["P"] == pytest.approx((0.0, -9.81e-3 / 200.0), rel=1e-12)
+
+
+# --- indeterminacy -------------------------------------------------------------------------------------
+
+
+def equilibrium_matrix(document: Document) -> np.ndarray:
+    """Forces of the rods, then of the supports, on the particles: (2n, m + supports)."""
+    elements = read(document)
+    columns = []
+    for rod in elements.rods:
+        column = np.zeros((len(elements.particles), 2))
+        along = np.array(rod.span) / math.hypot(*rod.span)
+        column[rod.start], column[rod.end] = along, -along
+        columns.append(column.ravel())
+    for number, particle in enumerate(elements.particles):
+        for axis in np.flatnonzero(particle.fixed):
+            column = np.zeros((len(elements.particles), 2))
+            column[number, axis] = 1.0
+            columns.append(column.ravel())
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize(
+    ("document", "internal", "external", "moving"),
+    [
+        (trusses.triangle(), 0, 0, 0),
+        (trusses.square(), 1, 0, 0),
+        (trusses.panel_truss(), 0, 1, 0),
+        (trusses.three_bar_truss(1.0, 2.0), 0, 1, 0),
+        (trusses.opensees_truss(), 0, 1, 0),
+        (trusses.pendulum(0.3), 0, 0, 1),
+    ],
+)
+def test_degrees_of_indeterminacy(document: Document, internal: int, external: int, moving: int) -> None:
+    found = indeterminacy(models.load(document))
+    assert (found.internal, found.external, found.mechanisms) == (internal, external, moving)
+    assert found.static == internal + external
+
+
+def test_a_free_body_has_three_mechanisms() -> None:
+    document = trusses.square()
+    for particle in document["particles"]:
+        particle["fixed"] = [False, False]
+    found = indeterminacy(models.load(document))
+    assert (found.static, found.mechanisms) == (1, 3)
+
+
+@settings(max_examples=25)
+@given(seed=st.integers(0, 10_000), nodes=st.integers(3, 9), removed=st.integers(0, 4))
+def test_indeterminacy_against_the_rank_of_the_equilibrium_matrix(seed: int, nodes: int, removed: int) -> None:
+    document = trusses.random_truss(seed, nodes, redundant=3)
+    document["rods"] = document["rods"][min(removed, len(document["rods"]) - 1) :]
+    held = {name for rod in document["rods"] for name in rod["between"]}
+    document["particles"] = [particle for particle in document["particles"] if particle["name"] in held]
+    matrix = equilibrium_matrix(document)
+    rank = int(np.linalg.matrix_rank(matrix))
+    model = models.load(document)
+    found = indeterminacy(model)
+    assert found.static == matrix.shape[1] - rank
+    assert found.mechanisms == matrix.shape[0] - rank == len(mechanisms(model))
+    assert len(self_stress(model)) == found.static
+    rods = matrix[:, : model.rods.count]
+    free = ~np.array([particle.fixed for particle in read(document).particles]).ravel()
+    for state in self_stress(model):
+        assert np.abs(state).max() == pytest.approx(1.0)
+        assert np.abs((rods @ state)[free]).max(initial=0.0) < 1e-12
+    for motion in mechanisms(model):
+        assert np.abs(rods.T @ motion.ravel()).max() < 1e-12
+        assert not motion[model.particles.fixed].any()
+
+
+def test_self_stress_of_the_square() -> None:
+    """Sides 1, diagonals −√2, or any multiple."""
+    (state,) = self_stress(models.load("hyperstatic"))
+    assert state / state[0] == pytest.approx([1, 1, 1, 1, -math.sqrt(2), -math.sqrt(2)], rel=1e-12)
+
+
+# --- influence lines -------------------------------------------------------------------------------------
+
+
+def influence_by_moving_the_load(
+    document: Document, quantity: str, name: str, axis: int | None
+) -> dict[str, Any]:
+    """The same by one PyNite solution for each place and direction of a force of 1 kN."""
+    line = {}
+    for number, particle in enumerate(document["particles"]):
+        line[particle["name"]] = []
+        for direction in ([1, 0], [0, 1]):
+            moved = [
+                p | {"force": direction if k == number else [0, 0]} for k, p in enumerate(document["particles"])
+            ]
+            value = pynite.linear_truss(document | {"particles": moved})[quantity][name]
+            line[particle["name"]].append(float(value if axis is None else value[axis]))
+    return line
+
+
+@pytest.mark.parametrize(
+    ("quantity", "name", "axis"),
+    [("axial_force", "U2L3", None), ("reaction", "L3", 1), ("reaction", "L1", 0), ("displacement", "L2", 1)],
+)
+def test_influence_lines_against_a_load_that_is_moved(quantity: str, name: str, axis: int | None) -> None:
+    document = trusses.panel_truss()
+    of = name if axis is None else f"{name}.{'xy'[axis]}"
+    found = influence(models.load(document), [of])["influence"][of]
+    assert found["quantity"] == quantity
+    agree(found["of"], influence_by_moving_the_load(document, quantity, name, axis))
+
+
+def test_reaction_of_the_redundant_panel_truss() -> None:
+    """10 kN down at L2: the reaction at L3 is 10 (2 − √2)."""
+    found = influence(models.load(trusses.panel_truss()), ["L3.y"])["influence"]["L3.y"]
+    assert -10.0 * found["of"]["L2"][1] == pytest.approx(10 * (2 - math.sqrt(2)), rel=1e-12)
+
+
+def test_a_mechanism_has_no_influence_lines() -> None:
+    with pytest.raises(NoEquilibrium, match="bob along y can move"):
+        influence(models.load("pendulum"), ["arm"])
+
+
+# --- vibrations -------------------------------------------------------------------------------------------
+
+
+def test_frequencies_of_a_chain() -> None:
+    """f_j = (1/π) √(k/m) sin(jπ/2(n+1)); k = 1e5 N/m, m = 10 kg, n = 8: f₁ = (100/π) sin(π/18)."""
+    document = trusses.chain(8, 1e5, 10.0)
+    found = vibrations(models.load(document)).hertz
+    assert found[0] == pytest.approx(100 / math.pi * math.sin(math.pi / 18), rel=1e-12)
+    assert found == pytest.approx(closed_forms.chain_frequencies(8, 1e5, 10.0), rel=RELATIVE)
+
+
+@settings(max_examples=10)
+@given(seed=st.integers(0, 10_000))
+def test_frequencies_and_shapes_against_a_dense_eigenvalue_problem(seed: int) -> None:
+    document = trusses.random_truss(seed)
+    elements = read(document)
+    free = ~np.array([particle.fixed for particle in elements.particles]).ravel()
+    masses = np.repeat([particle.mass / 1000 for particle in elements.particles], 2)[free]
+    stiffness = statics.stiffness_matrix(document)[np.ix_(free, free)]
+    squared = eigh(stiffness, np.diag(masses), eigvals_only=True)
+    found = vibrations(models.load(document))
+    assert found.angular_squared == pytest.approx(squared, rel=RELATIVE)
+    for value, mode in zip(found.angular_squared, found.modes, strict=True):
+        shape = mode.ravel()[free]
+        left = stiffness @ shape - value * masses * shape
+        assert np.abs(left).max() < RELATIVE * np.abs(stiffness).max()
+
+
+def test_a_loaded_pendulum_swings() -> None:
+    """ω² = g/L, the length L = L₀ (1 + mg/EA) being that under its weight."""
+    model = models.load(trusses.pendulum(0.4))
+    swinging = vibrations(model, settle(model).final)
+    length = 1.0 + 9.81e-3 / 200.0
+    assert swinging.angular_squared[0] == pytest.approx(9.81 / length, rel=RELATIVE)
+    assert vibrations(model).hertz[0] == 0.0  # unloaded, it is a mechanism
+
+
+def test_the_lowest_modes_of_a_large_structure() -> None:
+    """A chain of 700: sparse eigenvalues near zero, f_j = (1/π) √(k/m) sin(jπ/2(n+1))."""
+    found = vibrations(models.load(trusses.chain(700, 1e5, 10.0)), count=5).hertz
+    assert found == pytest.approx(closed_forms.chain_frequencies(700, 1e5, 10.0)[:5], rel=1e-8)
+
+
+# --- side by side -------------------------------------------------------------------------------------------
+
+
+def test_errors_are_relative_to_the_largest_exact_value() -> None:
+    model = models.load("isostatic")
+    comparison = compare(model, theories(model), None)
+    row = next(row for row in comparison.rows if row.name == "CA")
+    assert row.linear == pytest.approx(20.0, rel=1e-12)
+    assert row.exact == pytest.approx(20.0678998039911, rel=1e-12)
+    assert row.linear_error == pytest.approx((20.0678998039911 - 20.0) / 198.0274601694, rel=1e-9)
+    assert comparison.worst_linear is not None
+    assert comparison.worst_linear.title == "displacement y of particle B"
+    assert comparison.worst_simulation is None
+
+
+def verify(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, dict[str, Any]]:
+    status = main(["verify", *words, "--format", "json"])
+    return status, json.loads(capsys.readouterr().out)
+
+
+def test_verify_puts_simulation_linear_and_exact_side_by_side(capsys: pytest.CaptureFixture[str]) -> None:
+    status, found = verify(capsys, "isostatic")
+    assert (status, found["status"], found["simulation"]["status"]) == (0, "verified", "at rest")
+    force = found["rods"]["AB"]["axial_force"]
+    assert force["exact"] == pytest.approx(-28.3427681444064, rel=1e-12)
+    assert force["linear"] == pytest.approx(-28.2842712474619, rel=1e-12)
+    assert force["simulation"] == pytest.approx(force["exact"], rel=1e-6)
+    assert found["particles"]["A"]["reaction"]["y"]["exact"] == pytest.approx(20.0147921184446, rel=1e-12)
+    assert found["worst"]["simulation"]["simulation_error"] < 1e-6
+    assert found["indeterminacy"] == {"static": 0, "internal": 0, "external": 0, "mechanisms": 0}
+
+
+def test_verify_points_out_a_rod_that_yielded_in_the_overshoot(capsys: pytest.CaptureFixture[str]) -> None:
+    status, found = verify(capsys, "overshoot_yield")
+    assert status == 0
+    assert found["overshoot"][0]["rod"] == "AB"
+    assert "static force 9 kN < strength 10 kN" in found["message"]
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("collision_i", "There are no rods"),
+        ("isostatic_collapse", "Plastic collapse at the load factor 0.868"),
+        ("pendulum", "bob along y"),
+    ],
+)
+def test_verify_says_what_is_missing(capsys: pytest.CaptureFixture[str], name: str, said: str) -> None:
+    status, found = verify(capsys, name, "--theory-only")
+    assert status == 1 or name == "pendulum"
+    assert said in found["message"]
+
+
+@pytest.mark.parametrize("words", [("isostatic",), ("isostatic", "--influence", "AB", "A.y", "B.x")])
+def test_verify_prints_tables(capsys: pytest.CaptureFixture[str], words: tuple[str, ...]) -> None:
+    assert main(["verify", *words]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert any(line.startswith("axial force") for line in lines)
+    assert main(["verify", "isostatic", "--influence", "nothing"]) == 2
+    assert "nothing" in capsys.readouterr().err
+
+
+def test_verifying_leaves_no_trace_in_theory(capsys: pytest.CaptureFixture[str]) -> None:
+    model = models.load("hyperstatic_yield")
+    before = models.document(model)
+    theories(model), vibrations(model), mechanisms(model), self_stress(model)
+    assert models.document(model) == before
+
+
+def test_an_empty_model_has_no_theory_to_fail() -> None:
+    model = Model()
+    assert len(vibrations(model).hertz) == len(mechanisms(model)) == len(self_stress(model)) == 0
+    assert compare(model, theories(model), None).rows == ()
