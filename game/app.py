@@ -16,6 +16,7 @@ from components.toolbar import Toolbar
 from components.view import View
 from game.desk import ModelFile
 from game.preferences import DEFAULT_THEME, preferred_theme, remember_theme
+from game.raster_program import load_raster
 from game.scenes.load import Load
 from game.script import Recorder
 from game.session import Session
@@ -87,7 +88,7 @@ class App:
         self.window.minimum_size = SMALLEST_SIZE
         pygame.key.set_repeat(400, 40)
         self.input = PygameInput()
-        self.render = PygameRender(self.window.get_surface())
+        self.render = PygameRender(self.window.get_surface(), load_raster)
         systems: list[System] = [self.input, Hover(), *([spares] if spares else []), self.render]
         self.session = Session(model, systems, View(theme=theme), file)
         self.session.window = self
@@ -188,6 +189,6 @@ def render_png(session: Session, path: str, size: tuple[int, int], theme: str = 
     session.update_view()
     view = replace(session.view, camera=Camera(viewport=Viewport(0, 0, *size)), toolbar=Toolbar())
     view.fit(session.model)
-    Canvas().draw(surface, compose(session.model, view, load_theme(theme)))
+    Canvas(load_raster).draw(surface, compose(session.model, view, load_theme(theme)))
     with open(path, "wb") as file:
         pygame.image.save(surface, file, path if path.lower().endswith((".png", ".jpg", ".bmp")) else ".png")

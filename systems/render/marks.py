@@ -49,6 +49,20 @@ class Stamps:
 
 
 @dataclass(frozen=True)
+class Discs:
+    """Circles about `at` (n, 2) with `radius` (n,) in pixels.
+
+    ink: their colour. rim: if not 0, only so many pixels within the radius are ink, the rest is `hollow`.
+    """
+
+    at: Points
+    radius: NDArray[np.float64]
+    ink: Colour
+    hollow: Colour
+    rim: float = 0.0
+
+
+@dataclass(frozen=True)
 class Rectangles:
     """Upright filled rectangles (n, 4): left, top, width, height in whole pixels."""
 
@@ -86,7 +100,7 @@ class Text:
     anchor: str = "left"
 
 
-Mark = Strokes | Fills | Stamps | Rectangles | Panel | Text
+Mark = Strokes | Fills | Stamps | Discs | Rectangles | Panel | Text
 
 
 @dataclass

@@ -14,21 +14,30 @@ import pygame.gfxdraw
 from numpy.typing import NDArray
 
 from systems.render.coverage import stroke_coverage, stroke_pixels_estimate
-from systems.render.marks import Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
-from systems.render.symbols import symbol_parts
+from systems.render.marks import Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
+from systems.render.raster import Clip, Pixels, Raster
+from systems.render.symbols import RIM, symbol_parts
 from systems.render.theme import Colour
 from systems.render.typography import WEIGHTS, capital_height
 
 _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
-_MOST_STROKED = 250_000  # pixels to be looked at; beyond it the faster, coarser lines do
+_MANY = 300  # areas, discs; and 50 pixels of strokes for each: from there on the compiled kernels pay
+
+
+def no_raster() -> None:
+    """Large pictures are drawn like small ones, slowly."""
 
 
 class Canvas:
-    """Draws pictures; keeps the texts, symbols and panels it has rendered."""
+    """Draws pictures; keeps the texts, symbols and panels it has rendered.
 
-    def __init__(self) -> None:
+    raster: gives what draws large pictures, or None as long as that is not compiled.
+    """
+
+    def __init__(self, raster: Callable[[], Raster | None] = no_raster) -> None:
+        self._raster = raster
         if not pygame.font.get_init():
             pygame.font.init()
         self._cache: dict[Any, Any] = {}
@@ -49,6 +58,8 @@ class Canvas:
                     self._strokes(surface, mark)
                 case Stamps():
                     self._stamps(surface, mark)
+                case Discs():
+                    self._discs(surface, mark)
                 case Text():
                     self._text(surface, mark)
                 case Fills():
@@ -71,19 +82,19 @@ class Canvas:
     # --- lines and areas -----------------------------------------------------------------------------
 
     def _strokes(self, surface: pygame.Surface, mark: Strokes) -> None:
-        if stroke_pixels_estimate(mark.start, mark.end, mark.width) > _MOST_STROKED:
-            width = max(round(mark.width), 1)
-            colour = mark.colour
-            # Whole numbers are the middle of a pixel to pygame, its upper left corner to us.
-            for start, end in zip((mark.start - 0.5).tolist(), (mark.end - 0.5).tolist(), strict=True):
-                pygame.draw.aaline(surface, colour, start, end, width)
+        stroked = stroke_pixels_estimate(mark.start, mark.end, mark.width)
+        if stroked > 50 * _MANY and (raster := self._raster()):
+            raster.strokes(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
         else:
             x, y, amount = stroke_coverage(mark.start, mark.end, mark.width)
             _blend(surface, x, y, amount, mark.colour)
 
     def _fills(self, surface: pygame.Surface, mark: Fills) -> None:
-        for corners in np.round(mark.corners).astype(np.int64).tolist():
-            pygame.gfxdraw.filled_polygon(surface, corners, mark.colour)
+        if len(mark.corners) > _MANY and (raster := self._raster()):
+            raster.fills(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
+        else:
+            for corners in np.round(mark.corners).astype(np.int64).tolist():
+                pygame.gfxdraw.filled_polygon(surface, corners, mark.colour)
 
     def _panel(self, surface: pygame.Surface, mark: Panel) -> None:
         left, top = round(mark.left), round(mark.top)
@@ -103,6 +114,17 @@ class Canvas:
             pairs.append((image, (x + left, y + top)))
         surface.fblits(pairs)
 
+    def _discs(self, surface: pygame.Surface, mark: Discs) -> None:
+        if len(mark.at) > _MANY and (raster := self._raster()):
+            colours = _pixel(surface, mark.ink), _pixel(surface, mark.hollow)
+            raster.discs(_pixels(surface), _clip(surface), mark, *colours)
+        else:
+            fine = np.round(4.0 * mark.radius)
+            for quarters in np.unique(fine).tolist():
+                size, at = quarters / 4.0, mark.at[fine == quarters]
+                symbol, unit = ("ring", mark.rim / RIM) if mark.rim else ("disc", 1.0)
+                self._stamps(surface, Stamps(symbol, at, size, unit, mark.ink, mark.hollow))
+
     def _text(self, surface: pygame.Surface, mark: Text) -> None:
         key = (mark.text, mark.size, mark.colour, mark.weight)
         font = self._font(mark.size, mark.weight)
@@ -118,6 +140,22 @@ class Canvas:
         return font
 
 
+def _pixels(surface: pygame.Surface) -> Pixels:
+    """The pixels of a surface of 32 bits per pixel, shape (rows, columns); the last ones may be padding."""
+    pixels: Pixels = np.frombuffer(surface.get_buffer(), dtype=np.uint32)  # type: ignore[call-overload]
+    return pixels.reshape(surface.get_height(), surface.get_pitch() // 4)
+
+
+def _pixel(surface: pygame.Surface, colour: Colour) -> np.uint32:
+    """A colour as a pixel of that surface."""
+    return np.uint32(surface.map_rgb(colour[:3]))
+
+
+def _clip(surface: pygame.Surface) -> Clip:
+    clip = surface.get_clip()
+    return clip.left, clip.top, clip.right, clip.bottom
+
+
 def _blend(
     surface: pygame.Surface,
     x: NDArray[np.int32],
@@ -130,16 +168,13 @@ def _blend(
     inside = (x >= clip.left) & (x < clip.right) & (y >= clip.top) & (y < clip.bottom)
     if not inside.all():
         x, y, amount = x[inside], y[inside], amount[inside]
-    pixels = pygame.surfarray.pixels2d(surface)
-    pitch = pixels.strides[1] // 4
-    flat = np.lib.stride_tricks.as_strided(pixels, (pitch * (pixels.shape[1] - 1) + pixels.shape[0],), (4,))
-    index = y.astype(np.intp) * pitch + x
-    old = flat[index].view(np.uint8).reshape(-1, 4).astype(np.uint16)
-    new = np.array([surface.map_rgb(colour[:3])], dtype=np.uint32).view(np.uint8).astype(np.uint16)
+    pixels = _pixels(surface)
+    old = pixels[y, x].view(np.uint8).reshape(-1, 4).astype(np.uint16)
+    new = np.array([_pixel(surface, colour)]).view(np.uint8).astype(np.uint16)
     part = (amount.astype(np.uint16) * np.uint16(colour[3]) + np.uint16(127)) // np.uint16(255)
     part = part[:, None]
     mixed = (old * (np.uint16(255) - part) + new * part + np.uint16(127)) // np.uint16(255)
-    flat[index] = mixed.astype(np.uint8).view(np.uint32).ravel()
+    pixels[y, x] = mixed.astype(np.uint8).view(np.uint32).ravel()
 
 
 def _rendered(mark: Stamps, phase_x: float, phase_y: float) -> tuple[pygame.Surface, int, int]:

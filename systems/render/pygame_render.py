@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import pygame
@@ -13,7 +13,8 @@ from components.toolbar import Toolbar
 from components.view import View
 from systems.base import Phase, System
 from systems.render.picture import compose
-from systems.render.pygame_canvas import Canvas
+from systems.render.pygame_canvas import Canvas, no_raster
+from systems.render.raster import Raster
 from systems.render.theme import load_theme
 
 
@@ -23,10 +24,10 @@ class PygameRender(System):
     name = "render.pygame"
     phase = Phase.RENDER
 
-    def __init__(self, surface: pygame.Surface) -> None:
+    def __init__(self, surface: pygame.Surface, raster: Callable[[], Raster | None] = no_raster) -> None:
         self.surface = surface
         self.drawn = False
-        self._canvas = Canvas()
+        self._canvas = Canvas(raster)
         self._shown: Any = None
 
     def process(self, frame: Any) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from components.tags import Hovered, Selected
 from systems.render.clip import bounds, clip_segments
 from systems.render.labels import FAINT, STRONG, Label, half_size
-from systems.render.marks import Fills, Points, Rectangles, Stamps, Strokes
+from systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
 from systems.render.sheet import FEW, MANY, Rows, Sheet, typical_length
 from systems.render.symbols import LARGEST_STAMP, RIM, circle
 from systems.render.theme import Colour, faded
@@ -95,7 +95,7 @@ def draw_halos(sheet: Sheet) -> None:
         if rods.any():
             sheet.marks.append(Strokes(sheet.start[rods], sheet.end[rods], 11.0 * u, glow))
         chosen = sheet.chosen(sheet.tagged(tag, "particles"), sheet.particles)
-        _draw_circles(sheet, "disc", sheet.particles[chosen], glow, glow, 5.0 * u)
+        _draw_circles(sheet, sheet.particles[chosen], glow, glow, 0.0, 5.0 * u)
 
 
 def draw_rods(sheet: Sheet) -> None:
@@ -122,32 +122,33 @@ def draw_particles(sheet: Sheet) -> None:
     for colour, mask in sheet.colours_of(sheet.particles, layers, theme.ink):
         rows = sheet.particles[mask]
         small = sheet.radii[rows] < 3.0 * sheet.unit
-        _draw_circles(sheet, "disc", rows[small], colour, colour, 0.0)
-        _draw_circles(sheet, "ring", rows[~small], colour, theme.hollow, 0.0)
+        for chosen, rim in ((rows[small], 0.0), (rows[~small], RIM * sheet.unit)):
+            if len(chosen):
+                _draw_circles(sheet, chosen, colour, theme.hollow, rim, 0.0)
     if len(sheet.particles) <= MANY:
         sheet.occupancy.block_squares(sheet.centres[sheet.particles], 0.8 * sheet.radii[sheet.particles])
 
 
-def _draw_circles(sheet: Sheet, symbol: str, rows: Rows, ink: Colour, hollow: Colour, extra: float) -> None:
-    """Stamps of one kind, grouped by radius to a quarter of a pixel; large ones as lines and areas."""
-    radii = np.round(4.0 * (sheet.radii[rows] + extra)) / 4.0
-    for radius in np.unique(radii).tolist():
-        at = sheet.centres[rows[radii == radius]]
-        if radius <= LARGEST_STAMP * sheet.unit:
-            sheet.marks.append(Stamps(symbol, at, radius, sheet.unit, ink, hollow))
-        else:
-            _draw_large_circles(sheet, symbol, at, radius, ink, hollow)
+def _draw_circles(sheet: Sheet, rows: Rows, ink: Colour, hollow: Colour, rim: float, extra: float) -> None:
+    """Circles of the particles' radius and `extra` pixels; very large ones as lines and areas."""
+    radii, at = sheet.radii[rows] + extra, sheet.centres[rows]
+    large = radii > LARGEST_STAMP * sheet.unit
+    if large.any():
+        for radius in np.unique(radii[large]).tolist():
+            _draw_large_circles(sheet, at[radii == radius], radius, ink, hollow, rim)
+        at, radii = at[~large], radii[~large]
+    if len(at):
+        sheet.marks.append(Discs(at, radii, ink, hollow, rim))
 
 
 def _draw_large_circles(
-    sheet: Sheet, symbol: str, at: Points, radius: float, ink: Colour, hollow: Colour
+    sheet: Sheet, at: Points, radius: float, ink: Colour, hollow: Colour, rim: float
 ) -> None:
     """Circles as polygons; filled up to the size at which the whole viewport may lie inside."""
-    rim = RIM * sheet.unit
     corners = at[:, None] + circle(radius - rim / 2)
     if radius < _LARGEST_FILLED:
-        sheet.marks.append(Fills(corners, hollow if symbol == "ring" else ink))
-    if symbol == "ring":
+        sheet.marks.append(Fills(corners, hollow if rim else ink))
+    if rim:
         first, last = corners.reshape(-1, 2), np.roll(corners, -1, axis=1).reshape(-1, 2)
         low, high = bounds(sheet.viewport)
         overlap = 0.5 * (last - first) / np.hypot(*(last - first).T)[:, None]  # a pixel, so that joints close

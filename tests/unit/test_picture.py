@@ -22,7 +22,7 @@ from components.world import Derivation
 from systems.render.clip import clip_segments
 from systems.render.diagrams import scale_step, written
 from systems.render.labels import half_size
-from systems.render.marks import Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
+from systems.render.marks import Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
 from systems.render.overlays import written_length, written_speed, written_time
 from systems.render.picture import compose, drawn_positions
 from systems.render.supports import DOWN, LEFT, NO_SUPPORT, RIGHT, UP, support_sides
@@ -127,7 +127,8 @@ def test_particle_radius_is_to_scale_and_never_too_small_to_hit() -> None:
     model = Model()
     model.create(Particle, 2, position=[(0, 0), (1, 0)], radius=[0.05, 0.01])
     view = View(camera=Camera(centre=(0.5, 0.0), scale=200.0))
-    radii = {round(float(s.at[0, 0])): s.size for s in marks_of(compose(model, view, LIGHT), Stamps)}
+    (discs,) = marks_of(compose(model, view, LIGHT), Discs)
+    radii = dict(zip(discs.at[:, 0].round().tolist(), discs.radius.tolist(), strict=True))
     assert radii == {200: 10.0, 400: 5.0}
 
 
@@ -149,8 +150,8 @@ def test_selection_hovering_and_yielding_show() -> None:
     (halo,) = marks_of(picture, Strokes, LIGHT.hover)
     assert halo.colour[3] < 128
     np.testing.assert_allclose(halo.start[0], a)
-    rings = [s for s in marks_of(picture, Stamps) if s.symbol == "ring" and s.ink == LIGHT.selected]
-    np.testing.assert_allclose(rings[0].at, [a])
+    (ring,) = [discs for discs in marks_of(picture, Discs) if discs.rim and discs.ink == LIGHT.selected]
+    np.testing.assert_allclose(ring.at, [a])
 
 
 def test_derived_columns_are_read_only_when_needed() -> None:

@@ -1,0 +1,66 @@
+"""Raster: draws many strokes, areas and discs at once into the pixels of a picture, by compiled kernels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from systems.render.marks import Discs, Fills, Strokes
+
+Pixels = NDArray[np.uint32]
+Clip = tuple[int, int, int, int]
+
+# What is compiled, and for which types: those of kernels.py.
+_POINTS, _CLIP, _PIXELS = "float64[:, ::1]", "UniTuple(int64, 4)", "uint32[:, ::1]"
+_SCRATCH = "float64[:, ::1], int64[:, ::1]"
+SIGNATURES = {
+    "cover_strokes": f"void(uint8[:, ::1], {_CLIP}, {_POINTS}, {_POINTS}, float64)",
+    "blend_cover": f"void({_PIXELS}, uint8[:, ::1], {_CLIP}, uint32, int64)",
+    "fill_polygons": f"void({_PIXELS}, {_SCRATCH}, {_CLIP}, float64[:, :, ::1], uint32, int64)",
+    "draw_discs": f"void({_PIXELS}, {_CLIP}, {_POINTS}, float64[::1], float64, uint32, int64, uint32, int64)",
+}
+
+
+class Raster:
+    """The kernels and their scratch, for surfaces of any size.
+
+    Pixels are (rows, columns); a clip is left, top, right, bottom. Colours are pixels of the surface.
+    """
+
+    def __init__(self, kernels: Any) -> None:
+        """kernels: a module with those of kernels.py, compiled."""
+        self._kernels = kernels
+        self._prepare((0, 0))
+
+    def _prepare(self, shape: tuple[int, int]) -> None:
+        self._cover = np.zeros(shape, dtype=np.uint8)
+        self._change = np.zeros((shape[0], shape[1] + 2))
+        self._reach = np.full((shape[0], 2), (shape[1], -1), dtype=np.int64)
+
+    def strokes(self, pixels: Pixels, clip: Clip, mark: Strokes, colour: np.uint32) -> None:
+        """Each pixel takes the colour by what the stroke that covers most of it does."""
+        if pixels.shape != self._cover.shape:
+            self._prepare(pixels.shape)
+        ends = _contiguous(mark.start), _contiguous(mark.end)
+        self._kernels.cover_strokes(self._cover, clip, *ends, mark.width)
+        self._kernels.blend_cover(pixels, self._cover, clip, colour, mark.colour[3])
+
+    def fills(self, pixels: Pixels, clip: Clip, mark: Fills, colour: np.uint32) -> None:
+        """One polygon over the other."""
+        if pixels.shape != self._cover.shape:
+            self._prepare(pixels.shape)
+        corners = _contiguous(mark.corners)
+        scratch = self._change, self._reach
+        self._kernels.fill_polygons(pixels, *scratch, clip, corners, colour, mark.colour[3])
+
+    def discs(self, pixels: Pixels, clip: Clip, mark: Discs, ink: np.uint32, hollow: np.uint32) -> None:
+        """One disc over the other."""
+        places = _contiguous(mark.at), _contiguous(mark.radius)
+        colours = ink, mark.ink[3], hollow, mark.hollow[3]
+        self._kernels.draw_discs(pixels, clip, *places, mark.rim, *colours)
+
+
+def _contiguous(numbers: NDArray[Any]) -> NDArray[np.float64]:
+    return np.ascontiguousarray(numbers, dtype=np.float64)

@@ -1,0 +1,128 @@
+"""The compiled drawing of large pictures against areas, against small pictures, and within its bounds."""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
+
+import numpy as np
+import pygame
+import pytest
+from numpy.typing import NDArray
+
+from components.camera import Viewport
+from game.raster_program import load_raster
+from systems.render.coverage import stroke_coverage
+from systems.render.marks import Discs, Fills, Mark, Picture, Points, Strokes
+from systems.render.pygame_canvas import Canvas
+
+BLACK, WHITE = (0, 0, 0, 255), (255, 255, 255, 255)
+SIZE = 40
+
+
+def darkness(mark: Mark, viewport: Viewport = Viewport(0, 0, SIZE, SIZE)) -> NDArray[np.float64]:  # noqa: B008
+    """How much of each pixel (column, row) of a small white picture a black mark of many parts covers."""
+    surface = pygame.Surface((SIZE, SIZE), depth=32)
+    surface.fill(WHITE)
+    Canvas(load_raster).draw(surface, Picture(viewport, None, [mark]))
+    return 1.0 - pygame.surfarray.array3d(surface)[:, :, 1] / 255.0
+
+
+def many(part: Points, times: int = 400) -> Points:
+    """A single part, and others that lie far outside."""
+    return np.concatenate([part, np.full((times, *part.shape[1:]), -1e4)])
+
+
+def random_strokes(number: int, seed: int) -> tuple[Points, Points]:
+    rng = np.random.default_rng(seed)
+    start = rng.uniform(-10, SIZE + 10, (number, 2))
+    return start, start + rng.uniform(-12, 12, (number, 2))
+
+
+@pytest.mark.parametrize("width", [0.3, 1.0, 2.5, 7.0])
+def test_strokes_are_those_of_small_pictures(width: float) -> None:
+    start, end = random_strokes(60, 1)
+    expected = np.zeros((SIZE, SIZE))
+    x, y, amount = stroke_coverage(start, end, width)
+    inside = (x >= 0) & (x < SIZE) & (y >= 0) & (y < SIZE)
+    expected[x[inside], y[inside]] = amount[inside] / 255.0
+    far = np.tile([[-1e4, 0.0]], (3000, 1)), np.tile([[-2e4, 0.0]], (3000, 1))
+    mark = Strokes(np.concatenate([start, far[0]]), np.concatenate([end, far[1]]), width, BLACK)
+    assert np.abs(darkness(mark) - expected).max() < 1.5 / 255.0  # sums of float32 there, of float64 here
+
+
+def test_translucent_strokes_do_not_add_up_where_they_cross() -> None:
+    cross = np.array([[5.0, 20.0], [20.0, 5.0]]), np.array([[35.0, 20.0], [20.0, 35.0]])
+    start, end = (np.tile(ends, (500, 1)) for ends in cross)
+    found = darkness(Strokes(start, end, 4.0, (0, 0, 0, 51)))
+    assert found.max() == pytest.approx(0.2, abs=0.003)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_areas_are_exact(seed: int) -> None:
+    """Σ of what a triangle covers of all pixels is its area, to the rounding of each pixel it has an edge in."""
+    corners = np.random.default_rng(seed).uniform(2, SIZE - 2, (1, 3, 2))
+    (ax, ay), (bx, by) = corners[0, 1:] - corners[0, 0]
+    edges = float(np.abs(np.diff(corners[0], axis=0, append=corners[0, :1])).sum()) + 10.0
+    found = float(darkness(Fills(many(corners), BLACK)).sum())
+    assert found == pytest.approx(abs(ax * by - ay * bx) / 2, abs=0.5 * edges / 255)
+
+
+def test_an_upright_area_is_exact_in_every_pixel() -> None:
+    box = np.array([[[3.25, 5.0], [9.0, 5.0], [9.0, 7.5], [3.25, 7.5]]])
+    expected = np.zeros((SIZE, SIZE))
+    expected[3:9, 5:8] = np.outer([0.75, 1, 1, 1, 1, 1], [1, 1, 0.5])
+    np.testing.assert_allclose(darkness(Fills(many(box), BLACK)), expected, atol=0.5 / 255 + 1e-9)
+
+
+def test_areas_lie_over_each_other() -> None:
+    box = np.array([[[3.0, 5.0], [9.0, 5.0], [9.0, 8.0], [3.0, 8.0]]])
+    found = darkness(Fills(np.concatenate([box, many(box)]), (0, 0, 0, 128)))
+    assert found[5, 6] == pytest.approx(0.75, abs=0.005)
+
+
+@pytest.mark.parametrize("radius", [1.25, 2.0, 5.5, 12.0])
+def test_discs_have_their_area(radius: float) -> None:
+    at = np.random.default_rng(3).uniform(15, 25, (1, 2))
+    mark = Discs(many(at), np.full(401, radius), BLACK, WHITE)
+    assert darkness(mark).sum() == pytest.approx(np.pi * radius**2, rel=0.03)
+
+
+@pytest.mark.parametrize("rim", [0.0, 1.75])
+def test_discs_look_like_those_of_small_pictures(rim: float) -> None:
+    at = np.random.default_rng(4).uniform(2, SIZE - 2, (20, 2))
+    few, lots, moved = (
+        darkness(Discs(places, np.full(len(places), 5.0), BLACK, WHITE, rim))
+        for places in (at, many(at), at + 0.5)
+    )
+    assert np.abs(few - lots).mean() < 0.5 * np.abs(few - moved).mean()
+
+
+@pytest.mark.parametrize(
+    "mark",
+    [
+        Strokes(np.full((3000, 2), -50.0), np.full((3000, 2), 90.0), 3.0, BLACK),
+        Fills(np.tile([[[-50.0, -50.0], [90.0, -50.0], [90.0, 90.0], [-50.0, 90.0]]], (400, 1, 1)), BLACK),
+        Discs(np.full((400, 2), 20.0), np.full(400, 60.0), BLACK, WHITE),
+    ],
+    ids=["strokes", "fills", "discs"],
+)
+def test_nothing_is_drawn_outside_of_the_viewport(mark: Mark) -> None:
+    found = darkness(mark, Viewport(10, 15, 12, 9))
+    assert found[10:22, 15:24].max() == 1.0
+    found[10:22, 15:24] = 0.0
+    assert not found.any()
+
+
+def test_surfaces_of_other_sizes_come_next() -> None:
+    canvas = Canvas(load_raster)
+    box = np.array([[[0.0, 0.0], [90.0, 0.0], [90.0, 90.0], [0.0, 90.0]]])
+    for size in ((30, 20), (50, 60), (10, 10)):
+        surface = pygame.Surface(size, depth=32)
+        surface.fill(WHITE)
+        start, end = np.full((3000, 2), (-5.0, 5.0)), np.full((3000, 2), (95.0, 5.0))
+        marks: list[Mark] = [Fills(many(box), (255, 0, 0, 255)), Strokes(start, end, 2.0, BLACK)]
+        canvas.draw(surface, Picture(Viewport(0, 0, *size), None, marks))
+        assert surface.get_at((size[0] - 1, size[1] - 1))[:3] == (255, 0, 0)
+        assert surface.get_at((size[0] - 1, 5))[:3] == (0, 0, 0)
