@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
+from components.extremes import incomputable
 from components.field import Column, Role
 from components.load import loads_end
 from components.model import Model
@@ -27,6 +28,13 @@ FREE_STEP = 1e-3  # s, where nothing limits the step
 DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
 MOST_RETRIES = 6  # times that an automatic step is halved before a run is given up
 DEFAULT_DRIVER = "velocity_verlet"
+
+CHOSEN = (
+    "step_size",
+    "guard_energy",
+    "initial_energy",
+    "potential_reference",
+)  # of the clock, when a run begins
 
 OBSERVED = (
     "rods.axial_force",
@@ -143,7 +151,8 @@ class Simulation:
 
     def start_anew(self) -> None:
         """The state was replaced by one from before edits: a new run begins with it."""
-        self.model.writable("clock.step_size")[0] = 0.0
+        for name in CHOSEN:
+            self.model.writable(f"clock.{name}")[0] = 0.0
         self.forget()
 
     def account_for_edits(self) -> None:
@@ -194,12 +203,14 @@ class Simulation:
     def _arm(self) -> Program:
         """Get ready to run after edits: account for them, choose the step size, note a safe state."""
         if not self._armed:
-            self._close_account()
-            self._choose_step(self._find_stable_step())
+            problem = incomputable(self.model)
+            if not problem:
+                self._close_account()
+                self._choose_step(self._find_stable_step())
             self._armed = True
             self._armed_revision = self.model.revision
             self._safe = None
-            self.reason, self.message = StopReason.DONE, ""
+            self.reason, self.message = StopReason.DIVERGED if problem else StopReason.DONE, problem
         elif self._safe is None:
             self._find_stable_step()
         if self._safe is None:

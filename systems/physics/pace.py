@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from components.extremes import incomputable
 from components.load import loads_end
 from components.model import Model
 
@@ -18,6 +19,8 @@ REAL_TIME = (0.2, 5.0)  # a mechanism or flight this near to real time is shown 
 
 def natural_pace(model: Model) -> float:
     """Simulated seconds per second shown, rounded to 1, 2 or 5 times a power of ten."""
+    if incomputable(model):
+        return 1.0
     swing = _response_time(model)
     pace = swing if swing is not None else _flight_pace(model)
     end = loads_end(model)

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.linalg import qr
 from scipy.sparse import csc_matrix, diags
 
+from components.extremes import incomputable
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
@@ -153,6 +154,11 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     p L₀/EA less its lack of fit. Then they are unique even where the base structure has fewer rods than
     there are unknowns, and Δ₁ alone is singular.
     """
+    problem = incomputable(model)
+    if problem:
+        raise ForceMethodError(problem)
+    for unknown in unknowns:
+        _check_strains(model, unknown)
     load = external_forces(model).at(1.0)
     real = _Linear(model).under(load, prestressed=True)
     released = _Linear(model, unknowns)
@@ -165,6 +171,15 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     own, unstrained = _flexibility(model, unknowns)
     force = np.linalg.solve(delta_unit - np.diag(own), unstrained - delta_base)
     return Solution(tuple(unknowns), delta_real, delta_base, delta_unit, force, real, base, units)
+
+
+def _check_strains(model: Model, unknown: Unknown) -> None:
+    """Raise ForceMethodError for a support that holds no rod."""
+    if unknown.axis is not None and not (model.rods.between == unknown.element.row).any():
+        raise ForceMethodError(
+            f"{unknown.name} is not a static unknown: no rod ends at {unknown.element.name}, so its reaction"
+            " only balances what acts on it there. Choose a rod, or a constraint of the structure."
+        )
 
 
 def _flexibility(model: Model, unknowns: Sequence[Unknown]) -> tuple[Array, Array]:

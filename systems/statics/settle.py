@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from components.extremes import incomputable
+from components.field import FieldError
 from components.model import Model
 from systems.statics.bodies import loose_bodies, loose_event
 from systems.statics.equations import ROUND_OFF, Array, Flags, Structure
@@ -89,9 +91,13 @@ def settle(model: Model, factors: Sequence[float] = (1.0,), geometry: str = "exa
     the forces that hold its present state are exchanged for the load. Ends early, with a status other than
     "equilibrium", where there is no equilibrium to go on to.
     geometry: "linear" for first-order theory about the original positions, with the same yielding.
+    Raises FieldError for numbers too large or too small to compute with.
     """
     if len(factors) == 0:
         raise ValueError("Give at least one load factor, such as 1.")
+    problem = incomputable(model)
+    if problem:
+        raise FieldError(problem)
     settling = _Settling(model, geometry)
     states: list[StaticState] = []
     for factor in factors:

@@ -1,0 +1,44 @@
+"""Extremes: numbers that can be kept, but whose squares and products are beyond what can be computed with."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from components.field import Column, Field, Role
+from components.model import Model
+
+LARGEST, SMALLEST = 1e30, 1e-30  # in the units inside; SMALLEST of what must be above 0
+
+_TABLES = ("particles", "rods", "loads", "environment", "settings")
+_FOLLOWING = ("rest_length", "mass")  # derived, but from positions that may be too near or too far
+_MOVING = ("displacement", "velocity")  # state that a person can type
+
+
+def incomputable(model: Model) -> str:
+    """The sentence that names a number too large or too small to compute with; "" if there is none."""
+    for name in _TABLES:
+        table = model.tables[name]
+        for field in table.fields.values():
+            if field.dtype is float and (field.role is Role.DOCUMENT or field.name in (*_FOLLOWING, *_MOVING)):
+                column = table.column(field.name)
+                for row, *axis in np.argwhere(_extreme(field, column))[:1].tolist():
+                    return _sentence(model.describe(table[row]), field, float(column[(row, *axis)]))
+    return ""
+
+
+def _extreme(field: Field[float], column: Column) -> Column:
+    size = np.abs(column)
+    extreme: Column = (size > LARGEST) & np.isfinite(size)
+    if field.above == 0.0 or field.name in _FOLLOWING:
+        extreme |= size < SMALLEST
+    return extreme
+
+
+def _sentence(element: str, field: Field[float], value: float) -> str:
+    unit = f" {field.unit}" if field.unit else ""
+    small = abs(value) < SMALLEST
+    limit = f"at least {SMALLEST:g}" if small else f"at most {LARGEST:g}"
+    return (
+        f"{element[:1].upper()}{element[1:]}: {field.title} is {value:g}{unit}, too"
+        f" {'small' if small else 'large'} to compute with; make it {limit}{unit}."
+    )

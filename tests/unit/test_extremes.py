@@ -1,0 +1,49 @@
+"""Numbers that can be kept but not computed with are named, with what to do."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from components.extremes import incomputable
+from components.field import FieldError
+from game import Session
+from game.cli import main
+
+
+def test_usual_models_can_be_computed() -> None:
+    assert incomputable(Session.open("isostatic").model) == ""
+
+
+def test_a_number_beyond_computing_is_named_and_the_model_can_still_be_saved(tmp_path: Path) -> None:
+    session = Session.open("isostatic")
+    session.environment.force = (1e300, 0.0)
+    assert session.run(steps=5) == "diverged"
+    assert session.message == (
+        "Environment: force is 1e+300 kN, too large to compute with; make it at most 1e+30 kN."
+    )
+    session.save(tmp_path / "huge.json")
+    assert Session.open(tmp_path / "huge.json").environment.force == (1e300, 0.0)
+    session.undo()
+    session.undo()
+    assert session.run(steps=5) == "time reached"
+
+
+def test_masses_and_distances_can_be_too_small() -> None:
+    session = Session.open("isostatic")
+    session.particles["B"].mass = 1e-300
+    assert "Particle B: mass is 1e-300 kg, too small" in incomputable(session.model)
+
+
+def test_no_analysis_computes_with_them(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    session = Session.open("isostatic")
+    session.rods["AB"].stiffness = 1e300
+    with pytest.raises(FieldError, match="Rod AB: stiffness is 1e\\+300 kN, too large"):
+        session.settle()
+    session.press("k")
+    assert "too large" in session.scenes.active.stages(session)[0][1].heading  # type: ignore[union-attr]
+    session.save(tmp_path / "huge.json")
+    assert main(["run", str(tmp_path / "huge.json"), "--format", "json"]) == 1
+    assert json.loads(capsys.readouterr().out)["status"] == "diverged"
