@@ -131,11 +131,10 @@ class App:
         """Let the viewport and the size of type follow the window, and the display's pixel density."""
         surface = self.window.get_surface()
         self.render.surface = surface
+        size, ratio = surface.get_size(), surface.get_width() / max(self.window.size[0], 1)
         view = self.session.view
-        viewport = Viewport(0, 0, *surface.get_size())
-        if viewport != view.camera.viewport:
-            view.camera.viewport = viewport
-            view.pixel_ratio = surface.get_width() / max(self.window.size[0], 1)
+        if (Viewport(0, 0, *size), ratio) != (view.camera.viewport, view.pixel_ratio):
+            self.session.resize(*size, ratio)
 
     def _follow_title(self) -> None:
         """Let the window's title name the model, with a dot while it has unsaved work."""

@@ -94,11 +94,18 @@ class Desks:
         return self._desks[self._at]
 
     def add(self, model: Model, file: ModelFile) -> None:
-        """Use a new desk with this model; the one in use until now stays if it has unsaved work."""
+        """Use a new desk with this model; the one in use until now stays if it has unsaved work.
+
+        What could be done again here is forgotten, as by any edit. Work on the desks that were gone back from
+        is not: they come before this one now, with all that was done on them.
+        """
         self.current.leave()
-        if not self.current.unsaved:
-            del self._desks[self._at]
-        self._desks.append(Desk(model, self._schedule, self._pull, file))
+        self.current.history.forget_undone()
+        earlier, later = self._desks[: self._at], self._desks[self._at + 1 :]
+        for desk in later:
+            desk.history.redo_all()
+        here = [self.current] if self.current.unsaved else []
+        self._desks = [*earlier, *later, *here, Desk(model, self._schedule, self._pull, file)]
         self._at = len(self._desks) - 1
 
     def can_move(self, by: int) -> bool:

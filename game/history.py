@@ -167,6 +167,15 @@ class History:
         """True if there is something to repeat."""
         return bool(self._undone)
 
+    def redo_all(self) -> None:
+        """Repeat all that was taken back."""
+        while self.redo():
+            pass
+
+    def forget_undone(self) -> None:
+        """What was taken back cannot be repeated any more, as after an edit."""
+        self._undone.clear()
+
     def undo(self) -> str:
         """Take the last entry back; returns what it was, "" if there is none."""
         self.end_run()

@@ -21,16 +21,15 @@ class Live:
         if simulation.halted:
             return
         simulation.advance(0)
-        self.find_pace()
+        self._find_pace()
         due = self.clock.steps(elapsed, simulation.model.clock.step_size)
         before = simulation.compute_seconds
         taken = simulation.advance(due)
         self.clock.took(taken, simulation.compute_seconds - before)
 
-    def find_pace(self) -> float:
-        """The pace (simulated seconds per second shown) that suits the model as it is now."""
+    def _find_pace(self) -> None:
+        """Let the clock follow the pace that suits the model, found once after every edit."""
         revision = self.simulation.armed_revision
         if revision != self._pace_revision:
             self._pace_revision = revision
             self.clock.natural = natural_pace(self.simulation.model)
-        return self.clock.natural

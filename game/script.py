@@ -14,6 +14,9 @@ does one thing:
     {"steps": 128}                              by fixed steps
     {"expect": "rods.AB.axial_force ≈ -28.34 ± 0.01"}   also =, <, >; scene, time, message, energy.…
     {"input": "click", "pixel": [512, 300]}     what a window recorded
+    {"resize": [1280, 800, 2]}                  the window's pixels, and pixels per point
+
+"clipboard" says what was on the clipboard then.
 
 "at": N on a line first lets time pass to the N-th fixed step, as it had in a recording; "window":
 [width, height] sets the size of the view in pixels. Replaying gives the same bits.
@@ -29,7 +32,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
-from components.camera import Viewport
 from components.field import Vector
 from game.overrides import apply_override
 from game.session import Session
@@ -112,12 +114,14 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
     rest = dict(entry)
     if "window" in rest:
         width, height = rest.pop("window")
-        session.view.camera.viewport = Viewport(0, 0, int(width), int(height))
+        session.resize(int(width), int(height))
         session.view.fit(session.model)
     if "at" in rest:
         _advance_to(session, int(rest.pop("at")))
     if "over" in rest:
         session.point(*map(float, rest.pop("over")))
+    if "clipboard" in rest:
+        session.clipboard = rest.pop("clipboard")
     button, pixel = rest.pop("button", "click"), rest.pop("pixel", None)
     if len(rest) > 1:
         raise ValueError(f"a line does one thing, this one says {', '.join(rest)}; split it.")
@@ -151,6 +155,7 @@ _VERBS: dict[str, Callable[[Session, Any], Any]] = {
     "action": lambda session, name: session.act(name),
     "run": _run,
     "steps": lambda session, count: session.run(steps=int(count)),
+    "resize": lambda session, size: session.resize(int(size[0]), int(size[1]), float(size[2])),
 }
 
 
@@ -230,14 +235,22 @@ class Recorder:
         self._file = file
         self._session = session
         self._write({**HEADER, "model": model})
-        viewport = session.view.camera.viewport
-        self._write({"window": [viewport.width, viewport.height]})
-        session.on_press = self._pressed
+        self._resized()
+        self._write({"action": "fit"})
+        session.on_press, session.on_resize = self._pressed, self._resized
+
+    def _resized(self) -> None:
+        view = self._session.view
+        window = view.camera.viewport
+        size = [window.width, window.height, view.pixel_ratio]
+        self._write({"at": self._session.model.clock.steps, "resize": size})
 
     def _pressed(self, key: str, pixel: Vector | None) -> None:
         entry: dict[str, Any] = {"at": self._session.model.clock.steps, "input": key}
         if pixel is not None:
             entry["pixel"] = list(pixel)
+        if key == "ctrl+v":  # what comes from another program is not there when this is played
+            entry["clipboard"] = self._session.clipboard
         self._write(entry)
 
     def _write(self, entry: Mapping[str, Any]) -> None:

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from components.camera import Viewport
 from components.environment import Environment
 from components.field import FieldError, Vector
 from components.load import Load, loads_end
@@ -41,6 +42,7 @@ from systems.edit.pull import Pull
 from systems.edit.refusal import Refusal
 from systems.input.bindings import LIVE, TEXT, action_for, help_lines
 from systems.input.bindings import PANELS as FORMS
+from systems.physics.pace import natural_pace
 
 CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
 ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
@@ -113,6 +115,7 @@ class Session:
         self.notice = ""
         self.window: Window | None = None
         self.on_press: Callable[[str, Vector | None], None] | None = None  # a recorder listens here
+        self.on_resize: Callable[[], None] | None = None  # and here
         self.spares: Spares | None = None  # unsaved work is kept in them, in a window
         self._keyed = ""  # the scene in which a key was pressed last
         self._faults = len(FAULTS)  # those that were told, or are from before
@@ -347,8 +350,8 @@ class Session:
 
     @property
     def pace(self) -> float:
-        """Simulated seconds per second shown that suit the model, whatever a person chose."""
-        return self.desk.live.find_pace()
+        """Simulated seconds per second shown that suit the model as it is now, whatever a person chose."""
+        return natural_pace(self.model)  # found anew: the clock's may be from any earlier frame
 
     def _note_beginning(self) -> None:
         if self.at_beginning:
@@ -465,6 +468,8 @@ class Session:
         elif name is not None:
             if self.on_press is not None:
                 self.on_press(key, pixel)
+            if self.scene == "simulation":
+                self.get_ready()
             self.notice = ""
             self.act(name, pixel)
 
@@ -475,6 +480,13 @@ class Session:
         buttons = self.view.toolbar.buttons(self.view.camera.viewport, self.view.pixel_ratio)
         hit = (button.tool for button in buttons if button.contains(pixel))
         return next((tool.action for tool in hit if tool.enabled and key in CLICKS), None)
+
+    def resize(self, width: int, height: int, pixel_ratio: float = 1.0) -> None:
+        """The window has so many pixels now, and so many for each point."""
+        self.view.camera.viewport, self.view.pixel_ratio = Viewport(0, 0, width, height), pixel_ratio
+        if self.on_resize is not None:
+            self.on_resize()
+        self.scenes.active.resized(self)
 
     def type(self, text: str) -> None:
         """Type text into the selected box of properties, save and load."""
@@ -542,6 +554,12 @@ class Session:
 
     def _phase(self, phase: Phase, frame: Frame) -> None:
         self.schedule.run(phase, self.scene, self.model, frame)
+
+    def get_ready(self) -> None:
+        """Account for edits as if a frame had begun, so that what follows does not depend on when frames do."""
+        self._note_beginning()
+        if not self.simulation.halted:
+            self.simulation.advance(0)
 
     def advance(self, elapsed: float) -> None:
         """Let the time of one frame pass in the model."""

@@ -41,6 +41,9 @@ class Scene:
     def advance(self, session: Session, elapsed: float) -> None:
         """Let the time of one frame pass, where it does."""
 
+    def resized(self, session: Session) -> None:
+        """The window has another size."""
+
     def busy(self, session: Session) -> bool:
         """True while frames change something without a person's doing."""
         return False

@@ -54,6 +54,7 @@ class ForceMethod(Scene):
         return self.guide.hint if self.guide else "Esc back to pause"
 
     def focus(self, session: Session) -> tuple[Model, View]:
+        self.stages(session)  # places the sets
         if self.guide is None:
             return self._blank, self._foot
         return self.guide.sets[0].model, self.guide.sets[0].view

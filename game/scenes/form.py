@@ -27,11 +27,9 @@ class FormScene(Scene):
 
     def __init__(self) -> None:
         self.form = Form("")
-        self._seen_in: Viewport | None = None
 
     def enter(self, session: Session) -> None:
         self.form = self.make_form(session)
-        self._seen_in = None
 
     def exit(self, session: Session) -> None:
         self.form = Form("")
@@ -86,12 +84,10 @@ class FormScene(Scene):
         """Where its boxes and tiles are now."""
         return lay_out(self.form, self.viewport(session), session.view.pixel_ratio)
 
-    def advance(self, session: Session, elapsed: float) -> None:
-        """Keep the selected box in sight when the window changes its size."""
-        viewport = self.viewport(session)
-        if viewport != self._seen_in and self.form.selected is not None:
+    def resized(self, session: Session) -> None:
+        """Keep the selected box in sight."""
+        if self.form.selected is not None:
             self.reveal(session, self.form.selected)
-        self._seen_in = viewport
 
     # --- input -------------------------------------------------------------------------------------
 

@@ -88,6 +88,39 @@ def test_a_recording_replays_to_the_same_bits(tmp_path: Path) -> None:
     assert _bits(replayed) == _bits(session)
 
 
+def test_a_window_that_is_resized_replays_to_the_same_bits(tmp_path: Path) -> None:
+    session = Session.open("isostatic")
+    file = io.StringIO()
+    Recorder(session, file, "isostatic")
+    session.press("p", (100.0, 100.0))
+    session.resize(900, 500, 2.0)
+    session.press("home")
+    session.press("p", (700.0, 100.0))
+    path = tmp_path / "recorded.jsonl"
+    path.write_text(file.getvalue(), encoding="utf-8")
+    replayed = Script(path).open()
+    Script(path).play(replayed)
+    assert replayed.view.camera == session.view.camera
+    assert _bits(replayed) == _bits(session)
+
+
+def test_what_was_pasted_from_another_program_is_in_the_recording(tmp_path: Path) -> None:
+    other = Session.open("pendulum")
+    other.press("ctrl+a")
+    other.press("ctrl+c")
+    session = Session.open("isostatic")
+    file = io.StringIO()
+    Recorder(session, file, "isostatic")
+    session.clipboard = other.clipboard
+    session.press("ctrl+v", (100.0, 100.0))
+    path = tmp_path / "recorded.jsonl"
+    path.write_text(file.getvalue(), encoding="utf-8")
+    replayed = Script(path).open()
+    Script(path).play(replayed)
+    assert replayed.particles.count == session.particles.count > 3
+    assert _bits(replayed) == _bits(session)
+
+
 def _bits(session: Session) -> dict[str, bytes]:
     return {
         f"{table.name}.{field.name}": repr(table.column(field.name).tolist()).encode()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from components.particle import Particle
 from game import Session, models
 from game.force_method import Guide
 from game.scenes.force_method import ForceMethod
@@ -111,3 +112,29 @@ def test_every_part_is_drawn_at_any_size(size: tuple[int, int]) -> None:
             session.click(0.5, 1.0)
         else:
             session.press("k")
+
+
+def test_a_support_without_rods_is_refused() -> None:
+    session = Session.open("hyperstatic")
+    session.model.create(Particle, position=[(3.0, 0.0)], fixed=[(True, False)])
+    session.press("k")
+    session.press("k")
+    session.click(3.0, 0.0)
+    assert guide_of(session).part == 2
+    assert "no rod ends at particle 1" in guide_of(session).message
+
+
+def test_a_click_is_picked_where_it_is_seen_even_before_the_first_picture() -> None:
+    """A recording is played without pictures; the sets are where they were when it was made."""
+    seen, unseen = Session.open("hyperstatic"), Session.open("hyperstatic")
+    for session in (seen, unseen):
+        session.press("k")
+        session.press("k")
+    seen.update_view()
+    stages = seen.stages  # as drawing does
+    assert len(stages) > 3
+    pixel = tuple(guide_of(seen).sets[0].view.camera.to_pixels((0.5, 1.0)).tolist())
+    for session in (seen, unseen):
+        session.press("click", pixel)
+        assert guide_of(session).unknown is not None
+        assert guide_of(session).unknown.name == "BD"

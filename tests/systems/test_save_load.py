@@ -315,6 +315,31 @@ def test_unsaved_work_is_there_again_after_undo(session: Session) -> None:
     assert not session.redo()
 
 
+def test_opening_another_model_forgets_what_could_be_done_again_here(session: Session) -> None:
+    session.rods["AB"].stiffness = 5.0
+    session.rods["BC"].stiffness = 6.0
+    session.undo()
+    session.open_here("tower")
+    session.undo()
+    assert session.rods["AB"].stiffness == 5.0
+    session.redo()  # leads to the tower, not to what was undone before it was opened
+    assert session.model.title != "Isostatic triangle"
+    assert not session.redo()
+
+
+def test_work_that_was_gone_back_from_is_kept_when_another_model_is_opened(session: Session) -> None:
+    session.rods["AB"].stiffness = 5.0
+    session.open_here("hyperstatic")
+    session.rods["AC"].stiffness = 6.0
+    for _ in range(2):
+        session.undo()
+    session.open_here("tower")
+    seen = [desk.model for desk in session.desks]
+    assert [len(desk.model.rods) for desk in session.desks][:2] == [6, 3]
+    assert seen[0].rods["AC"].stiffness == 6.0
+    assert seen[1].rods["AB"].stiffness == 5.0
+
+
 def test_saved_work_is_not_kept_twice(session: Session) -> None:
     saved_as(session, "a")
     session.open_here("isostatic")

@@ -1,0 +1,246 @@
+"""A person who does anything, in every scene: `python -m tests.properties.fuzz --actions 10000 --seed 1`.
+
+What they do is recorded like any session, so that a failure can be played again by `pinjoint play`. After
+every action the models are sound; from time to time a file is saved and read, and the picture composed. At
+the end, undoing everything leads to the start bit for bit, doing it all again to the end, and the recording
+played in another session to the same end.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import random
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from components.field import Vector
+from components.view import drawn_positions
+from game import Session, library, models
+from game.desk import Desk
+from game.script import EMPTY, Recorder, Script
+from systems.input.bindings import BINDINGS, LIVE, TEXT
+from systems.render.picture import compose
+from systems.render.theme import load_theme
+from tests.properties.soundness import Print, check_sound, contents
+
+START = ("isostatic", "hyperstatic", "collision_i", "hyperstatic_yield", EMPTY)
+SIZES = ((640, 480), (1000, 720), (320, 240), (1920, 1080))
+TEXTS = (
+    "0",
+    "1",
+    "-1",
+    "0.5",
+    "100",
+    "200000",
+    "1e3",
+    "1e-9",
+    "1e300",
+    "-",
+    ".",
+    "yes",
+    "a b",
+    "é/π",
+    "rod 1",
+    "",
+)
+MOUSE = ("click", "click", "ctrl+click", "drag", "ctrl+drag", "wheel up", "wheel down", "drag middle")
+OFTEN = {  # keys that are pressed more often than others, so that every scene is seen as much as any
+    "simulation": ("l", "p", "i", "drag", "space"),
+    "pause": ("p", "p", "l", "l", "l", "c", "f", "v", "k", "k", "k", "return", "space", "space", "e", "h"),
+    "properties": ("escape", "tab", "tab", "return", "up", "down"),
+    "save": ("escape", "return", "return"),
+    "load": ("escape", "escape", "down", "return", "return"),
+    "force method": ("k", "k", "k", "k", "click", "click", "click", "x", "y", "i"),
+}
+FRAMES = (0.0, 1.0 / 60.0, 1.0 / 60.0, 0.1)
+MOST_ELEMENTS = 60  # beyond this the person deletes before going on, so that everything stays quick
+
+
+class Fuzz:
+    """One session of random actions, from a seed: the same actions every time."""
+
+    def __init__(self, seed: int, folder: Path) -> None:
+        self.random = random.Random(seed)
+        self.folder = folder
+        os.environ[library.DATA_VARIABLE] = str(folder / f"data-{seed}")
+        self.record = folder / f"fuzz-{seed}.jsonl"
+        source: Any = self.random.choice(START)
+        self.session = Session.open(source)
+        self._file = self.record.open("w", encoding="utf-8")
+        self.recorder = Recorder(self.session, self._file, source)
+        self.starts: WeakKeyDictionary[Desk, Print] = WeakKeyDictionary()
+        self._note_desk()
+
+    def _note_desk(self) -> None:
+        desk = self.session.desk
+        if desk not in self.starts:
+            self.starts[desk] = contents(desk.model)
+
+    # --- doing ---------------------------------------------------------------------------------------
+
+    def act(self) -> None:
+        """One action of the person."""
+        session, chance = self.session, self.random.random()
+        if session.model.particles.count + session.model.rods.count > MOST_ELEMENTS and session.scene in LIVE:
+            session.press("ctrl+a", (0.0, 0.0))
+            session.press("delete", (0.0, 0.0))
+        elif chance < 0.40:
+            known = [binding.key for binding in BINDINGS if session.scene in binding.scenes]
+            self._press(self.random.choice([*known, *2 * OFTEN[session.scene]]))
+        elif chance < 0.45:
+            self._press(self.random.choice(BINDINGS).key)
+        elif chance < 0.65:
+            self._press(self.random.choice(MOUSE))
+        elif chance < 0.80:
+            session.press(TEXT + self.random.choice(TEXTS))
+        elif chance < 0.97:
+            session.frame(self.random.choice(FRAMES))
+        else:
+            self._resize()
+        self._note_desk()
+
+    def _press(self, key: str) -> None:
+        place = self._place()
+        if key == "drag middle":
+            place = (self.random.uniform(-300.0, 300.0), self.random.uniform(-300.0, 300.0))
+        else:
+            self.session.view.pointer = place
+        self.session.press(key, place)
+        if key.endswith("drag"):
+            for _ in range(self.random.randrange(3)):
+                self.session.press("drag to", self._place())
+            if self.random.random() < 0.9:
+                self.session.press("drop", self._place())
+
+    def _place(self) -> Vector:
+        """A pixel: mostly an element or near one."""
+        model, view = self.session.focus
+        viewport = self.session.view.camera.viewport
+        pixels = view.camera.to_pixels(drawn_positions(model)) if model.particles.count else np.empty((0, 2))
+        near = pixels[np.isfinite(pixels).all(axis=1) & (np.abs(pixels) < 1e6).all(axis=1)]
+        if not len(near) or self.random.random() < 0.4:
+            return self.random.uniform(0, viewport.width), self.random.uniform(0, viewport.height)
+        one, other = near[self.random.randrange(len(near))], near[self.random.randrange(len(near))]
+        x, y = (one if self.random.random() < 0.7 else (one + other) / 2.0).tolist()
+        return x + self.random.randint(-6, 6), y + self.random.randint(-6, 6)
+
+    def _resize(self) -> None:
+        self.session.resize(*self.random.choice(SIZES), self.random.choice((1.0, 1.0, 2.0)))
+
+    # --- checking ------------------------------------------------------------------------------------
+
+    def check(self) -> None:
+        """What holds after every action."""
+        for desk in self.session.desks:
+            check_sound(desk.model)
+        camera = self.session.view.camera
+        assert np.isfinite([*camera.centre, camera.scale]).all()
+
+    def check_file(self) -> None:
+        """The model as it is now can be saved, and what is read is what was written."""
+        path = self.folder / "saved.json"
+        models.save(self.session.model, path)
+        read = contents(models.load(path))
+        here = contents(self.session.model)
+        for name, column in here.items():
+            if "." in name:
+                assert read[name] == column, name
+
+    def check_picture(self) -> None:
+        """What is shown can be drawn."""
+        self.session.update_view()
+        for shown, view in self.session.stages:
+            compose(shown, view, load_theme(self.session.view.theme))
+
+    def run(self, actions: int) -> None:
+        """Act and check, then go through the whole log."""
+        for number in range(actions):
+            self.act()
+            self.check()
+            if number % 50 == 0:
+                self.check_file()
+            if number % 10 == 0:
+                self.check_picture()
+        self._come_to_pause()
+        end = contents(self.session.model)
+        self._file.close()
+        self.check_replay(end)
+        self.check_log()
+
+    def _come_to_pause(self) -> None:
+        session = self.session
+        if session.gesture is not None:
+            session.press("drop")
+        for _ in range(4):
+            if session.scene == "simulation":
+                session.press("space")
+            elif session.scene != "pause":
+                session.press("escape")
+        assert session.scene == "pause", session.scene
+
+    def check_log(self) -> None:
+        """Undo all = start, redo all = end, for every model that is open."""
+        session = self.session
+        while session.redo():
+            pass
+        end, entries = contents(session.model), 0
+        while True:
+            if not session.history.can_undo:
+                assert _same(contents(session.model), self.starts[session.desk])
+            if not session.undo():
+                break
+            entries += 1
+            check_sound(session.model)
+        for _ in range(entries):
+            assert session.redo()
+        assert _same(contents(session.model), end)
+        assert not session.redo()
+
+    def check_replay(self, end: Print) -> None:
+        """The recording, played in another session, ends with the same bits."""
+        os.environ[library.DATA_VARIABLE] += "-replayed"
+        script = Script(self.record)
+        session = script.open()
+        assert script.play(session) == []
+        again = contents(session.model)
+        for name, column in end.items():
+            if "." in name:
+                assert again[name] == column, name
+
+
+def _same(one: Print, other: Print) -> bool:
+    """Compares with a message that names what differs."""
+    for name in one:
+        assert one[name] == other[name], name
+    return one.keys() == other.keys()
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Fuzz in sessions of some hundred actions each."""
+    parser = argparse.ArgumentParser(prog="python -m tests.properties.fuzz", description=__doc__)
+    parser.add_argument("--actions", type=int, default=10_000, help="in all")
+    parser.add_argument("--each", type=int, default=500, help="actions in one session")
+    parser.add_argument("--seed", type=int, default=1, help="of the first session")
+    options = parser.parse_args(words)
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        for seed in range(options.seed, options.seed + max(options.actions // options.each, 1)):
+            fuzz = Fuzz(seed, Path(folder))
+            try:
+                fuzz.run(options.each)
+            except BaseException:
+                kept = Path(tempfile.gettempdir()) / fuzz.record.name
+                kept.write_bytes(fuzz.record.read_bytes())
+                print(f"seed {seed} failed; what was done: {kept}")
+                raise
+            print(f"seed {seed}: {options.each} actions, sound", flush=True)
+
+
+if __name__ == "__main__":
+    main()
