@@ -1,0 +1,205 @@
+"""check_system: one line in a test that runs any system through what is expected of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from components.field import Column, Role, same
+from components.model import Model
+from game import models
+from game.catalogue import step_systems
+from game.program_binding import ProgramError, bind
+from game.program_rows import KernelRows
+from game.registry import SYSTEMS
+from game.schedule import Schedule, ScheduleError
+from game.session import Frame, Session
+from game.simulation import Simulation
+from systems.base import Driver, StepSystem, StopReason, System
+
+STEPS = 40  # that step systems are run for
+FRAMES = 3  # that frame systems are run for
+FRAME = 1.0 / 60.0  # s
+
+# Supports, springs that yield, dampers, drag, a load that varies, and a free body.
+EVERYTHING: Mapping[str, Any] = {
+    "format": "pinjoint model",
+    "version": 1,
+    "environment": {"acceleration": [0.0, -9.81], "drag": 0.1},
+    "particles": [
+        {"name": "A", "position": [0.0, 0.0], "fixed": [True, True]},
+        {"name": "B", "position": [1.0, 0.0], "fixed": [False, True]},
+        {"name": "C", "position": [0.6, 0.8], "force": [3.0, -20.0]},
+        {"name": "D", "position": [5.0, 5.0], "velocity": [1.0, -2.0]},
+    ],
+    "rods": [
+        {"name": "AB", "between": ["A", "B"]},
+        {"name": "AC", "between": ["A", "C"], "tensile_strength": 10.0, "compressive_strength": 12.0},
+        {"name": "BC", "between": ["B", "C"], "damping": 0.0, "plastic_strain": 1e-5},
+    ],
+    "loads": [{"on": "C", "force": [1.0, 0.0], "history": {"kind": "ramp", "duration": 0.5}}],
+}
+BODIES: Mapping[str, Any] = {
+    "format": "pinjoint model",
+    "version": 1,
+    "particles": [
+        {"name": "A", "position": [0.0, 0.0], "velocity": [1.0, 0.0]},
+        {"name": "B", "position": [3.0, 0.0], "mass": 2.0},
+    ],
+}
+MODELS: tuple[Any, ...] = (EVERYTHING, "isostatic", BODIES)
+
+Source = Any  # a model's name or document, or a function that returns a Model
+
+
+class SystemCheckError(AssertionError):
+    """A system that does not do what it declares; the message says what it did, on which model."""
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What a system was found to be: on how many models it was needed, and what it costs.
+
+    cost: ns for one element in one step (a law, a commit) or one frame.
+    """
+
+    name: str
+    needed: int
+    cost: float
+
+
+def check_system(system: Callable[[], System], models: Iterable[Source] = MODELS) -> Checked:
+    """Run a system, given by its class, on several models. Raises SystemCheckError, which names what is wrong.
+
+    It may change only what it declares (all else stays bit-identical), must give finite numbers, the same
+    ones every time and in whatever order systems are registered, and must be needed by one of the models.
+
+    >>> from systems.physics.system import Drag
+    >>> check_system(Drag).name
+    'physics.drag'
+    """
+    needed = [source for source in models if _is_needed(system, source)]
+    name = system().name
+    if not needed:
+        raise SystemCheckError(
+            f"No model needs {name}; give check_system models=[…] for which needs() is true."
+        )
+    check = _check_steps if isinstance(system(), StepSystem) else _check_frames
+    cost = max(check(system, source) for source in needed)
+    return Checked(name, len(needed), cost)
+
+
+def _model(source: Source) -> Model:
+    made: Model = source() if callable(source) else models.load(source)
+    return made
+
+
+def _is_needed(system: Callable[[], System], source: Source) -> bool:
+    """Whether a model needs the system; asking changes nothing and always gets the same answer."""
+    model = _model(source)
+    before = _columns(model)
+    answers = {bool(system().needs(model)) for _ in range(2)}
+    _compare(system().name, before, _columns(model), set(), "asking it needs(model) changed")
+    if len(answers) > 1:
+        raise SystemCheckError(f"{system().name} answers needs(model) now with yes, now with no.")
+    return answers.pop()
+
+
+def _columns(model: Model) -> dict[str, Column]:
+    """Copies of what a person or time made."""
+    return {
+        f"{table.name}.{field.name}": table.column(field.name).copy()
+        for table in model.tables.values()
+        for field in table.fields_in(Role.DOCUMENT, Role.STATE)
+    }
+
+
+def _compare(
+    name: str, before: Mapping[str, Column], after: Mapping[str, Column], allowed: set[str], did: str
+) -> None:
+    for column, old in before.items():
+        if column in allowed or column.partition(".")[0] in allowed or same(old, after[column]):
+            continue
+        raise SystemCheckError(f"{name}: {did} {column}, which it does not declare in writes or adds.")
+
+
+# --- laws, commits and drivers ---------------------------------------------------------------------------
+
+
+def _all_with(system: System) -> list[System]:
+    """The systems of the program, this one among them once."""
+    others = [*step_systems(), *(make() for make in SYSTEMS)]
+    return [*(other for other in others if other.name != system.name), system]
+
+
+def _check_steps(system: Callable[[], System], source: Source) -> float:
+    made = system()
+    assert isinstance(made, StepSystem)
+    first = _run(made, source, backwards=False)
+    before, after = _columns(_model(source)), _columns(first)
+    by_program = {"particles.displacement", "particles.velocity", "clock", "rods.plastic_strain"}
+    _compare(made.name, before, after, by_program | set(made.writes) | set(made.adds), "running it changed")
+    _check_finite(made.name, first)
+    again = _columns(_run(system(), source, backwards=False))
+    _check_alike(made.name, after, again, "run twice, it gives different")
+    turned = _columns(_run(system(), source, backwards=True))
+    _check_alike(made.name, after, turned, "registered in another order, it gives different")
+    return 0.0 if isinstance(made, Driver) else 1e9 * KernelRows(first).seconds_per_call(bind(made, first))
+
+
+def _run(system: System, source: Source, *, backwards: bool) -> Model:
+    model = _model(source)
+    systems = _all_with(system)
+    try:
+        simulation = Simulation(model, Schedule(systems[::-1] if backwards else systems))
+        simulation.advance(STEPS)
+    except (ScheduleError, ProgramError) as error:
+        raise SystemCheckError(str(error)) from None
+    if simulation.reason is StopReason.DIVERGED:
+        raise SystemCheckError(f"{system.name}: a run with it does not stay finite. {simulation.message}")
+    return model
+
+
+def _check_finite(name: str, model: Model) -> None:
+    for column, values in _columns(model).items():
+        if model.tables[column.partition(".")[0]].fields[column.partition(".")[2]].role is not Role.STATE:
+            continue
+        if values.dtype == np.float64 and not np.isfinite(values).all():
+            raise SystemCheckError(f"{name}: after {STEPS} steps with it, {column} is not finite.")
+
+
+def _check_alike(name: str, one: Mapping[str, Column], other: Mapping[str, Column], did: str) -> None:
+    for column, values in one.items():
+        if not same(values, other[column]):
+            raise SystemCheckError(f"{name}: {did} {column}; nothing may depend on chance or on the order.")
+
+
+# --- frame systems -----------------------------------------------------------------------------------------
+
+
+def _check_frames(system: Callable[[], System], source: Source) -> float:
+    made, session = system(), Session(_model(source))
+    before = _columns(session.model)
+    started = time.perf_counter()
+    _frames(made, session)
+    seconds = time.perf_counter() - started
+    after = _columns(session.model)
+    _compare(made.name, before, after, set(made.writes) | set(made.adds), "a frame of it changed")
+    _check_finite(made.name, session.model)
+    other = Session(_model(source))
+    _frames(system(), other)
+    _check_alike(made.name, after, _columns(other.model), "run twice, it gives different")
+    return 1e9 * seconds / FRAMES / max(session.particles.count + session.rods.count, 1)
+
+
+def _frames(system: System, session: Session) -> None:
+    for _ in range(FRAMES):
+        session.model.activate()
+        try:
+            system.process(Frame(session, FRAME))
+        except Exception as error:
+            raise SystemCheckError(f"{system.name} raises {type(error).__name__}: {error}") from error

@@ -1,0 +1,147 @@
+"""check_system finds what a system does beside what it declares; all of ours pass."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from components import Model
+from game import SystemCheckError, check_system
+from game.catalogue import step_systems
+from game.checks import BODIES, EVERYTHING
+from game.registry import SYSTEMS
+from systems.base import Law, Phase, StepSystem, System
+from systems.edit.hover import Hover
+from systems.kernels import compiled
+
+OURS = {system.name: system for system in [*step_systems(), *(make() for make in SYSTEMS)]}
+ELASTIC = {**EVERYTHING, "rods": [{"name": "AC", "between": ["A", "C"]}, {"name": "BC", "between": ["B", "C"]}]}
+
+
+def again(system: StepSystem) -> System:
+    return system
+
+
+@pytest.mark.parametrize("name", [n for n in OURS if n.startswith(("physics", "plasticity", "loads.ramp"))])
+def test_our_step_systems_pass(name: str) -> None:
+    source = ELASTIC if name == "physics.elasticity" else EVERYTHING
+    checked = check_system(partial(again, OURS[name]), [source])
+    assert checked.needed == 1
+    assert 0.0 < checked.cost < 1e6
+
+
+def test_our_frame_systems_pass() -> None:
+    assert check_system(Hover, [EVERYTHING, BODIES]).needed == 2
+
+
+@compiled
+def nothing(particles_mass):
+    return 0.0 * particles_mass, 0.0
+
+
+@compiled
+def root(particles_position):
+    return (particles_position[0] - 1.0) ** 0.5, 0.0
+
+
+class Still(Law):
+    name = "test.still"
+    each = "particles"
+    kernel: ClassVar[str | Callable[..., Any]] = nothing
+    reads = ("particles.mass",)
+
+
+class Root(Still):
+    kernel = root
+    reads = ("particles.position",)
+
+
+class Meddling(Still):
+    def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
+        model.particles[0].force = (9.0, 9.0)
+        return {}
+
+
+class Asking(Still):
+    def needs(self, model: Model) -> bool:
+        model.particles[0].force = (9.0, 9.0)
+        return True
+
+
+class Undeclared(Still):
+    reads = ()
+
+
+class Unneeded(Still):
+    def needs(self, model: Model) -> bool:
+        return False
+
+
+class Frames(System):
+    name = "test.frames"
+    phase = Phase.EDIT
+    writes: ClassVar[tuple[str, ...]] = ("particles.velocity",)
+
+    def process(self, frame: Any) -> None:
+        frame.session.model.writable("particles.velocity")[:, 0] += 1.0
+
+
+class Silent(Frames):
+    writes = ()
+
+
+class Random(Frames):
+    def process(self, frame: Any) -> None:
+        velocity = frame.session.model.writable("particles.velocity")
+        velocity[:, 0] += np.random.default_rng().random()
+
+
+class Endless(Frames):
+    def process(self, frame: Any) -> None:
+        frame.session.model.writable("particles.velocity")[:] = np.inf
+
+
+class Raising(Frames):
+    def process(self, frame: Any) -> None:
+        raise KeyError("gone")
+
+
+@pytest.mark.parametrize("system", [Still, Frames])
+def test_a_good_system_passes(system: type[System]) -> None:
+    assert check_system(system, [BODIES]).needed == 1
+
+
+@pytest.mark.parametrize(
+    ("system", "said"),
+    [
+        (Root, "does not stay finite"),
+        (Meddling, "running it changed particles.force"),
+        (Asking, r"asking it needs\(model\) changed particles.force"),
+        (Undeclared, "does not declare that it reads 'particles.mass'"),
+        (Unneeded, "No model needs test.still"),
+        (Silent, "changed particles.velocity, which it does not declare"),
+        (Random, "run twice, it gives different particles.velocity"),
+        (Endless, "particles.velocity is not finite"),
+        (Raising, "raises KeyError"),
+    ],
+)
+def test_a_bad_system_is_found_out(system: type[System], said: str) -> None:
+    with pytest.raises(SystemCheckError, match=said):
+        check_system(system, [BODIES])
+
+
+def test_the_order_of_registration_must_not_matter() -> None:
+    """Two laws that replace the axial force, unordered: which comes last decides."""
+
+    class Tight(Law):
+        name = "test.tight"
+        kernel = compiled(lambda axial_force: axial_force + 100.0)
+        adds = ("rods.axial_force",)
+
+    with pytest.raises(SystemCheckError, match="registered in another order"):
+        check_system(Tight, [EVERYTHING])
