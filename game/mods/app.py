@@ -20,7 +20,7 @@ from game.mods.mod import Mod, ModError
 from game.scenes import Scene, all_scenes
 from systems.base import Driver, System
 from systems.edit.refusal import Refusal
-from systems.input.bindings import LIVE, Binding, add_binding, remove_bindings
+from systems.input.bindings import LIVE, Binding, add_binding, remove_binding
 from systems.loads.system import VaryingLoads
 from systems.render.picture import ABOVE, BELOW, Layer
 
@@ -136,12 +136,13 @@ class App:
         """
         if name not in ACTIONS:
             raise ModError(f"The key '{key}' is for an action '{name}' that is not registered.")
-        for other in add_binding(Binding(key, name, tuple(scenes), title or name)):
+        binding = Binding(key, name, tuple(scenes), title or name)
+        self._undo.append(lambda: remove_binding(binding))
+        for other in add_binding(binding):
             self._mod.notes.append(
                 f"The key '{key}' for {name} does '{other.action}' already in {', '.join(other.scenes)}; to"
                 f' change that: {{"keys": {{"{other.scenes[0]}": {{"{key}": "{name}"}}}}}} in the settings file.'
             )
-        self._undo.append(lambda: remove_bindings(name))
 
     def command(self, name: str, run: Callable[[list[str]], int], about: str = "") -> None:
         """Add `pinjoint <name> …`: `run` gets the words after it and returns the exit status."""

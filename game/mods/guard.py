@@ -51,7 +51,7 @@ def guarded_system(mod: Mod, system: System) -> System:
     return system
 
 
-_METHODS = ("enter", "exit", "advance", "busy", "focus", "type", "stages", "hint")
+_METHODS = tuple(name for name, method in vars(Scene).items() if callable(method) and name[0] != "_")
 
 
 def guarded_scene(mod: Mod, kind: type[Scene]) -> type[Scene]:

@@ -28,7 +28,7 @@ class Scene:
     """
 
     name: ClassVar[str]
-    heading: ClassVar[str] = ""
+    heading: str = ""
     targets: ClassVar[tuple[str, ...]] = ("pause",)
     sources: ClassVar[tuple[str, ...]] = ()
 

@@ -153,9 +153,10 @@ def add_binding(binding: Binding) -> list[Binding]:
     return list(dict.fromkeys(taken.values()))
 
 
-def remove_bindings(action: str) -> None:
-    """Let no key perform an action any more."""
-    BINDINGS[:] = [binding for binding in BINDINGS if binding.action != action]
+def remove_binding(binding: Binding) -> None:
+    """Take back what `add_binding` did."""
+    same = replace(binding, scenes=())
+    BINDINGS[:] = [other for other in BINDINGS if replace(other, scenes=()) != same]
     _index()
 
 

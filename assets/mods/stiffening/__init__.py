@@ -1,0 +1,40 @@
+"""Stiffening: rods whose axial force is N = EA (ε + β ε³), β being a fact of each rod."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from numba import njit
+
+from components import Component, Field, Model, Rod
+from systems.base import Law
+
+if TYPE_CHECKING:
+    from game.mods import App
+
+
+class Material(Component):
+    of = Rod
+    cubic: Field[float] = Field(title="cubic stiffness", minimum=0.0, doc="β in N = EA (ε + β ε³).")
+
+
+@njit(error_model="numpy")
+def cubic(elongation, rods_rest_length, rods_stiffness, rods_stiffening_cubic):
+    """What comes on top of EA ε (kN)."""
+    strain = elongation / rods_rest_length
+    return rods_stiffness * rods_stiffening_cubic * strain * strain * strain
+
+
+class Cubic(Law):
+    name = "stiffening.cubic"
+    kernel = cubic
+    reads = ("rods.rest_length", "rods.stiffness", "rods.stiffening_cubic")
+    adds = ("rods.axial_force",)
+
+    def needs(self, model: Model) -> bool:
+        return bool(model.rods.stiffening_cubic.any())
+
+
+def plugin(app: App) -> None:
+    app.component(Material)
+    app.system(Cubic)

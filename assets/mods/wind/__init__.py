@@ -1,0 +1,59 @@
+"""Wind: air resistance ½ ρ A |u − v| (u − v) on every particle with a sail area A."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from numba import njit
+
+from components import Component, Environment, Field, Model, Particle, Readout, Vector
+from systems.base import Law
+
+if TYPE_CHECKING:
+    from game import Session
+    from game.mods import App
+
+
+DENSITY = 1.2  # kg/m³, of air
+
+
+class Air(Component):
+    of = Environment
+    velocity: Field[Vector] = Field("m/s", shape=(2,), title="wind velocity", doc="Of the air, everywhere.")
+
+
+class Sail(Component):
+    of = Particle
+    area: Field[float] = Field("m²", minimum=0.0, title="sail area", doc="Drag coefficient × area in the wind.")
+
+
+@njit(error_model="numpy")
+def push(environment_wind_velocity, particles_wind_area, particles_velocity):
+    x = environment_wind_velocity[0] - particles_velocity[0]
+    y = environment_wind_velocity[1] - particles_velocity[1]
+    factor = 0.0005 * DENSITY * particles_wind_area * (x * x + y * y) ** 0.5  # N → kN
+    return factor * x, factor * y
+
+
+class Push(Law):
+    name = "wind.push"
+    each = "particles"
+    kernel = push
+    reads = ("environment.wind_velocity", "particles.wind_area", "particles.velocity")
+    adds = ("particles.force",)
+
+    def needs(self, model: Model) -> bool:
+        return bool(model.particles.wind_area.any())
+
+
+def panel(session: Session) -> Readout:
+    speed = math.hypot(*session.environment.wind_velocity)
+    return Readout("Wind", (("speed", f"{speed:.3g} m/s"),))
+
+
+def plugin(app: App) -> None:
+    app.component(Air)
+    app.component(Sail)
+    app.system(Push)
+    app.panel(panel)

@@ -1,0 +1,100 @@
+"""The mods in assets/mods do what they say, and are short."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from game import Session, check_system, mods
+
+FOLDER = Path(__file__).parents[2] / "assets" / "mods"
+NAMES = sorted(path.parent.name for path in FOLDER.glob("*/mod.toml"))
+BALL: dict[str, Any] = {
+    "format": "pinjoint model",
+    "version": 1,
+    "particles": [{"name": "A", "position": [0, 0]}],
+}
+
+HANGING = {
+    "format": "pinjoint model",
+    "version": 1,
+    "particles": [
+        {"name": "A", "position": [0, 0], "fixed": [True, True]},
+        {"name": "B", "position": [1, 0], "fixed": [False, True], "force": [15.0, 0.0], "mass": 100.0},
+    ],
+    "rods": [
+        {
+            "name": "AB",
+            "between": ["A", "B"],
+            "stiffness": 100.0,
+            "damping": 5.0,
+            "components": {"stiffening.Material": {"cubic": 50.0}},
+        }
+    ],
+}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_example_loads_and_has_less_than_60_lines(name: str, unloaded: None) -> None:
+    (mod,) = mods.load([FOLDER / name])
+    assert (mod.name, mod.problem, mod.notes) == (name, "", [])
+    assert mod.description
+    assert len((FOLDER / name / "__init__.py").read_text(encoding="utf-8").splitlines()) < 60
+
+
+def test_wind_accelerates_a_ball_towards_its_speed(unloaded: None) -> None:
+    """m dv/dt = k (u − v)²  with k = ρ A / 2:  v = u − u / (1 + k u t / m)."""
+    session = Session.open(BALL, mods=[FOLDER / "wind"])
+    ball, air = session.particles["A"], session.environment
+    ball.wind_area = 0.5  # type: ignore[attr-defined]
+    air.wind_velocity = (12.0, 0.0)  # type: ignore[attr-defined]
+    session.settings.time_step = 1e-4
+    session.run(time=0.4)
+    k = 0.5 * 1.2 * 0.5
+    assert ball.velocity[0] == pytest.approx(12.0 - 12.0 / (1.0 + k * 12.0 * 0.4), rel=1e-7)
+    assert ball.velocity[1] == 0.0
+    assert abs(session.energy.imbalance) < 1e-4 * session.energy.kinetic
+    session.update_view()
+    assert session.view.readouts[0].rows == (("speed", "12 m/s"),)
+
+
+def test_wind_passes_the_check_of_systems(unloaded: None) -> None:
+    mods.load([FOLDER / "wind"])
+    from wind import Push  # type: ignore[import-not-found]  # a mod that was just loaded
+
+    document = {**BALL, "particles": [{**BALL["particles"][0], "components": {"wind.Sail": {"area": 1.0}}}]}
+    assert check_system(Push, [document]).needed == 1
+
+
+def test_a_stiffening_rod_rests_where_its_law_says(unloaded: None) -> None:
+    """F = EA (ε + β ε³): with EA = 100 kN and β = 50, a strain of 0.1 takes 15 kN."""
+    session = Session.open(HANGING, mods=[FOLDER / "stiffening"])
+    assert session.run(until="rest") == "at rest"
+    assert session.rods["AB"].strain == pytest.approx(0.1, rel=1e-7)
+    assert session.rods["AB"].axial_force == pytest.approx(15.0, rel=1e-7)
+    session.particles["B"].force = (0.0, 0.0)
+    assert session.run(until="rest") == "at rest"
+    assert session.rods["AB"].strain == pytest.approx(0.0, abs=1e-8)
+
+
+def test_the_count_down_has_keys_of_its_own_and_ends_in_the_simulation(unloaded: None) -> None:
+    session = Session.open("pendulum", mods=[FOLDER / "countdown"])
+    session.press("n")
+    assert session.scene == "count down"
+    session.frame(1.0)
+    assert session.view.heading == "2 …"
+    session.press("+")
+    session.frame(0.5)
+    assert session.view.heading == "3 …"
+    session.press("escape")
+    assert session.scene == "pause"
+    session.press("n")
+    session.press("space")
+    assert session.scene == "simulation"
+    session.press("escape")
+    session.press("n")
+    for _ in range(4):
+        session.frame(1.0)
+    assert session.scene == "simulation"
