@@ -6,6 +6,9 @@ Symbols: ω = √(k/m) circular frequency, ζ = damping ratio c/(2mω), ω_d = �
 import math
 from collections.abc import Callable
 
+import numpy as np
+from scipy.optimize import root
+
 # Vibration of one degree of freedom: m u'' + c u' + k u = F(t)
 
 
@@ -217,6 +220,30 @@ def von_mises_bifurcation(height: float, half_span: float, stiffness: float) -> 
     return von_mises_force(deflection, height, half_span, stiffness)
 
 
+# Chain of equal elastic rods between two fixed points
+
+
+def hanging_chain(
+    rods: int, span: tuple[float, float], rest_length: float, stiffness: float, weight: float
+) -> np.ndarray:
+    """Return the nodes (rods + 1, 2) [m] of a chain from (0, 0) to `span`, `weight` [kN] on each inner node.
+
+    The horizontal force H is the same in all rods, the vertical one V grows by the weight from node to node:
+    rod k carries N = √(H² + V²) along (H, V)/N, with length L₀ (1 + N/EA). H and V of the first rod are such
+    that the chain ends at `span`.
+    """
+
+    def nodes(pull: np.ndarray) -> np.ndarray:
+        force = np.column_stack([np.full(rods, pull[0]), pull[1] + weight * np.arange(rods)])
+        size = np.hypot(*force.T)[:, None]
+        steps = force / size * rest_length * (1 + size / stiffness)
+        return np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
+
+    total = weight * (rods - 1)
+    found = root(lambda pull: nodes(pull)[-1] - span, np.array([total, -total / 2]), tol=1e-15)
+    return nodes(found.x)
+
+
 # Three-bar truss: a vertical bar and two at 45°, equal area and strength S (force per bar), loaded down
 
 
@@ -233,12 +260,15 @@ def three_bar_collapse(strength: float) -> float:
     return strength * (1 + math.sqrt(2))
 
 
-def three_bar_residual(strength: float) -> tuple[float, float]:
-    """Return the forces (vertical, inclined) after unloading from collapse: S (1 − √2), S (1 − √½).
+def three_bar_residual(strength: float, load: float | None = None) -> tuple[float, float]:
+    """Return the forces (vertical, inclined) after unloading from P (default: collapse), first yield < P.
 
-    Elastic unloading takes P/P_yield = √2 times the forces at first yield, S and S/2, from S and S.
+    Under P the vertical bar carries S, the others (P − S)/√2. Elastic unloading takes P/P_yield times the
+    forces at first yield, S and S/2. From collapse S (1 − √2) and S (1 − √½) are left.
     """
-    return strength * (1 - math.sqrt(2)), strength * (1 - math.sqrt(0.5))
+    load = three_bar_collapse(strength) if load is None else load
+    share = load / three_bar_first_yield(strength)
+    return strength * (1 - share), (load - strength) / math.sqrt(2) - strength / 2 * share
 
 
 def _bisect(function: Callable[[float], float], low: float, high: float) -> float:
