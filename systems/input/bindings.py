@@ -155,8 +155,11 @@ def add_binding(binding: Binding) -> list[Binding]:
 
 def remove_binding(binding: Binding) -> None:
     """Take back what `add_binding` did."""
-    same = replace(binding, scenes=())
-    BINDINGS[:] = [other for other in BINDINGS if replace(other, scenes=()) != same]
+    BINDINGS[:] = [
+        other
+        for other in BINDINGS
+        if replace(other, scenes=binding.scenes) != binding or not set(other.scenes) <= set(binding.scenes)
+    ]
     _index()
 
 

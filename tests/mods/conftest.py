@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from game import mods
+from systems.input.bindings import BINDINGS
 
 Write = Callable[..., Path]
 
@@ -18,10 +19,11 @@ def unloaded(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
     """A program without a person's files; the mods that a test loads are unloaded after it."""
     monkeypatch.setenv("PINJOINT_DATA", str(tmp_path / "data"))
     monkeypatch.setenv("PINJOINT_CONFIG", str(tmp_path / "config"))
-    before = len(mods.MODS)
+    before, keys = len(mods.MODS), list(BINDINGS)
     yield
     mods.unload(mods.MODS[before:])
     mods.FAULTS.clear()
+    assert keys == BINDINGS
 
 
 @pytest.fixture
