@@ -21,6 +21,8 @@ from game.overrides import OverrideError, apply_override
 from game.report import FOUND, Analysis
 from game.results import as_csv, as_json, as_table
 from game.session import DEFAULT_LIMIT, Session
+from game.sweeps import SweepError, sweep
+from game.sweeps.variation import FORMS
 from systems.render.theme import theme_names
 
 ANSWERED, NOT_ANSWERED, BAD_INPUT, NO_DISPLAY = 0, 1, 2, 3
@@ -51,7 +53,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         words = load_as_asked(words)
         command = words[0] if words and words[0] in COMMANDS else "open"
         return COMMANDS[command](words[1:] if command in words[:1] else words)
-    except (Refusal, models.ModelError, OverrideError, FieldError, script.ScriptError, ModError) as error:
+    except (
+        Refusal,
+        models.ModelError,
+        OverrideError,
+        FieldError,
+        script.ScriptError,
+        ModError,
+        SweepError,
+    ) as error:
         print(f"pinjoint: {error}", file=sys.stderr)
         return getattr(error, "status", BAD_INPUT)
     except KeyboardInterrupt:
@@ -241,6 +251,67 @@ def _verify(words: Sequence[str]) -> int:
     return ANSWERED if found.get("status") != verify_report.NOT_VERIFIED else NOT_ANSWERED
 
 
+# --- sweeps ------------------------------------------------------------------------------------------------
+
+
+def _sweep(words: Sequence[str]) -> int:
+    parser = Parser(
+        prog="pinjoint sweep",
+        description="Compute many variants of a model; one that fails is recorded with its reason.",
+    )
+    _add_model(parser)
+    _add_analysis(parser)
+    add = parser.add_argument
+    add("--vary", action="append", required=True, metavar="PATH=…", help=FORMS)
+    add("--measure", action="append", required=True, metavar="PATH,…", help="such as rods.CD.plastic_strain")
+    add("--output", required=True, metavar="FILE", help="results.csv or results.parquet")
+    add("--plot", metavar="FILE.png", help="draw the measures against what is varied first")
+    add("--samples", type=int, metavar="N", help="how many are drawn from distributions (~)")
+    add("--seed", type=int, default=0, metavar="N", help="of what is drawn; default 0")
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument("--workers", type=int, metavar="N", help="processes on this machine; default: all cores")
+    where.add_argument("--scheduler", metavar="tcp://…", help="compute on a running Dask cluster")
+    options = parser.parse_args(words)
+    from game.sweeps.execution import cores
+    from game.sweeps.progress import ProgressBar
+    from game.sweeps.results import check_output
+
+    if options.plot is not None:
+        check_output(Path(options.plot), [".png"])
+    overrides = [*options.set]
+    if options.integrator is not None:
+        overrides.append(f"settings.integrator={options.integrator}")
+    if options.time_step is not None:
+        overrides.append(f"settings.time_step={options.time_step}")
+    try:
+        results = sweep(
+            options.model,
+            options.vary,
+            options.measure,
+            _analysis(options),
+            overrides=overrides,
+            samples=options.samples,
+            seed=options.seed,
+            output=options.output,
+            workers=options.workers if options.workers is not None else cores(),
+            scheduler=options.scheduler,
+            progress=ProgressBar(sys.stderr),
+        )
+        if options.plot is not None:
+            results.plot(options.plot)
+    except KeyboardInterrupt:
+        print("\nInterrupted; the same command goes on with what is finished.", file=sys.stderr)
+        raise
+    except OSError as error:
+        raise Refusal(
+            f"{error.filename or options.output} cannot be written: {error.strerror}. Choose another file."
+        ) from None
+    counts = results.counts()
+    why = "" if set(counts) <= set(FOUND) else "; its column 'message' says why"
+    print(f"{options.output}: {', '.join(f'{count} {status}' for status, count in counts.items())}{why}")
+    return ANSWERED if any(status in FOUND for status in counts) else NOT_ANSWERED
+
+
 # --- force method ------------------------------------------------------------------------------------------
 
 
@@ -385,4 +456,5 @@ COMMANDS: dict[str, Callable[[list[str]], int]] = {
     "verify": _verify,
     "force-method": _force_method,
     "mods": _mods,
+    "sweep": _sweep,
 }

@@ -1,0 +1,107 @@
+"""Execution: the variants of a plan computed in this process, by workers on this machine, or by a Dask cluster."""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from typing import Any
+
+from game.sweeps.plan import Outcome, Plan
+from game.sweeps.variation import INSTALL, SweepError
+
+MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
+TASKS_PER_WORKER = 16  # so that no worker waits long for another's last task
+ANSWER_WITHIN = 10.0  # s
+
+
+def cores() -> int:
+    """How many this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def outcomes(
+    plan: Plan, numbers: Sequence[int], workers: int, scheduler: str | None
+) -> Iterator[list[Outcome]]:
+    """Compute these variants, some at a time, in whatever order they get ready.
+
+    workers: 1 computes in this process; more start that many on this machine. scheduler: the address of
+    that of a running Dask cluster, which computes instead. Raises SweepError.
+    """
+    if scheduler is None and workers == 1:
+        for task in _tasks(numbers, 1):
+            yield plan.compute_all(task)
+        return
+    try:
+        import distributed
+    except ImportError:
+        raise SweepError(
+            f"Several workers need dask.distributed; use --workers 1, or install it with: {INSTALL}"
+        ) from None
+    with ExitStack() as stack:
+        if scheduler is None:
+            client = stack.enter_context(_local_client(distributed, min(workers, len(numbers))))
+        else:
+            client = stack.enter_context(_client_of(distributed, scheduler))
+        yield from _distributed(distributed, client, plan, numbers)
+
+
+def _local_client(distributed: Any, workers: int) -> Any:
+    return distributed.Client(
+        n_workers=workers,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address=None,
+        silence_logs=logging.CRITICAL,
+    )
+
+
+def _client_of(distributed: Any, scheduler: str) -> Any:
+    try:
+        client = distributed.Client(scheduler, timeout=ANSWER_WITHIN)
+    except (OSError, ValueError) as error:
+        raise SweepError(
+            f"No Dask scheduler answers at {scheduler} ({error}). Start one with: dask scheduler, and workers"
+            f" with: dask worker {scheduler}"
+        ) from None
+    try:
+        client.wait_for_workers(1, timeout=ANSWER_WITHIN)
+    except TimeoutError:
+        client.close()
+        raise SweepError(f"{scheduler} has no workers. Start some with: dask worker {scheduler}") from None
+    return client
+
+
+def _distributed(distributed: Any, client: Any, plan: Plan, numbers: Sequence[int]) -> Iterator[list[Outcome]]:
+    shared = client.scatter(plan, broadcast=True)
+    workers = max(len(client.scheduler_info()["workers"]), 1)
+    tasks = {
+        client.submit(Plan.compute_all, shared, task, pure=False): task for task in _tasks(numbers, workers)
+    }
+    ready = distributed.as_completed(tasks)
+    for future in ready:
+        task = tasks.pop(future)
+        try:
+            found = future.result()
+        except distributed.KilledWorker:
+            if len(task) == 1:
+                found = [plan.failure(task[0], "Every worker that computed it died; perhaps memory ran out.")]
+            else:  # find out which one it was
+                again = {
+                    client.submit(Plan.compute_all, shared, [number], pure=False): [number] for number in task
+                }
+                tasks |= again
+                ready.update(again)
+                continue
+        except Exception as error:
+            raise SweepError(
+                f"A worker cannot compute this: {error}. Install there what is installed here."
+            ) from None
+        future.release()
+        yield found
+
+
+def _tasks(numbers: Sequence[int], workers: int) -> list[Sequence[int]]:
+    size = min(max(len(numbers) // (workers * TASKS_PER_WORKER), 1), MOST_IN_A_TASK)
+    return [numbers[first : first + size] for first in range(0, len(numbers), size)]

@@ -1,0 +1,86 @@
+"""Measures: the numbers of a result that a sweep keeps."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import reduce
+from operator import getitem
+from typing import Any
+
+from components.field import Field
+from components.model import Model
+from components.table import Table
+from game.overrides import EVERY, OverrideError, locate
+from game.results import ENERGIES, State, reported
+from game.sweeps.variation import SweepError
+
+_OF_THE_RUN = ("residual", "collisions")
+_TABLES = ("particles", "rods")
+_SECTIONS = (*_TABLES, "energy")
+_BETWEEN = re.compile(rf",(?=\s*(?:(?:{'|'.join(_SECTIONS)})\.|(?:{'|'.join(_OF_THE_RUN)})\s*(?:,|$)))")
+_FORM = "write it like rods.CD.axial_force, rods.*.strain, particles.C.displacement.y or energy.elastic"
+
+
+@dataclass(frozen=True)
+class Measure:
+    """One number of a state: the column it goes to, where it is found, what to call it, its unit."""
+
+    column: str
+    keys: tuple[str | int, ...]
+    title: str
+    unit: str
+
+    def of(self, state: State) -> Any:
+        """Its value in a state."""
+        return reduce(getitem, self.keys, state)  # type: ignore[arg-type]
+
+    @property
+    def label(self) -> str:
+        """For the axis of a diagram."""
+        return self.title + (f", {self.unit}" if self.unit else "")
+
+
+def read_measures(model: Model, texts: Iterable[str]) -> tuple[Measure, ...]:
+    """The measures of a model that paths, or lists of paths with commas, name. Raises SweepError."""
+    measures: dict[str, Measure] = {}
+    for text in texts:
+        for path in _BETWEEN.split(text):
+            measures |= {measure.column: measure for measure in _read(model, path.strip())}
+    if not measures:
+        raise SweepError(f"Nothing is measured; say what with --measure: {_FORM}.")
+    return tuple(measures.values())
+
+
+def _read(model: Model, path: str) -> list[Measure]:
+    section, _, rest = path.partition(".")
+    if path in _OF_THE_RUN:
+        return [Measure(path, (path,), path, "")]
+    if section == "energy" and rest in ENERGIES:
+        return [Measure(path, ("energy", rest), f"{rest.replace('_', ' ')} energy", "J")]
+    if section == "energy":
+        raise SweepError(f"--measure {path}: there is no energy '{rest}'; choose one of {', '.join(ENERGIES)}.")
+    if section not in _TABLES:
+        raise SweepError(f"--measure {path}: {_FORM}, or one of {', '.join(_OF_THE_RUN)}.")
+    try:
+        target, rest = locate(model, path, _reported)
+        if rest:
+            raise OverrideError(f"'{rest}' follows the quantity; {_FORM}.")
+    except OverrideError as error:
+        raise SweepError(f"--measure {path}: {error}") from None
+    elements = target.table.names if target.element == EVERY else [target.element]
+    return [
+        Measure(
+            column=f"{section}.{element}.{target.key}" + (f".{axis}" if axis else ""),
+            keys=(section, element, target.field.name, *(["xy".index(axis)] if axis else [])),
+            title=" ".join([target.field.title, *([axis] if axis else []), "of", element]),
+            unit=target.field.unit,
+        )
+        for element in elements
+        for axis in (target.axis or "xy" if target.field.shape else ("",))
+    ]
+
+
+def _reported(table: Table[Any]) -> Mapping[str, Field[Any]]:
+    return {field.name: field for field in reported(table.name)}

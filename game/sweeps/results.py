@@ -1,0 +1,166 @@
+"""Results: the table that a sweep ends with, as CSV or Parquet and as a picture."""
+
+from __future__ import annotations
+
+import csv
+import importlib.util
+import io
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.models import replace
+from game.report import FOUND
+from game.sweeps.plan import RECORDED, Plan
+from game.sweeps.variation import INSTALL, Random, SweepError, Values
+
+SUFFIXES = (".csv", ".parquet")
+_NEEDED = {".parquet": "pyarrow", ".png": "matplotlib"}
+MOST_PANELS = 12
+MOST_LINES = 12
+
+
+class Results:
+    """One row per variant and reported state, in the order of the plan; columns by name.
+
+    `variant` counts from 0; then what was varied, by path; `status`, `message`, `time` (s) and `load_factor`
+    as `pinjoint run` reports them; then the measures, by path, in the units of model files. A variant that
+    could not be computed has the status "failed", the reason as its message, and no measures (None).
+    """
+
+    def __init__(self, plan: Plan, finished: Mapping[int, list[Any]]) -> None:
+        self.plan = plan
+        names = ("variant", *plan.varied, *RECORDED, *(measure.column for measure in plan.measures))
+        rows = [
+            (number, *plan.values(number), *record)
+            for number in range(plan.size)
+            for record in finished[number]
+        ]
+        self.columns: dict[str, list[Any]] = dict(zip(names, map(list, zip(*rows, strict=True)), strict=True))
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """A column as an array; missing numbers are NaN."""
+        if name not in self.columns:
+            raise KeyError(f"There is no column '{name}'; choose one of {', '.join(self.columns)}.")
+        column = self.columns[name]
+        numbers = all(value is None or isinstance(value, float) for value in column)
+        return np.array(column, dtype=float if numbers else None)
+
+    def counts(self) -> dict[str, int]:
+        """How many variants ended with each status."""
+        last = dict(zip(self.columns["variant"], self.columns["status"], strict=True))
+        statuses = list(last.values())
+        return {status: statuses.count(status) for status in sorted(set(statuses))}
+
+    @property
+    def found(self) -> NDArray[np.bool_]:
+        """Which rows are answers; the others hold a last good state, or nothing."""
+        return np.isin(self.columns["status"], FOUND)
+
+    # --- files -----------------------------------------------------------------------------------------
+
+    def write(self, path: str | Path) -> None:
+        """Write a .csv or .parquet file, as a whole or not at all. Raises SweepError, OSError."""
+        check_output(path := Path(path))
+        replace(path, self._as_csv() if path.suffix == ".csv" else self._as_parquet())
+
+    def _as_csv(self) -> bytes:
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(self.columns)
+        writer.writerows(zip(*self.columns.values(), strict=True))
+        return text.getvalue().encode()
+
+    def _as_parquet(self) -> bytes:
+        """Units are kept with each column."""
+        import pyarrow
+        from pyarrow import parquet
+
+        units = {"time": "s"} | {measure.column: measure.unit for measure in self.plan.measures}
+        arrays = [
+            pyarrow.array(column, pyarrow.float64() if set(column) == {None} else None)
+            for column in self.columns.values()
+        ]
+        fields = [
+            pyarrow.field(name, array.type, metadata={"unit": units.get(name, "")})
+            for name, array in zip(self.columns, arrays, strict=True)
+        ]
+        made = pyarrow.BufferOutputStream()
+        parquet.write_table(pyarrow.table(arrays, schema=pyarrow.schema(fields)), made)
+        content: bytes = made.getvalue().to_pybytes()
+        return content
+
+    # --- a picture ---------------------------------------------------------------------------------------
+
+    def plot(self, path: str | Path) -> None:
+        """Draw each measure against what was varied first, as PNG; one line per value of the others.
+
+        Only answers are drawn. What was drawn at random is shown as points. Raises SweepError, OSError.
+        """
+        check_output(path := Path(path), [".png"])
+        import matplotlib
+
+        matplotlib.use("Agg")
+        from matplotlib import pyplot
+
+        measures = self.plan.measures[:MOST_PANELS]
+        figure, axes = pyplot.subplots(
+            len(measures),
+            squeeze=False,
+            sharex=True,
+            figsize=(8.0, 1.0 + 3.0 * len(measures)),
+            layout="constrained",
+        )
+        for axis, measure in zip(axes[:, 0], measures, strict=True):
+            for label, rows in self._lines().items():
+                x = self[self.plan.varied[0]][rows]
+                style = "." if self._scattered else ".-"
+                axis.plot(x, self[measure.column][rows], style, label=label)
+            axis.set_ylabel(measure.label)
+            axis.grid(alpha=0.3)
+        axes[-1, 0].set_xlabel(self.plan.variations[0].label)
+        figure.suptitle(self.plan.name)
+        if 1 < len(self._lines()) <= MOST_LINES:
+            axes[0, 0].legend()
+        made = io.BytesIO()
+        figure.savefig(made, format="png", dpi=120)
+        pyplot.close(figure)
+        replace(path, made.getvalue())
+
+    @property
+    def _scattered(self) -> bool:
+        return any(isinstance(variation, Random) for variation in self.plan.variations)
+
+    def _lines(self) -> dict[str, NDArray[np.intp]]:
+        """The rows of each line, by its label: what else is varied, and the state where there are several."""
+        others = [v.path for v in self.plan.variations[1:] if isinstance(v, Values)]
+        others += [name for name in ("time", "load_factor") if self._several(name)]
+        lines: dict[str, list[int]] = {}
+        for row in np.flatnonzero(self.found).tolist():
+            label = ", ".join(f"{name} {_short(self.columns[name][row])}" for name in others)
+            lines.setdefault(label, []).append(row)
+        return {label: np.array(rows) for label, rows in lines.items()}
+
+    def _several(self, name: str) -> bool:
+        asked = self.plan.analysis.times if name == "time" else self.plan.analysis.load_factors
+        return asked is not None and len(asked) > 1
+
+
+def _short(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def check_output(path: Path, suffixes: Sequence[str] = SUFFIXES) -> None:
+    """Refuse what could not be written in the end. Raises SweepError."""
+    if path.suffix not in suffixes:
+        raise SweepError(f"{path}: write a file that ends with {' or '.join(suffixes)}.")
+    module = _NEEDED.get(path.suffix)
+    if module is not None and importlib.util.find_spec(module) is None:
+        raise SweepError(f"A {path.suffix} file needs {module}; install it with: {INSTALL}")
+    if path.is_dir() or not path.parent.is_dir():
+        raise SweepError(
+            f"{path} cannot be written: it is a folder, or its folder is missing. Choose another file."
+        )

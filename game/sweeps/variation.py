@@ -1,0 +1,194 @@
+"""Variations: what a sweep changes from variant to variant, and the values that it takes."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from components.model import Model
+from game.overrides import EVERY, OverrideError, Target, locate
+
+Value = float | bool | str | None
+
+FORMS = (
+    "write PATH=START:STOP:COUNT (evenly spaced), PATH=START:STOP:COUNT:log (by equal ratios),"
+    " PATH=VALUE,VALUE,… or PATH~normal(MEAN,DEVIATION)"
+)
+INSTALL = 'pip install "pinjoint[sweep]"'
+MOST_VARIANTS = 10_000_000
+
+
+class SweepError(ValueError):
+    """A sweep that cannot be done; the message says why and what to write or do."""
+
+
+@dataclass(frozen=True)
+class Values:
+    """One fact that takes these values in turn."""
+
+    path: str
+    values: tuple[Value, ...]
+    label: str
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The paths that it gives values to."""
+        return (self.path,)
+
+
+@dataclass(frozen=True)
+class Random:
+    """Facts, each drawn anew for every sample from the same distribution."""
+
+    columns: tuple[str, ...]
+    distribution: str
+    parameters: tuple[float, float]
+    label: str
+
+    def draw(self, generator: np.random.Generator) -> tuple[float, ...]:
+        """One value per path."""
+        drawn = DISTRIBUTIONS[self.distribution](generator, *self.parameters, len(self.columns))
+        return tuple(drawn.tolist())
+
+
+Variation = Values | Random
+
+
+def _normal(generator: np.random.Generator, mean: float, deviation: float, count: int) -> Any:
+    return mean + deviation * generator.standard_normal(count)
+
+
+def _lognormal(generator: np.random.Generator, mean: float, deviation: float, count: int) -> Any:
+    """Of this mean and standard deviation themselves, not of the logarithm's."""
+    variance = math.log1p((deviation / mean) ** 2)
+    return mean * np.exp(math.sqrt(variance) * generator.standard_normal(count) - 0.5 * variance)
+
+
+def _uniform(generator: np.random.Generator, low: float, high: float, count: int) -> Any:
+    return low + (high - low) * generator.random(count)
+
+
+DISTRIBUTIONS: Mapping[str, Callable[..., Any]] = {
+    "normal": _normal,  # (mean, standard deviation); a deviation may be given as 5% of the mean
+    "lognormal": _lognormal,  # the same
+    "uniform": _uniform,  # (lowest, highest)
+}
+
+
+# --- reading -------------------------------------------------------------------------------------------
+
+
+def read_variations(model: Model, vary: Iterable[str] | Mapping[str, Sequence[Value]]) -> tuple[Variation, ...]:
+    """The variations of a model that texts such as "rods.CD.tensile_strength=150:300:31" describe.
+
+    vary: the texts, or the values by path. Raises SweepError.
+    """
+    texts = (
+        [f"{path}={_listed(path, values)}" for path, values in vary.items()]
+        if isinstance(vary, Mapping)
+        else vary
+    )
+    variations = tuple(_read(model, text) for text in texts)
+    paths = [path for variation in variations for path in variation.columns]
+    for path in paths:
+        if paths.count(path) > 1:
+            raise SweepError(f"{path} is varied twice; say it once.")
+    return variations
+
+
+def _listed(path: str, values: Sequence[Value]) -> str:
+    if isinstance(values, str) or len(values) == 0:
+        raise SweepError(f"{path}: give it a list of values, at least one.")
+    return ",".join(as_text(np.asarray(value).item()) for value in values)
+
+
+def _read(model: Model, text: str) -> Variation:
+    try:
+        target, rest = locate(model, text)
+        if target.field.shape and not target.axis:
+            raise OverrideError(f"vary one component, {target.field.key}.x or {target.field.key}.y.")
+        if rest.startswith("="):
+            return Values(
+                target.path(target.element), _values(target, rest[1:]), _label(target, target.element)
+            )
+        if rest.startswith("~"):
+            return _random(target, rest[1:])
+        raise OverrideError(f"it has no values; {FORMS}.")
+    except OverrideError as error:
+        raise SweepError(f"--vary {text}: {error}") from None
+
+
+def _label(target: Target, element: str) -> str:
+    of = {"": "", EVERY: f" of all {target.table.name}"}.get(element, f" of {element}")
+    axis = f" {target.axis}" if target.axis else ""
+    return f"{target.field.title}{axis}{of}" + (f", {target.field.unit}" if target.field.unit else "")
+
+
+def _values(target: Target, text: str) -> tuple[Value, ...]:
+    parts = [part.strip() for part in text.split(":")]
+    if len(parts) > 1 and target.field.dtype is float:
+        return _range(parts)
+    values = tuple(target.read(part) for part in text.split(","))
+    for value in values:
+        if isinstance(value, str) and (target.field.dtype is not str or not value):
+            raise OverrideError(f"'{value}' is no value of {target.field.title}; {FORMS}.")
+    return values
+
+
+def _range(parts: Sequence[str]) -> tuple[float, ...]:
+    spaced = np.geomspace if parts[3:] == ["log"] else np.linspace
+    if len(parts) not in (3, 4) or (len(parts) == 4 and parts[3] != "log"):
+        raise OverrideError(f"a range has a start, a stop and a count; {FORMS}.")
+    start, stop = _finite(parts[0]), _finite(parts[1])
+    if not (parts[2].isdecimal() and 1 <= int(parts[2]) <= MOST_VARIANTS):
+        raise OverrideError(f"'{parts[2]}' is no count; write a whole number from 1 on.")
+    if spaced is np.geomspace and not start * stop > 0.0:
+        raise OverrideError("equal ratios do not reach or cross 0; leave :log out, or change the limits.")
+    return tuple(spaced(start, stop, int(parts[2])).tolist())
+
+
+def _random(target: Target, text: str) -> Random:
+    found = re.fullmatch(r"\s*(\w+)\s*\(([^,()]+),([^,()]+)\)\s*", text)
+    kinds = ", ".join(DISTRIBUTIONS)
+    if found is None or found[1] not in DISTRIBUTIONS:
+        raise OverrideError(
+            f"'{text}' is no distribution; write one of {kinds} with its two parameters, such as"
+            " normal(164640,5%) or uniform(100,300)."
+        )
+    if target.field.dtype is not float:
+        raise OverrideError(f"{target.field.title} is no number; list its values after =.")
+    kind, first, second = found[1], _finite(found[2]), found[3].strip()
+    if kind == "uniform":
+        parameters = (first, _finite(second))
+        if not parameters[0] < parameters[1]:
+            raise OverrideError("write uniform(LOWEST,HIGHEST), the lowest first.")
+    else:
+        deviation = abs(first) * _finite(second[:-1]) / 100.0 if second.endswith("%") else _finite(second)
+        parameters = (first, deviation)
+        if not deviation >= 0.0 or (kind == "lognormal" and not first > 0.0):
+            raise OverrideError("the deviation must be at least 0, and a lognormal mean above 0.")
+    # Strengths and stiffnesses of different rods are independent: each has its own draw.
+    elements = target.table.names if target.element == EVERY else [target.element]
+    return Random(tuple(map(target.path, elements)), kind, parameters, _label(target, elements[0]))
+
+
+def _finite(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise OverrideError(f"'{text.strip()}' is not a finite number; {FORMS}.")
+    return value
+
+
+def as_text(value: Value) -> str:
+    """A value as an override has it; numbers lose no digit."""
+    if value is None:
+        return "null"
+    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,0 +1,342 @@
+"""Sweeps: which variants there are, what they come to, what survives a kill, and what is refused."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from game import Session
+from game.cli import main
+from game.overrides import apply_override
+from game.report import Analysis
+from game.sweeps import SweepError, sweep
+from game.sweeps.execution import outcomes
+from game.sweeps.plan import Plan
+from game.sweeps.results import Results
+from tests.reference.models import square, triangle
+
+MODEL = triangle(damping=100, density=6.15, tensile_strength=215, compressive_strength=215)
+STATIC = Analysis(load_factors=(1.0,))
+STIFFNESS = "rods.CA.stiffness"
+FORCE_Y = "particles.B.force.y=-100:-300:3"
+MEASURES = ["rods.AB.axial_force,particles.B.displacement", "energy.elastic"]
+COLUMNS = ("rods.AB.axial_force", "particles.B.displacement.x", "particles.B.displacement.y", "energy.elastic")
+DRAWN = "rods.*.stiffness~normal(164640,5%)"
+
+
+def run_alone(overrides: Sequence[str], analysis: Analysis) -> dict[str, Any]:
+    session = Session.open(MODEL)
+    for override in overrides:
+        apply_override(session.model, override)
+    return analysis.run(session, "alone")  # type: ignore[return-value]
+
+
+# --- variants ------------------------------------------------------------------------------------------
+
+
+def test_all_combinations_the_last_varying_fastest() -> None:
+    found = sweep(MODEL, [FORCE_Y, f"{STIFFNESS}=100000,200000"], MEASURES, STATIC)
+    assert found["particles.B.force.y"].tolist() == [-100, -100, -200, -200, -300, -300]
+    assert found[STIFFNESS].tolist() == [100000, 200000] * 3
+    assert found["variant"].tolist() == list(range(6))
+
+
+@pytest.mark.parametrize("analysis", [STATIC, Analysis(), Analysis(times=(1e-4, 2e-4))])
+def test_a_variant_has_the_bits_of_a_run_of_its_own(analysis: Analysis) -> None:
+    found = sweep(MODEL, [FORCE_Y], MEASURES, analysis, overrides=["rods.*.damping=50"])
+    rows = list(zip(*(found.columns[name] for name in ("status", "time", *COLUMNS)), strict=True))
+    for load in (-100.0, -200.0, -300.0):
+        alone = run_alone(["rods.*.damping=50", f"particles.B.force.y={load}"], analysis)
+        for state in alone["states"]:
+            x, y = state["particles"]["B"]["displacement"]
+            force, elastic = state["rods"]["AB"]["axial_force"], state["energy"]["elastic"]
+            assert rows.pop(0) == (alone["status"], state["time"], force, x, y, elastic)
+    assert not rows
+
+
+def test_load_factors_are_rows_of_a_variant() -> None:
+    found = sweep(
+        square(), ["rods.CD.compressive_strength=50,60"], ["rods.CD.plastic_strain"], Analysis((1.0, 0.0))
+    )
+    assert found["load_factor"].tolist() == [1.0, 0.0, 1.0, 0.0]
+    assert found["variant"].tolist() == [0, 0, 1, 1]
+
+
+def test_ranges_lists_and_values_from_python() -> None:
+    def taken(vary: Any) -> list[Any]:
+        return sweep(MODEL, vary, ["residual"], STATIC).columns[STIFFNESS]
+
+    assert taken([f"{STIFFNESS}=1e4:1e6:3:log"]) == pytest.approx([1e4, 1e5, 1e6], rel=1e-14)
+    assert taken({STIFFNESS: np.linspace(1e5, 3e5, 3)}) == [1e5, 2e5, 3e5]
+    assert taken({STIFFNESS: [1 / 3 * 1e6]}) == [1 / 3 * 1e6]
+    words = sweep(MODEL, ["settings.plasticity=true,false"], ["rods.*.yielding"], STATIC)
+    assert words.columns["settings.plasticity"] == [True, False]
+    assert words.columns["rods.BC.yielding"] == [False, False]
+
+
+def test_every_rod_is_drawn_for_itself_and_more_samples_keep_the_first() -> None:
+    few, many = (sweep(MODEL, [DRAWN], ["residual"], STATIC, samples=n, seed=1) for n in (3, 5))
+    paths = [f"rods.{rod}.stiffness" for rod in ("AB", "BC", "CA")]
+    drawn = np.array([many[path] for path in paths])
+    assert len(np.unique(drawn)) == 15
+    assert [few[path].tolist() for path in paths] == drawn[:, :3].tolist()
+    other = sweep(MODEL, [DRAWN], ["residual"], STATIC, samples=3, seed=2)
+    assert not np.isin(other[paths[0]], drawn).any()
+
+
+@pytest.mark.parametrize(
+    ("distribution", "mean", "deviation"),
+    [("normal(200,5%)", 200, 10), ("lognormal(200,60)", 200, 60), ("uniform(100,300)", 200, 200 / 12**0.5)],
+)
+def test_what_is_drawn_has_the_mean_and_deviation_asked_for(
+    distribution: str, mean: float, deviation: float
+) -> None:
+    from game.sweeps.sweep import plan_of
+
+    plan = plan_of(MODEL, [f"{STIFFNESS}~{distribution}"], ["residual"], STATIC, (), 4000, 3)
+    drawn = np.array([plan.values(number)[0] for number in range(plan.size)], dtype=float)
+    assert drawn.mean() == pytest.approx(mean, abs=4 * deviation / 4000**0.5)
+    assert drawn.std() == pytest.approx(deviation, rel=0.1)
+
+
+def test_every_combination_meets_the_same_draws() -> None:
+    found = sweep(MODEL, [FORCE_Y, f"{STIFFNESS}~uniform(1e5,2e5)"], ["residual"], STATIC, samples=2)
+    assert found["particles.B.force.y"].tolist() == [-100, -100, -200, -200, -300, -300]
+    assert found[STIFFNESS].tolist() == found[STIFFNESS][:2].tolist() * 3
+
+
+def test_variants_that_fail_are_recorded_with_the_reason() -> None:
+    found = sweep(MODEL, [f"{STIFFNESS}=-5,164640"], MEASURES, STATIC)
+    assert found.columns["status"] == ["failed", "equilibrium"]
+    assert "stiffness is -5 kN; it must be greater than 0 kN" in found.columns["message"][0]
+    assert np.isnan(found[COLUMNS[0]]).tolist() == [True, False]
+    assert found.counts() == {"equilibrium": 1, "failed": 1}
+
+
+def test_workers_compute_the_same_bits(tmp_path: Path) -> None:
+    arguments: Any = (MODEL, [DRAWN], MEASURES, STATIC)
+    for workers in (1, 2):
+        output = tmp_path / f"{workers}.csv"
+        sweep(*arguments, samples=12, seed=1, workers=workers, output=output)
+    assert (tmp_path / "1.csv").read_bytes() == (tmp_path / "2.csv").read_bytes()
+
+
+# --- kills -----------------------------------------------------------------------------------------------
+
+
+class KilledError(Exception):
+    pass
+
+
+def killed_after(count: int) -> Callable[[int, int, int], None]:
+    def progress(done: int, total: int, failed: int) -> None:
+        if done >= count:
+            raise KilledError
+
+    return progress
+
+
+def interrupted(output: Path, **options: Any) -> None:
+    with pytest.raises(KilledError):
+        sweep(MODEL, [DRAWN], MEASURES, STATIC, samples=20, output=output, progress=killed_after(7), **options)
+
+
+@pytest.fixture
+def computed(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The numbers of the variants that are computed."""
+    numbers: list[int] = []
+    compute = Plan.compute
+
+    def noted(self: Plan, number: int) -> Any:
+        numbers.append(number)
+        return compute(self, number)
+
+    monkeypatch.setattr(Plan, "compute", noted)
+    return numbers
+
+
+def test_a_killed_sweep_goes_on_without_repeating(tmp_path: Path, computed: list[int]) -> None:
+    output = tmp_path / "results.csv"
+    interrupted(output)
+    assert computed == list(range(7))
+    journal = tmp_path / "results.csv.journal"
+    journal.write_bytes(journal.read_bytes()[:-9])  # as if killed while it wrote the last line
+    sweep(MODEL, [DRAWN], MEASURES, STATIC, samples=20, output=output)
+    assert computed == [*range(7), *range(6, 20)]
+    assert [path.name for path in tmp_path.iterdir()] == ["results.csv"]
+    whole = tmp_path / "whole.csv"
+    sweep(MODEL, [DRAWN], MEASURES, STATIC, samples=20, output=whole)
+    assert output.read_bytes() == whole.read_bytes()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"seed": 1},
+        {"overrides": ["rods.AB.damping=1"]},
+        {"measure": ["residual"]},
+        {"analysis": Analysis()},
+        {"source": triangle(damping=99)},
+        {"vary": ["rods.*.stiffness~normal(164640,6%)"]},
+    ],
+    ids=lambda change: next(iter(change)),
+)
+def test_what_is_kept_of_another_sweep_is_not_mixed_in_or_lost(tmp_path: Path, change: dict[str, Any]) -> None:
+    output = tmp_path / "results.csv"
+    interrupted(output)
+    kept = (tmp_path / "results.csv.journal").read_bytes()
+    arguments = {"source": MODEL, "vary": [DRAWN], "measure": MEASURES, "analysis": STATIC, "samples": 20}
+    with pytest.raises(SweepError, match="keeps an unfinished sweep of another model, variation, seed"):
+        sweep(**(arguments | change), output=output)
+    assert (tmp_path / "results.csv.journal").read_bytes() == kept
+
+
+# --- results ---------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def found() -> Results:
+    return sweep(MODEL, ["particles.B.force.y=-50,-100", f"{STIFFNESS}=-1,1e5,2e5"], MEASURES, STATIC)
+
+
+def test_csv_keeps_every_digit(found: Results, tmp_path: Path) -> None:
+    found.write(tmp_path / "results.csv")
+    with open(tmp_path / "results.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["status"] for row in rows] == ["failed", "equilibrium", "equilibrium"] * 2
+    for name in ("particles.B.force.y", *COLUMNS):
+        assert [float(row[name] or "nan") for row in rows] == pytest.approx(
+            found[name].tolist(), rel=0, nan_ok=True
+        )
+
+
+def test_parquet_keeps_types_and_units(found: Results, tmp_path: Path) -> None:
+    from pyarrow import parquet
+
+    found.write(tmp_path / "results.parquet")
+    table = parquet.read_table(tmp_path / "results.parquet")
+    assert {name: table[name].to_pylist() for name in table.column_names} == found.columns
+    assert table.schema.field("particles.B.displacement.x").metadata[b"unit"] == b"m"
+    assert str(table.schema.field("rods.AB.axial_force").type) == "double"
+
+
+def test_a_plot_is_a_picture_with_a_panel_per_measure(found: Results, tmp_path: Path) -> None:
+    found.plot(tmp_path / "plot.png")
+    content = (tmp_path / "plot.png").read_bytes()
+    assert content.startswith(b"\x89PNG")
+    width, height = (int.from_bytes(content[at : at + 4], "big") for at in (16, 20))
+    assert (width, height) == (960, 120 * (1 + 3 * len(COLUMNS)))
+
+
+# --- refusals --------------------------------------------------------------------------------------------
+
+VARY = {
+    "rods.CX.stiffness=1:2:3": "There is no 'CX' among the rods; did you mean 'CA'?",
+    "rods.CA.stifness=1:2:3": "there is no key 'stifness'; did you mean 'stiffness'?",
+    "rods.CA.axial_force=1:2:3": "'axial_force' is computed and cannot be set here",
+    "rods.CA.stiffness": "it has no values; write PATH=START:STOP:COUNT",
+    "rods.CA.stiffness=": "'' is no value of stiffness",
+    "rods.CA.stiffness=1,x": "'x' is no value of stiffness",
+    "rods.CA.stiffness=1:2": "a range has a start, a stop and a count",
+    "rods.CA.stiffness=1:2:3:lin": "a range has a start, a stop and a count",
+    "rods.CA.stiffness=1:2:0": "'0' is no count; write a whole number from 1 on",
+    "rods.CA.stiffness=1:inf:3": "'inf' is not a finite number",
+    "rods.CA.stiffness=0:5:3:log": "equal ratios do not reach or cross 0",
+    "rods.CA.stiffness=1:2:200000000": "'200000000' is no count",
+    "particles.B.force=1,2": "vary one component, force.x or force.y",
+    "particles.B.force.z=1,2": "applied force has no part 'z'; write force.x or force.y",
+    "rods.CA.stiffness~normal(1)": "'normal(1)' is no distribution; write one of normal, lognormal, uniform",
+    "rods.CA.stiffness~weibull(1,2)": "'weibull(1,2)' is no distribution",
+    "rods.CA.stiffness~normal(1,-2)": "the deviation must be at least 0",
+    "rods.CA.stiffness~lognormal(-1,2)": "a lognormal mean above 0",
+    "rods.CA.stiffness~uniform(2,1)": "write uniform(LOWEST,HIGHEST), the lowest first",
+    "settings.plasticity~normal(1,2)": "plasticity is no number; list its values after =",
+}
+
+
+@pytest.mark.parametrize(("text", "reason"), VARY.items(), ids=VARY.keys())
+def test_variations_that_make_no_sense(text: str, reason: str) -> None:
+    with pytest.raises(SweepError) as caught:
+        sweep(MODEL, [text], MEASURES, STATIC)
+    assert str(caught.value).startswith(f"--vary {text}: ")
+    assert reason in str(caught.value)
+
+
+MEASURE = {
+    "rods.CX.strain": "There is no 'CX' among the rods; did you mean 'CA'?",
+    "rods.CA.stiffness": "there is no key 'stiffness'; choose one of axial_force, length",
+    "rods.CA.strain.x": "strain has no part 'x'; write strain only",
+    "energy.heat": "there is no energy 'heat'; choose one of kinetic, elastic",
+    "grids.1.spacing": "write it like rods.CD.axial_force",
+    "nonsense": "write it like rods.CD.axial_force",
+}
+
+
+@pytest.mark.parametrize(("text", "reason"), MEASURE.items(), ids=MEASURE.keys())
+def test_measures_that_do_not_exist(text: str, reason: str) -> None:
+    with pytest.raises(SweepError) as caught:
+        sweep(MODEL, [FORCE_Y], [text], STATIC)
+    assert reason in str(caught.value)
+
+
+SWEEPS = {
+    "Nothing is varied": {"vary": []},
+    "Nothing is measured": {"measure": []},
+    "give it a list of values, at least one": {"vary": {STIFFNESS: []}},
+    "rods.CA.stiffness is varied twice": {"vary": [f"{STIFFNESS}=1,2", f"{STIFFNESS}=3:4:2"]},
+    "needs the number of samples": {"vary": [DRAWN]},
+    "--samples goes with a distribution": {"samples": 5},
+    "--samples 0: draw at least 1": {"vary": [DRAWN], "samples": 0},
+    "--seed -1": {"seed": -1},
+    "These are 100000000 variants": {"vary": [f"rods.{rod}.stiffness=1:2:10000" for rod in ("AB", "BC")]},
+    "0 workers cannot compute": {"workers": 0},
+    "results.txt: write a file that ends with .csv or .parquet": {"output": "results.txt"},
+    "its folder is missing": {"output": "no/such/folder/results.csv"},
+}
+
+
+@pytest.mark.parametrize(("reason", "change"), SWEEPS.items(), ids=SWEEPS.keys())
+def test_sweeps_that_cannot_be_done(reason: str, change: dict[str, Any]) -> None:
+    arguments: dict[str, Any] = {"source": MODEL, "vary": [FORCE_Y], "measure": MEASURES, "analysis": STATIC}
+    with pytest.raises(SweepError) as caught:
+        sweep(**(arguments | change))
+    assert reason in str(caught.value)
+
+
+def test_an_installation_that_differs_does_not_compute() -> None:
+    from dataclasses import replace
+
+    from game.sweeps.sweep import plan_of
+
+    plan = plan_of(MODEL, [FORCE_Y], MEASURES, STATIC, (), None, 0)
+    with pytest.raises(SweepError, match=r"the sweep is of 9\.9"):
+        list(outcomes(replace(plan, installation=replace(plan.installation, version="9.9")), [0], 1, None))
+
+
+# --- the command -------------------------------------------------------------------------------------------
+
+
+def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    output, plot = tmp_path / "results.csv", tmp_path / "plot.png"
+    words = ["sweep", "isostatic", "--vary", f"{STIFFNESS}=-1,1e5:1", "--measure", "residual", "--static"]
+    assert main([*words, "--output", str(output), "--workers", "1"]) == 2
+    assert "a range has a start, a stop and a count" in capsys.readouterr().err
+    words[3] = f"{STIFFNESS}=-1,1e5"
+    assert main([*words, "--output", str(output), "--plot", str(plot), "--workers", "1"]) == 0
+    assert capsys.readouterr().out == f"{output}: 1 equilibrium, 1 failed; its column 'message' says why\n"
+    assert output.is_file()
+    assert plot.is_file()
+    words[3] = f"{STIFFNESS}=-1,-2"
+    assert main([*words, "--output", str(output), "--workers", "1"]) == 1
+
+
+def test_an_output_that_cannot_be_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "results.csv.journal").mkdir()
+    words = ["sweep", "isostatic", "--vary", f"{STIFFNESS}=1,2", "--measure", "residual", "--workers", "1"]
+    assert main([*words, "--output", str(tmp_path / "results.csv")]) == 2
+    assert "results.csv.journal cannot be written: Is a directory" in capsys.readouterr().err
