@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -49,8 +48,10 @@ class Camera:
 
     def to_pixels(self, points: ArrayLike) -> NDArray[np.float64]:
         """Model points (m), shape (..., 2), as pixels."""
-        offset = np.asarray(points, dtype=np.float64) - np.array(self.centre)
-        pixels: NDArray[Any] = np.array(self.middle) + offset * np.array([self.scale, -self.scale])
+        points = np.asarray(points, dtype=np.float64)
+        pixels = np.empty_like(points)  # by columns, since numpy is slow along an axis of two
+        pixels[..., 0] = self.middle[0] + (points[..., 0] - self.centre[0]) * self.scale
+        pixels[..., 1] = self.middle[1] - (points[..., 1] - self.centre[1]) * self.scale
         return pixels
 
     def to_model(self, pixel: Vector) -> Vector:

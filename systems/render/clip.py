@@ -37,3 +37,31 @@ def clip_segments(
         rows = np.flatnonzero((t0 <= t1) & np.isfinite(step).all(axis=1))
     t0, t1, origin, step = t0[rows, None], t1[rows, None], start[rows], step[rows]
     return origin + t0 * step, origin + t1 * step, rows
+
+
+def clip_rods(
+    points: Points, ends: NDArray[np.intp], low: Points, high: Points
+) -> tuple[Points, Points, NDArray[np.intp]]:
+    """clip_segments of the rods between rows `ends` (m, 2) of `points`, where most lie wholly inside or outside.
+
+    A point is marked by the sides of the rectangle that it lies beyond. A rod is inside if neither end is
+    marked, outside if both are by the same side; only the others are cut (Cohen and Sutherland's method).
+    """
+    beyond = np.zeros(len(points), dtype=np.uint8)
+    for axis in (0, 1):
+        beyond |= (points[:, axis] < low[axis]).astype(np.uint8) << (2 * axis)
+        beyond |= (points[:, axis] > high[axis]).astype(np.uint8) << (2 * axis + 1)
+        beyond |= (~np.isfinite(points[:, axis])).astype(np.uint8) << 4
+    first, last = ends[:, 0], ends[:, 1]
+    if not beyond.any():
+        return points.take(first, axis=0), points.take(last, axis=0), np.arange(len(ends))
+    rows = np.flatnonzero((beyond[first] & beyond[last]) == 0)
+    first, last = first[rows], last[rows]
+    start, end = points.take(first, axis=0), points.take(last, axis=0)
+    cut = np.flatnonzero(beyond[first] | beyond[last])
+    kept = np.ones(len(rows), dtype=bool)
+    kept[cut] = False
+    cut_start, cut_end, remaining = clip_segments(start[cut], end[cut], low, high)
+    cut = cut[remaining]
+    start[cut], end[cut], kept[cut] = cut_start, cut_end, True
+    return start[kept], end[kept], rows[kept]

@@ -13,7 +13,7 @@ from components.tags import DiagramShown, Selected
 from systems.render.labels import FAINT, Label, half_size
 from systems.render.marks import Fills, Points, Stamps, Strokes
 from systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
-from systems.render.supports import NO_SUPPORT
+from systems.render.supports import NO_SUPPORT, crowding
 from systems.render.symbols import ARROW_LENGTH, SUPPORT_DEPTH
 from systems.render.theme import Colour, faded
 
@@ -23,7 +23,9 @@ Places = list[tuple[float, float]]
 SMALLEST_FORCE = 1e-4  # kN; less is drawn as none
 _FEW_VALUES = 24  # up to which each carries its unit and keeps clear of rods
 _STEPS = (8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0)
+_SHORTEST_WITH_DIAGRAM = 6.0  # points
 _SHORTEST_WITH_VALUE = 24.0  # points; the values of shorter rods would only hide the structure
+_MANY_ARROWS = 200  # up to which all are drawn, though they may lie over each other
 _BACKING = 0.86  # opacity behind a value
 
 
@@ -46,9 +48,17 @@ def scale_step(largest: float, scale: float, room: float) -> float:
 
 
 def draw_rod_diagrams(sheet: Sheet) -> None:
-    """A rectangle on each rod that shows its diagram, |N| × diagram scale high, and the value of N."""
+    """A rectangle on each rod that shows its diagram, |N| × diagram scale high, and the value of N.
+
+    Where rods are too short for rectangles, they themselves take the colour of tension or compression.
+    """
     force, rows, start, end = _shown_rods(sheet)
     if not len(rows):
+        return
+    if typical_length(start, end) < _SHORTEST_WITH_DIAGRAM * sheet.unit:
+        sheet.pulled = rows[force[rows] > SMALLEST_FORCE]
+        sheet.pushed = rows[force[rows] < -SMALLEST_FORCE]
+        sheet.notes.append("zoom in to see force diagrams")
         return
     scale = sheet.model.settings.diagram_scale * sheet.unit
     factor = scale_step(float(np.abs(force).max()), scale, _room(sheet, start, end))
@@ -57,24 +67,26 @@ def draw_rod_diagrams(sheet: Sheet) -> None:
     height = np.abs(force[rows]) * scale * factor
     normal = _outward_normals(sheet, rows, start, end)
     values = force[rows]
-    signs = np.where(np.abs(values) <= SMALLEST_FORCE, 0.0, np.sign(values))
-    for name, sign in (("tension", 1.0), ("compression", -1.0), ("zero", 0.0)):
-        mask = signs == sign
+    corners = np.empty((len(rows), 4, 2))
+    corners[:, 0], corners[:, 3] = start, end
+    for axis in (0, 1):
+        rise = normal[:, axis] * height
+        corners[:, 1, axis], corners[:, 2, axis] = start[:, axis] + rise, end[:, axis] + rise
+    pulled, pushed = values > SMALLEST_FORCE, values < -SMALLEST_FORCE
+    for name, mask in (("tension", pulled), ("compression", pushed), ("zero", ~(pulled | pushed))):
         if mask.any():
-            _draw_rectangles(sheet, name, start[mask], end[mask], (normal * height[:, None])[mask])
+            _draw_rectangles(sheet, name, corners[mask])
     _label_rods(sheet, rows, values, (start + end) / 2, normal, height)
 
 
 def _shown_rods(sheet: Sheet) -> tuple[NDArray[np.float64], Rows, Points, Points]:
     """Axial forces of all rods; rows and visible ends of those whose diagram is drawn."""
-    if sheet.view.all_diagrams:
-        shown = np.ones(len(sheet.rods), dtype=bool)
-    else:
+    shown: NDArray[np.bool_] | slice = slice(None)
+    if not sheet.view.all_diagrams:
         shown = sheet.chosen(sheet.tagged(DiagramShown, "rods"), sheet.rods)
-    if not shown.any():
-        return np.empty(0), sheet.rods[:0], sheet.start[:0], sheet.end[:0]
-    force = np.nan_to_num(sheet.model.rods.axial_force)
-    return force, sheet.rods[shown], sheet.start[shown], sheet.end[shown]
+    rows = sheet.rods[shown]
+    force = np.nan_to_num(sheet.model.rods.axial_force) if len(rows) else np.empty(0)
+    return force, rows, sheet.start[shown], sheet.end[shown]
 
 
 def _room(sheet: Sheet, start: Points, end: Points) -> float:
@@ -84,29 +96,29 @@ def _room(sheet: Sheet, start: Points, end: Points) -> float:
 
 
 def _outward_normals(sheet: Sheet, rows: Rows, start: Points, end: Points) -> Points:
-    """Unit normals (pixels) away from the middle of the original structure; upwards or left if through it."""
+    """Unit normals (pixels) away from the middle of the original structure; upwards or left if through it.
+
+    Judged in the original geometry, so that a diagram does not change sides while the rod moves.
+    """
     rods = sheet.model.rods
-    along = end - start
-    length = np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-9)
-    normal = np.stack([along[:, 1], -along[:, 0]], axis=1) / length[:, None]
-    position = sheet.model.particles.position
-    middles = 0.5 * (position[sheet.ends[:, 0]] + position[sheet.ends[:, 1]])
-    outward = (middles[rows] - middles.mean(axis=0)) * [1.0, -1.0]
-    # Judged in the original geometry, so that a diagram does not change sides while the rod moves.
-    original = rods.difference[rows] * [1.0, -1.0]
-    side = outward[:, 0] * original[:, 1] - outward[:, 1] * original[:, 0]
-    tie = np.abs(side) < 1e-6 * rods.original_length[rows] * (np.ptp(middles, axis=0).max() + 1e-300)
-    upwards = np.where(
-        np.abs(original[:, 0]) > 1e-9 * rods.original_length[rows], original[:, 0], original[:, 1]
-    )
-    chosen: Points = normal * np.where(np.where(tie, upwards, side) < 0.0, -1.0, 1.0)[:, None]
-    return chosen
+    x, y = sheet.model.particles.position.T
+    first, last = sheet.ends[:, 0], sheet.ends[:, 1]
+    middle_x, middle_y = 0.5 * (x[first] + x[last]), 0.5 * (y[first] + y[last])
+    extent = max(np.ptp(middle_x), np.ptp(middle_y)) + 1e-300
+    outward_x, outward_y = middle_x[rows] - middle_x.mean(), middle_y[rows] - middle_y.mean()
+    difference_x, difference_y = rods.difference[rows].T
+    length = rods.original_length[rows]
+    side = outward_y * difference_x - outward_x * difference_y
+    upwards = np.where(np.abs(difference_x) > 1e-9 * length, difference_x, -difference_y)
+    side = np.where(np.abs(side) < 1e-6 * extent * length, upwards, side)
+    along_x, along_y = (end - start).T
+    scale = np.where(side < 0.0, -1.0, 1.0) / np.maximum(np.hypot(along_x, along_y), 1e-9)
+    return np.stack([along_y * scale, -along_x * scale], axis=1)
 
 
-def _draw_rectangles(sheet: Sheet, name: str, start: Points, end: Points, rise: Points) -> None:
+def _draw_rectangles(sheet: Sheet, name: str, corners: Points) -> None:
     colour: Colour = getattr(sheet.theme, name)
     outlined = typical_length(sheet.start, sheet.end) > 16.0 * sheet.unit
-    corners = np.stack([start, start + rise, end + rise, end], axis=1)
     sheet.marks.append(Fills(corners, faded(colour, 0.16 if outlined else 0.5)))
     if outlined:
         first, last = corners[:, :-1].reshape(-1, 2), corners[:, 1:].reshape(-1, 2)
@@ -125,10 +137,11 @@ def _label_rods(
     height: NDArray[np.float64],
 ) -> None:
     selected = sheet.chosen(sheet.tagged(Selected, "rods"), rows)
-    written_ones = _most_important(sheet, values, selected, middle)
+    candidates = np.arange(len(rows))
     if typical_length(sheet.start, sheet.end) < _SHORTEST_WITH_VALUE * sheet.unit:
-        written_ones = [index for index in written_ones if selected[index]]
+        candidates = np.flatnonzero(selected)
         sheet.notes.append("zoom in to read forces")
+    written_ones = _most_important(sheet, values, candidates, selected, middle)
     few = len(values) <= _FEW_VALUES
     for index in written_ones:
         value = float(values[index])
@@ -149,13 +162,20 @@ def _rank(value: float) -> float:
 
 
 def _most_important(
-    sheet: Sheet, values: NDArray[np.float64], selected: NDArray[np.bool_], at: Points
+    sheet: Sheet, values: NDArray[np.float64], candidates: Rows, selected: NDArray[np.bool_], at: Points
 ) -> list[int]:
-    """The selected and the largest values at visible points, as many as leave most of the picture free."""
+    """The selected and the largest values at visible points, as many as leave most of the picture free.
+
+    candidates: indices of those to choose from.
+    """
     area = sheet.viewport.width * sheet.viewport.height / sheet.unit**2
     most = int(0.25 * area / (46.0 * 18.0))
-    seen = np.flatnonzero(sheet.sees(at))
-    order: list[int] = seen[np.lexsort((-np.abs(values[seen]), ~selected[seen]))][:most].tolist()
+    seen = candidates[sheet.sees(at[candidates])]
+    worth = np.where(selected[seen], np.inf, np.abs(values[seen]))
+    if len(seen) > most:
+        enough = np.partition(worth, -most)[-most] if most else np.inf
+        seen, worth = seen[worth >= enough], worth[worth >= enough]
+    order: list[int] = seen[np.lexsort((-np.abs(values[seen]), -worth))][:most].tolist()
     return order
 
 
@@ -191,7 +211,7 @@ def _places_by_rod(middle: Pair, normal: Pair, height: float, half: tuple[float,
     ]
 
 
-def draw_particle_diagrams(sheet: Sheet, crowd: NDArray[np.float64], sides: NDArray[np.int64]) -> None:
+def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     """Arrows of the horizontal and vertical external force on each particle that shows its diagram."""
     shown = sheet.particles
     if not sheet.view.all_diagrams:
@@ -200,15 +220,14 @@ def draw_particle_diagrams(sheet: Sheet, crowd: NDArray[np.float64], sides: NDAr
         return
     particles = sheet.model.particles
     force = (particles.applied_force + particles.reaction)[shown]
-    pairs = np.argwhere(np.abs(force) > SMALLEST_FORCE)
-    if not len(pairs):
+    index, axis = _thinned(sheet, shown, force, *np.nonzero(np.abs(force) > SMALLEST_FORCE))
+    if not len(index):
         return
     sheet.legend.append("force")
-    rows, axis = shown[pairs[:, 0]], pairs[:, 1]
-    value = force[pairs[:, 0], axis]
+    rows, value = shown[index], force[index, axis]
     # Model y is up, pixels' y is down: a positive vertical force points in direction 3.
     direction = np.where(axis == 0, np.where(value > 0, 0, 2), np.where(value > 0, 3, 1))
-    tail, outer = _arrow_places(sheet, rows, direction, crowd, sides)
+    tail, outer = _arrow_places(sheet, rows, direction, sides)
     length = ARROW_LENGTH * sheet.unit
     for turns in range(4):
         mask = direction == turns
@@ -220,11 +239,31 @@ def draw_particle_diagrams(sheet: Sheet, crowd: NDArray[np.float64], sides: NDAr
     _label_arrows(sheet, value, tail + DIRECTIONS[direction] * length / 2, outer)
 
 
+def _thinned(
+    sheet: Sheet, rows: Rows, force: NDArray[np.float64], index: Rows, axis: Rows
+) -> tuple[Rows, Rows]:
+    """Of many arrows, the largest in each square of their own length, so that they can be told apart.
+
+    Squares divide the original geometry, so that arrows neither come nor go while a structure moves.
+    """
+    if len(index) <= _MANY_ARROWS:
+        return index, axis
+    side = ARROW_LENGTH * sheet.unit / sheet.view.camera.scale
+    x, y = np.floor(sheet.model.particles.position[rows[index]] / side).T
+    order = np.lexsort((index, -np.abs(force[index, axis]), axis, y, x))
+    x, y, along = x[order], y[order], axis[order]
+    first = np.ones(len(order), dtype=bool)
+    first[1:] = (np.diff(x) != 0) | (np.diff(y) != 0) | (np.diff(along) != 0)
+    kept = np.sort(order[first])
+    if len(kept) < len(order):
+        sheet.notes.append("zoom in to see all external forces")
+    return index[kept], axis[kept]
+
+
 def _arrow_places(
     sheet: Sheet,
     rows: Rows,
     direction: NDArray[np.int64],
-    crowd: NDArray[np.float64],
     sides: NDArray[np.int64],
 ) -> tuple[Points, NDArray[np.int64]]:
     """Tails of the arrows, and on which side of its particle each stands.
@@ -233,7 +272,7 @@ def _arrow_places(
     beyond the support, if there is one.
     """
     u = sheet.unit
-    opposite = (direction + 2) % 4
+    opposite, crowd = (direction + 2) % 4, crowding(sheet, rows)
     supported = sides[rows] != NO_SUPPORT
     busy_ahead = crowd[rows, direction] + 0.8 * (supported & (sides[rows] == direction))
     busy_behind = crowd[rows, opposite] + 0.8 * (supported & (sides[rows] == opposite))
@@ -247,7 +286,8 @@ def _arrow_places(
 
 def _label_arrows(sheet: Sheet, value: NDArray[np.float64], middle: Points, side: NDArray[np.int64]) -> None:
     few = len(value) <= _FEW_VALUES
-    for index in _most_important(sheet, value, np.zeros(len(value), dtype=bool), middle):
+    nothing = np.zeros(len(value), dtype=bool)
+    for index in _most_important(sheet, value, np.arange(len(value)), nothing, middle):
         size_of_force = abs(float(value[index]))
         # The smallest that is drawn at all, 0.0001, must not read 0.00.
         number = written(size_of_force, 2 if size_of_force >= 0.01 else 4)

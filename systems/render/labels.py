@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.camera import Viewport
+from systems.render.clip import bounds
 from systems.render.marks import Mark, Panel, Points, Text
 from systems.render.theme import Colour
 from systems.render.typography import line_height, text_width
@@ -35,32 +36,55 @@ class Occupancy:
 
     def block_squares(self, centres: Points, half: NDArray[np.float64]) -> None:
         """Take many squares of half width `half` (n,) about `centres` (n, 2)."""
-        for (x, y), h in zip(centres.tolist(), half.tolist(), strict=True):
-            self.block(x - h, y - h, 2.0 * h, 2.0 * h)
+        cells = self.cells_of(centres - half[:, None], 2.0 * half[:, None])
+        for left, top, right, bottom in cells.tolist():
+            self.taken[top:bottom, left:right] = True
 
     def line(self, start: Points, end: Points, strength: int) -> None:
         """Note lines, FAINT or STRONG, from `start` to `end`, each (n, 2), inside or near the viewport."""
-        count = (np.abs(end - start).max(axis=1, initial=0.0) / self.cell).astype(np.int64) + 2
+        left, top = self.viewport.left, self.viewport.top
+        x, y = (start[:, 0] - left) / self.cell, (start[:, 1] - top) / self.cell
+        dx, dy = (end[:, 0] - start[:, 0]) / self.cell, (end[:, 1] - start[:, 1]) / self.cell
+        count = np.maximum(np.abs(dx), np.abs(dy)).astype(np.intp) + 2
         of = np.repeat(np.arange(len(start)), count)
-        step = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
-        share = (step / (count - 1)[of])[:, None]
-        samples = start[of] + share * (end - start)[of]
-        cells = ((samples - [self.viewport.left, self.viewport.top]) / self.cell).astype(np.int64)
-        rows, columns = cells[:, 1], cells[:, 0]
-        ok = (rows >= 0) & (columns >= 0) & (rows < self.lined.shape[0]) & (columns < self.lined.shape[1])
-        self.lined[rows[ok], columns[ok]] = strength
-
-    def is_free(self, left: float, top: float, width: float, height: float, *, covering: int) -> bool:
-        """True if nothing takes any of a rectangle and no line in it is stronger than `covering`."""
-        cells = self._cells(left, top, width, height)
-        return not (self.taken[cells].any() or (covering < STRONG and (self.lined[cells] > covering).any()))
+        step = np.arange(len(of)) - (np.cumsum(count) - count)[of]
+        scale = 1.0 / (count - 1)
+        columns = (x[of] + step * (dx * scale)[of]).astype(np.intp)
+        rows = (y[of] + step * (dy * scale)[of]).astype(np.intp)
+        height, width = self.lined.shape
+        ok = (rows >= 0) & (columns >= 0) & (rows < height) & (columns < width)
+        self.lined.ravel()[(rows * width + columns)[ok]] = strength
 
     def crossed(self, left: float, top: float, width: float, height: float) -> int:
         """How much of a rectangle is taken or crossed by lines, in cells."""
         cells = self._cells(left, top, width, height)
         return int((self.taken[cells] | (self.lined[cells] > 0)).sum())
 
+    def are_free(self, cells: NDArray[np.intp], covering: int) -> NDArray[np.bool_]:
+        """For each box of `cells` (n, 4), whether nothing takes any and no line in it is stronger than `covering`.
+
+        The sum over a box is the difference of four sums over boxes that begin at the first cell.
+        """
+        height, width = self.taken.shape
+        sums = np.zeros((height + 1, width + 1), dtype=np.int32)
+        np.cumsum(self.taken | (self.lined > covering), axis=0, dtype=np.int32, out=sums[1:, 1:])
+        np.cumsum(sums, axis=1, out=sums)
+        left, top, right, bottom = cells.T
+        nothing: NDArray[np.bool_] = (
+            sums[bottom, right] - sums[top, right] == sums[bottom, left] - sums[top, left]
+        )
+        return nothing
+
+    def cells_of(self, corners: Points, sizes: Points) -> NDArray[np.intp]:
+        """First column and row, and those after the last, that boxes touch, shape (n, 4), within the picture."""
+        height, width = self.taken.shape
+        corners = corners - [self.viewport.left, self.viewport.top]
+        low = np.clip((corners / self.cell).astype(np.intp), 0, [width, height])
+        high = np.clip(((corners + sizes) / self.cell).astype(np.intp) + 1, low, [width, height])
+        return np.concatenate([low, high], axis=1)
+
     def _cells(self, left: float, top: float, width: float, height: float) -> tuple[slice, slice]:
+        """The same of a single box: its rows and columns, which may end beyond the last ones."""
         x, y = left - self.viewport.left, top - self.viewport.top
         columns = slice(max(int(x / self.cell), 0), max(int((x + width) / self.cell) + 1, 0))
         return slice(max(int(y / self.cell), 0), max(int((y + height) / self.cell) + 1, 0)), columns
@@ -92,9 +116,9 @@ def half_size(text: str, size: int, weight: str, unit: float) -> tuple[float, fl
 def place_labels(labels: Iterable[Label], occupancy: Occupancy, unit: float) -> list[Mark]:
     """Marks of the labels that found a free place, in order of rank; the others are left out."""
     marks: list[Mark] = []
-    for label in sorted(labels, key=lambda label: label.rank):
-        half = half_size(label.text, label.size, label.weight, unit)
-        place = _free_place(label, *half, occupancy)
+    ranked = sorted(labels, key=lambda label: label.rank)
+    halves = [half_size(label.text, label.size, label.weight, unit) for label in ranked]
+    for label, place, half in zip(ranked, _free_places(ranked, halves, occupancy), halves, strict=True):
         if place is None:
             continue
         x, y = place
@@ -106,16 +130,31 @@ def place_labels(labels: Iterable[Label], occupancy: Occupancy, unit: float) -> 
     return marks
 
 
-def _free_place(
-    label: Label, half_width: float, half_height: float, occupancy: Occupancy
-) -> tuple[float, float] | None:
-    """The first free one of a label's places, each moved into the viewport where it sticks out."""
-    v = occupancy.viewport
-    for covering in _COVERED[label.lines]:
-        for x, y in label.places:
-            x = min(max(x, v.left + half_width), v.left + v.width - half_width)
-            y = min(max(y, v.top + half_height), v.top + v.height - half_height)
-            box = x - half_width, y - half_height, 2 * half_width, 2 * half_height
-            if occupancy.is_free(*box, covering=covering):
-                return x, y
-    return None
+def _free_places(
+    labels: Sequence[Label], halves: Sequence[tuple[float, float]], occupancy: Occupancy
+) -> Iterator[tuple[float, float] | None]:
+    """For one label after the other the first of its places that is free, also of the labels before it.
+
+    Which are free of all else is found for all places at once: there are thousands of them in every frame.
+    """
+    middle = np.array([place for label in labels for place in label.places]).reshape(-1, 2)
+    half = np.repeat(np.array(halves).reshape(-1, 2), [len(label.places) for label in labels], axis=0)
+    low, high = bounds(occupancy.viewport)
+    middle = np.minimum(np.maximum(middle, low + half), high - half)  # into the viewport where it sticks out
+    cells = occupancy.cells_of(middle - half, 2.0 * half)
+    free = {covering: occupancy.are_free(cells, covering).tolist() for covering in (0, FAINT, STRONG)}
+    places, boxes = middle.tolist(), cells.tolist()
+    taken = [0] * len(occupancy.taken)  # by labels so far: the columns of each row as bits of one number
+    first = 0
+    for label in labels:
+        chosen = None
+        indices = range(first, first + len(label.places))
+        for index in (i for covering in _COVERED[label.lines] for i in indices if free[covering][i]):
+            left, top, right, bottom = boxes[index]
+            bits = (1 << right) - (1 << left)
+            if not any(row & bits for row in taken[top:bottom]):
+                taken[top:bottom] = [row | bits for row in taken[top:bottom]]
+                chosen = places[index][0], places[index][1]
+                break
+        yield chosen
+        first = indices.stop

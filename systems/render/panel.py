@@ -17,7 +17,7 @@ from systems.render.help import draw_help
 from systems.render.marks import Fills, Mark, Panel, Picture, Rectangles, Strokes, Text
 from systems.render.sheet import FEW, Sheet, measure
 from systems.render.structure import draw_particles, draw_rods
-from systems.render.supports import crowding, draw_supports, support_sides
+from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Colour, Theme, faded
 from systems.render.typography import shortened, text_width, wrapped
 
@@ -241,7 +241,7 @@ def thumbnail(model: Model, viewport: Viewport, unit: float, theme: Theme) -> tu
     camera = Camera(viewport=viewport)
     camera.fit(drawn_positions(model), _THUMBNAIL_MARGIN * unit)
     sheet = measure(model, View(camera=camera, pixel_ratio=_SMALLER * unit), theme)
-    draw_supports(sheet, support_sides(model.particles.fixed, crowding(sheet)))
+    draw_supports(sheet, support_sides(sheet))
     draw_rods(sheet)
     draw_particles(sheet)
     return (*sheet.marks, *_velocities(sheet))

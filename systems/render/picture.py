@@ -17,7 +17,7 @@ from systems.render.panel import compose_form
 from systems.render.readouts import draw_readouts
 from systems.render.sheet import Sheet, measure
 from systems.render.structure import draw_ghost, draw_grid, draw_halos, draw_particles, draw_rods, label_names
-from systems.render.supports import crowding, draw_supports, support_sides
+from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Theme
 from systems.render.toolbar import compose_toolbar
 from systems.render.tools import draw_preview
@@ -51,12 +51,11 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme) -> Picture:
     draw_rod_diagrams(sheet)
     draw_ghost(sheet)
     draw_halos(sheet)
-    crowd = crowding(sheet)
-    sides = support_sides(model.particles.fixed, crowd)
+    sides = support_sides(sheet)
     draw_supports(sheet, sides)
     draw_rods(sheet)
     draw_particles(sheet)
-    draw_particle_diagrams(sheet, crowd, sides)
+    draw_particle_diagrams(sheet, sides)
     label_names(sheet)
     for layer in ABOVE:
         sheet.marks += layer(sheet)

@@ -41,6 +41,7 @@ class Canvas:
         if not pygame.font.get_init():
             pygame.font.init()
         self._cache: dict[Any, Any] = {}
+        self._former: dict[Any, Any] = {}  # forgotten, save for what is used again, when the cache is full
         self._files = {
             weight: (files("assets") / "fonts" / name).read_bytes() for weight, name in WEIGHTS.items()
         }
@@ -75,15 +76,16 @@ class Canvas:
         found = self._cache.get(key)
         if found is None:
             if len(self._cache) >= _MOST_CACHED:
-                self._cache.clear()
-            found = self._cache[key] = make()
+                self._former, self._cache = self._cache, {}
+            found = self._cache[key] = self._former.pop(key, None) or make()
         return found
 
     # --- lines and areas -----------------------------------------------------------------------------
 
     def _strokes(self, surface: pygame.Surface, mark: Strokes) -> None:
-        stroked = stroke_pixels_estimate(mark.start, mark.end, mark.width)
-        if stroked > 50 * _MANY and (raster := self._raster()):
+        many = len(mark.start) > _MANY
+        many = many or stroke_pixels_estimate(mark.start, mark.end, mark.width) > 50 * _MANY
+        if many and (raster := self._raster()):
             raster.strokes(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
         else:
             x, y, amount = stroke_coverage(mark.start, mark.end, mark.width)

@@ -44,6 +44,7 @@ class Raster:
         if pixels.shape != self._cover.shape:
             self._prepare(pixels.shape)
         ends = _contiguous(mark.start), _contiguous(mark.end)
+        clip = _around(clip, mark)
         self._kernels.cover_strokes(self._cover, clip, *ends, mark.width)
         self._kernels.blend_cover(pixels, self._cover, clip, colour, mark.colour[3])
 
@@ -60,6 +61,15 @@ class Raster:
         places = _contiguous(mark.at), _contiguous(mark.radius)
         colours = ink, mark.ink[3], hollow, mark.hollow[3]
         self._kernels.draw_discs(pixels, clip, *places, mark.rim, *colours)
+
+
+def _around(clip: Clip, mark: Strokes) -> Clip:
+    """The part of a clip that strokes can reach; a flat one is at most √2 times as high as it is wide."""
+    reach = 0.75 * mark.width + 1.0
+    low = np.minimum(mark.start.min(axis=0), mark.end.min(axis=0)) - reach
+    high = np.maximum(mark.start.max(axis=0), mark.end.max(axis=0)) + reach
+    left, top = max(clip[0], int(low[0])), max(clip[1], int(low[1]))
+    return left, top, max(min(clip[2], int(high[0]) + 1), left), max(min(clip[3], int(high[1]) + 1), top)
 
 
 def _contiguous(numbers: NDArray[Any]) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from components.camera import Viewport
 from components.view import View, drawn_positions
-from systems.render.clip import bounds, clip_segments
+from systems.render.clip import bounds, clip_rods
 from systems.render.labels import Label, Occupancy
 from systems.render.marks import Mark, Points
 from systems.render.theme import Colour, Theme
@@ -35,6 +35,7 @@ class Sheet:
     unit: pixels per point. centres: particles in pixels, shape (n, 2). radii: drawn radii in pixels (n,).
     ends: rows of the particles at the rods' ends (m, 2). rods: rows of the rods that can be seen; start,
     end: their visible parts in pixels, aligned with `rods`. particles: rows of those that can be seen.
+    pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
     legend: names of the colours that occur and mean something. notes: what a person must know of scales.
     """
 
@@ -50,6 +51,8 @@ class Sheet:
     end: Points
     particles: Rows
     occupancy: Occupancy
+    pulled: Rows = field(default_factory=lambda: np.empty(0, dtype=np.intp))
+    pushed: Rows = field(default_factory=lambda: np.empty(0, dtype=np.intp))
     marks: list[Mark] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
     legend: list[str] = field(default_factory=list)
@@ -66,8 +69,9 @@ class Sheet:
     def sees(self, points: Points) -> NDArray[np.bool_]:
         """For each of `points` (n, 2), whether it lies in the viewport."""
         low, high = bounds(self.viewport)
-        beyond = np.maximum(low - points, points - high).max(axis=1, initial=-np.inf)
-        inside: NDArray[np.bool_] = beyond <= 0.0
+        inside = np.ones(len(points), dtype=bool)
+        for axis in (0, 1):
+            inside &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])
         return inside
 
     def tagged(self, tag: type, table: str) -> Rows:
@@ -80,8 +84,11 @@ class Sheet:
 
     def colours_of(
         self, rows: Rows, layers: Iterable[tuple[Rows, Colour]], otherwise: Colour
-    ) -> list[tuple[Colour, NDArray[np.bool_]]]:
-        """Rows grouped by colour: each colour with the mask of its rows; later layers win."""
+    ) -> list[tuple[Colour, NDArray[np.bool_] | slice]]:
+        """Rows grouped by colour: each colour with the mask of its rows, or all; later layers win."""
+        layers = [(wanted, colour) for wanted, colour in layers if len(wanted)]
+        if not layers:
+            return [(otherwise, slice(None))] if len(rows) else []
         choice = np.zeros(len(rows), dtype=np.int64)
         colours = [otherwise]
         for wanted, colour in layers:
@@ -98,11 +105,11 @@ def measure(model: Model, view: View, theme: Theme) -> Sheet:
     viewport = view.canvas
     low, high = bounds(viewport)
     margin = 150.0 * unit  # so that the ends of a rod that leaves the viewport, and their labels, are not seen
-    start, end, rods = clip_segments(centres[ends[:, 0]], centres[ends[:, 1]], low - margin, high + margin)
+    start, end, rods = clip_rods(centres, ends, low - margin, high + margin)
     radii = np.maximum(model.particles.radius * camera.scale, _smallest_radius(start, end, unit))
-    reach = radii[:, None] + 40.0 * unit
-    with np.errstate(invalid="ignore"):
-        seen = ((centres > low - reach) & (centres < high + reach)).all(axis=1)
+    reach, seen = radii + 40.0 * unit, np.ones(len(centres), dtype=bool)
+    for axis in (0, 1):
+        seen &= (centres[:, axis] > low[axis] - reach) & (centres[:, axis] < high[axis] + reach)
     return Sheet(
         model,
         view,
@@ -120,10 +127,11 @@ def measure(model: Model, view: View, theme: Theme) -> Sheet:
 
 
 def typical_length(start: Points, end: Points) -> float:
-    """Median length in pixels of segments; infinite if there are none."""
-    return float(np.median(np.hypot(*(end - start).T))) if len(start) else np.inf
+    """Median length in pixels of segments, of many that of a sample; infinite if there are none."""
+    sample = slice(None, None, len(start) // MANY + 1)
+    return float(np.median(np.hypot(*(end[sample] - start[sample]).T))) if len(start) else np.inf
 
 
 def _smallest_radius(start: Points, end: Points, unit: float) -> float:
     """5 points, so that a particle can be seen and hit; less where it would hide short rods."""
-    return float(np.clip(0.18 * typical_length(start, end), 1.25 * unit, 5.0 * unit))
+    return float(np.clip(0.18 * typical_length(start, end), 0.6 * unit, 5.0 * unit))

@@ -101,17 +101,19 @@ def draw_halos(sheet: Sheet) -> None:
 def draw_rods(sheet: Sheet) -> None:
     """A line between the drawn positions of the ends: red if selected, violet while yielding."""
     rods, theme = sheet.model.rods, sheet.theme
-    yielding = np.empty(0, dtype=np.intp)
+    yielding = sheet.rods[:0]
     if (np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)).any():
         yielding = np.flatnonzero(rods.yielding)
     selected = sheet.tagged(Selected, "rods")
-    width = float(np.clip(0.12 * typical_length(sheet.start, sheet.end) / sheet.unit, 1.0, 2.5)) * sheet.unit
-    layers = [(yielding, theme.yielding), (selected, theme.selected)]
+    width = float(np.clip(0.12 * typical_length(sheet.start, sheet.end) / sheet.unit, 0.5, 2.5)) * sheet.unit
+    by_force = {"compression": sheet.pushed, "tension": sheet.pulled}
+    layers = [(wanted, getattr(theme, name)) for name, wanted in by_force.items()]
+    layers += [(yielding, theme.yielding), (selected, theme.selected)]
     for colour, mask in sheet.colours_of(sheet.rods, layers, theme.ink):
-        wider = 1.0 if colour == theme.ink else 1.35
+        wider = 1.35 if colour in (theme.yielding, theme.selected) else 1.0
         sheet.marks.append(Strokes(sheet.start[mask], sheet.end[mask], width * wider, colour))
-    if len(yielding):
-        sheet.legend.append("yielding")
+    named = {**by_force, "yielding": yielding}
+    sheet.legend += [name for name, wanted in named.items() if len(wanted)]
     sheet.occupancy.line(sheet.start, sheet.end, STRONG)
 
 

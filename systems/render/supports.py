@@ -6,30 +6,41 @@ import numpy as np
 from numpy.typing import NDArray
 
 from systems.render.marks import Stamps
-from systems.render.sheet import DIRECTIONS, Sheet
+from systems.render.sheet import DIRECTIONS, MANY, Rows, Sheet
 from systems.render.symbols import SUPPORT_DEPTH
 
 RIGHT, DOWN, LEFT, UP = range(4)
 NO_SUPPORT = -1
 
 
-def crowding(sheet: Sheet) -> NDArray[np.float64]:
-    """How much the rods crowd each side of each particle, shape (n, 4), sides as in DIRECTIONS.
+def crowding(sheet: Sheet, rows: Rows) -> NDArray[np.float64]:
+    """How much the rods crowd each side of the particles in `rows`, shape (n, 4), sides as in DIRECTIONS.
 
-    Σ cos² of the angle between the side and the attached rods, in the original geometry, so that it does
-    not change while a structure moves.
+    Of other particles it is 0. Σ cos² of the angle between the side and the attached rods, in the original
+    geometry, so that it does not change while a structure moves.
     """
     rods = sheet.model.rods
+    wanted = np.zeros(len(sheet.centres), dtype=bool)
+    wanted[rows] = True
     crowd = np.zeros((len(sheet.centres), 4))
-    length = np.maximum(rods.original_length, 1e-300)[:, None]
-    unit = rods.difference / length * [1.0, -1.0]
-    for end, outward in ((0, unit), (1, -unit)):
-        np.add.at(crowd, sheet.ends[:, end], np.maximum(outward @ DIRECTIONS.T, 0.0) ** 2)
+    for end, outward in ((0, [1.0, -1.0]), (1, [-1.0, 1.0])):
+        attached = np.flatnonzero(wanted[sheet.ends[:, end]])
+        length = np.maximum(rods.original_length[attached], 1e-300)[:, None]
+        cosine = (rods.difference[attached] / length * outward) @ DIRECTIONS.T
+        for side in range(4):
+            share = np.maximum(cosine[:, side], 0.0) ** 2
+            crowd[:, side] += np.bincount(sheet.ends[attached, end], share, len(crowd))
     return crowd
 
 
-def support_sides(fixed: NDArray[np.bool_], crowd: NDArray[np.float64]) -> NDArray[np.int64]:
-    """The side of each particle on which its support stands, shape (n,); NO_SUPPORT where it has none.
+def support_sides(sheet: Sheet) -> NDArray[np.int64]:
+    """The side of each particle on which its support stands, shape (n,); NO_SUPPORT where it has none."""
+    fixed = sheet.model.particles.fixed
+    return freest_sides(fixed, crowding(sheet, np.flatnonzero(fixed[:, 0] | fixed[:, 1])))
+
+
+def freest_sides(fixed: NDArray[np.bool_], crowd: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The side for the supports of particles fixed in x, y (n, 2) that are crowded so (n, 4).
 
     Below or to the left, or the opposite side where that is clearly freer; for both directions below
     rather than at a side, and above only where all else is crowded.
@@ -48,12 +59,11 @@ def support_sides(fixed: NDArray[np.bool_], crowd: NDArray[np.float64]) -> NDArr
 
 def draw_supports(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     """Triangles on a line (one direction) or on a plate (both), touching the particles from outside."""
-    fixed = sheet.model.particles.fixed
+    supported = sheet.particles[sides[sheet.particles] != NO_SUPPORT]
+    fixed = sheet.model.particles.fixed[supported].all(axis=1)
     for side in range(4):
         for symbol, both in (("roller", False), ("pinned", True)):
-            rows = sheet.particles[
-                (sides[sheet.particles] == side) & (fixed[sheet.particles].all(axis=1) == both)
-            ]
+            rows = supported[(sides[supported] == side) & (fixed == both)]
             if not len(rows):
                 continue
             apex = sheet.centres[rows] + DIRECTIONS[side] * (sheet.radii[rows] - sheet.unit)[:, None]
@@ -62,4 +72,4 @@ def draw_supports(sheet: Sheet, sides: NDArray[np.int64]) -> None:
                 Stamps(symbol, apex, size, sheet.unit, sheet.theme.ink, sheet.theme.hollow, side)
             )
             middle = apex + DIRECTIONS[side] * size / 2
-            sheet.occupancy.block_squares(middle, np.full(len(rows), size / 2))
+            sheet.occupancy.block_squares(middle[:MANY], np.full(len(middle[:MANY]), size / 2))

@@ -25,7 +25,7 @@ from systems.render.labels import half_size
 from systems.render.marks import Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
 from systems.render.overlays import written_length, written_speed, written_time
 from systems.render.picture import compose, drawn_positions
-from systems.render.supports import DOWN, LEFT, NO_SUPPORT, RIGHT, UP, support_sides
+from systems.render.supports import DOWN, LEFT, NO_SUPPORT, RIGHT, UP, freest_sides
 from systems.render.theme import load_theme, theme_from, theme_names
 from systems.render.typography import shortened, text_width, wrapped
 
@@ -181,7 +181,7 @@ def test_derived_columns_are_read_only_when_needed() -> None:
     ],
 )
 def test_supports_stand_where_no_rod_is(fixed: tuple, crowd: tuple, side: int) -> None:
-    assert support_sides(np.array([fixed]), np.array([crowd], dtype=float)).tolist() == [side]
+    assert freest_sides(np.array([fixed]), np.array([crowd], dtype=float)).tolist() == [side]
 
 
 def test_supports_touch_the_rim_from_outside() -> None:
