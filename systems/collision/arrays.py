@@ -27,6 +27,7 @@ GX, GY = 12, 13  # acceleration without contact forces, m/s²
 STEP = 14  # s; when the forces in its lasting contacts are due again
 CHANGES = 15  # of its path so far
 DISC_WIDTH = 16
+MOVING = (UX, UY, VX, VY, AX, AY, EPOCH, STEP)  # what time changes, as components/paths.py has it
 
 
 class Grid(NamedTuple):
@@ -122,7 +123,8 @@ DIRECT = 48  # contacts up to which a projection is solved directly; more: by sw
 class Report(NamedTuple):
     """Impacts that nobody has fetched yet.
 
-    pairs: the two discs, shape (capacity, 2). details: time (s), impulse (N·s), energy lost (J), shape (capacity, 3).
+    pairs: the two discs, shape (capacity, 2). details: time (s), impulse (N·s), energy lost (J) and the point
+    of contact (x, y in m), shape (capacity, 5).
     """
 
     pairs: Integers

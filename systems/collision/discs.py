@@ -5,13 +5,14 @@ Importing this module imports numba; do so only where a plan is built.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from components.paths import Paths
 from systems.collision import arrays
 from systems.collision.arrays import Floats, Grid, Group, Integers, Queue, Reason, Report, Ties
 from systems.collision.flight.kernels import advance
@@ -25,19 +26,26 @@ class Impacts:
     """Impacts in the order in which they happened.
 
     pairs: the two discs, shape (k, 2). time: s. impulse: N·s, along the line of centres. loss: energy lost, J.
+    point: where they touched, shape (k, 2), m.
     """
 
     pairs: Integers
     time: Floats
     impulse: Floats
     loss: Floats
+    point: Floats
 
     def __len__(self) -> int:
         return len(self.time)
 
 
 class Discs:
-    """Discs that fly, collide and rest on one another."""
+    """Discs that fly, collide and rest on one another.
+
+    kernel: what advances them; a program puts one there that is compiled already.
+    """
+
+    kernel: Callable[..., int] = staticmethod(advance)
 
     def __init__(
         self,
@@ -100,8 +108,8 @@ class Discs:
         taken = [self._take()]
         while True:
             reason = Reason(
-                advance(
-                    until,
+                self.kernel(
+                    float(until),
                     last - int(self.counts[arrays.EVENTS]),
                     self.rows,
                     self.grid,
@@ -135,7 +143,67 @@ class Discs:
         k = int(self.counts[arrays.REPORTED])
         self.counts[arrays.REPORTED] = 0
         details = self.report.details[:k].copy()
-        return Impacts(self.report.pairs[:k].copy(), details[:, 0], details[:, 1], details[:, 2])
+        return Impacts(
+            self.report.pairs[:k].copy(), details[:, 0], details[:, 1], details[:, 2], details[:, 3:]
+        )
+
+    # --- what is to come, to go on with later -------------------------------------------------------
+
+    def paths(self) -> Paths:
+        """All that the future follows from besides what the discs are: with it others go on, bit for bit."""
+        owners, entries = self._lasting_entries()
+        pairs = np.column_stack([owners, self.ties.lasting[entries, arrays.OTHER]])
+        return Paths(self.rows[:, list(arrays.MOVING)], pairs, self.ties.forces[entries])
+
+    def follow(self, paths: Paths) -> None:
+        """Go on as the discs did that these paths were taken from."""
+        self.rows[:, list(arrays.MOVING)] = paths.motion
+        self.counts[arrays.RENEW] = 1
+        while len(paths.contacts) > self.counts[arrays.SPARES]:
+            self.ties = _more_lasting(self.ties, 2 * len(self.ties.lasting), self.counts)
+        for (i, j), force in zip(paths.contacts[::-1].tolist(), paths.forces[::-1].tolist(), strict=True):
+            entry = self.counts[arrays.SPARE]
+            self.counts[arrays.SPARE] = self.ties.lasting[entry, arrays.NEXT]
+            self.counts[arrays.SPARES] -= 1
+            self.ties.lasting[entry] = j, self.ties.first_lasting[i]
+            self.ties.forces[entry] = force
+            self.ties.first_lasting[i] = entry
+
+    def _lasting_entries(self) -> tuple[Integers, Integers]:
+        """The discs that have lasting contacts, once for each, and the entries, in the order of the chains."""
+        owners, entries = [], []
+        for i in np.flatnonzero(self.ties.first_lasting != arrays.NONE).tolist():
+            entry = int(self.ties.first_lasting[i])
+            while entry != arrays.NONE:
+                owners.append(i)
+                entries.append(entry)
+                entry = int(self.ties.lasting[entry, arrays.NEXT])
+        return np.array(owners, dtype=np.int64), np.array(entries, dtype=np.int64)
+
+    def contact_forces(self) -> Floats:
+        """The sum of the forces (N) with which others keep each disc away in lasting contacts, shape (n, 2)."""
+        owners, entries = self._lasting_entries()
+        others = self.ties.lasting[entries, arrays.OTHER]
+        displacement, _ = self.state_at(self.now)
+        place = self._columns(arrays.OX) + displacement
+        line = place[owners] - place[others]
+        push = line * (self.ties.forces[entries] / np.hypot(line[:, 0], line[:, 1]))[:, None]
+        held = (self._columns(arrays.WX)[others] == 0.0).all(axis=1)  # they have no entries of their own
+        total = np.zeros_like(place)
+        for d in range(2):
+            total[:, d] = np.bincount(owners, push[:, d], len(place))
+            total[:, d] -= np.bincount(others[held], push[held, d], len(place))
+        return total
+
+    @property
+    def at_rest(self) -> bool:
+        """True if nothing moves and nothing will."""
+        return not self.rows[:, arrays.VX : arrays.AY + 1].any()
+
+    @property
+    def last_change(self) -> float:
+        """Time (s) at which a path last changed."""
+        return float(self.rows[:, arrays.EPOCH].max())
 
     @property
     def now(self) -> float:
@@ -188,7 +256,7 @@ def _group(n: int, contacts: int) -> Group:
 
 
 def _report(size: int) -> Report:
-    return Report(np.zeros((size, 2), dtype=np.int64), np.zeros((size, 3)))
+    return Report(np.zeros((size, 2), dtype=np.int64), np.zeros((size, 5)))
 
 
 def _ties(n: int, joined: Any, lasting: int, counts: Integers) -> Ties:
@@ -220,5 +288,5 @@ def _more_lasting(ties: Ties, size: int, counts: Integers) -> Ties:
 
 
 def _concatenated(parts: list[Impacts]) -> Impacts:
-    columns = ("pairs", "time", "impulse", "loss")
+    columns = ("pairs", "time", "impulse", "loss", "point")
     return Impacts(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))

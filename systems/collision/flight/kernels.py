@@ -31,6 +31,8 @@ from systems.collision.arrays import (
     NY,
     OPENING,
     OTHER,
+    OX,
+    OY,
     QUEUED,
     RADIUS,
     RENEW,
@@ -111,7 +113,7 @@ def _happen(discs, grid, ties, queue, group, report, numbers, counts):
     counts[EVENTS] += 1
     stop_sinking(count, touching, group)
     respond(count, touching, _restitution(touching, discs, group, numbers), group)
-    _report(touching, group, report, numbers, counts)
+    _report(touching, discs, group, report, numbers, counts)
     duration = support(count, touching, discs, group, numbers)
     _make_contacts_last(count, touching, discs, ties, group, counts)
     struck = 0 if i == j else 2
@@ -186,6 +188,7 @@ def _gather(i, j, discs, grid, ties, group, numbers, counts):
             count, touching = _gather_lasting(m, count, touching, discs, ties, group, now)
             left, bottom, right, top = place_box(a, discs, now)
             near = neighbours(a, left, bottom, right, top, grid, counts[LAYERS], numbers[CELL])
+            _sort(grid.found, near)
             for k in range(near):
                 b = grid.found[k]
                 met = i != j and m < 2 and group.place[b] == 1 - m
@@ -196,6 +199,17 @@ def _gather(i, j, discs, grid, ties, group, numbers, counts):
                     touching = _link(a, b, 0.0, touching, discs, group, now)
         m += 1
     return count, touching
+
+
+@compiled
+def _sort(found, count):
+    """Bring a few numbers into ascending order: a grid made anew may find them in another one."""
+    for k in range(1, count):
+        value = found[k]
+        while k > 0 and found[k - 1] > value:
+            found[k] = found[k - 1]
+            k -= 1
+        found[k] = value
 
 
 @compiled
@@ -258,7 +272,7 @@ def _restitution(touching, discs, group, numbers):
 
 
 @compiled
-def _report(touching, group, report, numbers, counts):
+def _report(touching, discs, group, report, numbers, counts):
     """Report the contacts that had an impulse.
 
     The energy lost is −Σ p (s + s')/2, with s, s' the speeds of separation before and after; in a joint
@@ -278,8 +292,18 @@ def _report(touching, group, report, numbers, counts):
             report.details[k, 0] = numbers[NOW]
             report.details[k, 1] = impulse
             report.details[k, 2] = loss * (impulse / impulses)
+            report.details[k, 3], report.details[k, 4] = _place(i, group.contacts[c], discs, numbers[NOW])
             counts[REPORTED] += 1
             counts[IMPACTS] += 1
+
+
+@compiled
+def _place(i, contact, discs, time):
+    """The point at which a disc touches another in the direction of its contact."""
+    s = time - discs[i, EPOCH]
+    x = discs[i, OX] + discs[i, UX] + s * (discs[i, VX] + 0.5 * s * discs[i, AX])
+    y = discs[i, OY] + discs[i, UY] + s * (discs[i, VY] + 0.5 * s * discs[i, AY])
+    return x + discs[i, RADIUS] * contact[NX], y + discs[i, RADIUS] * contact[NY]
 
 
 @compiled

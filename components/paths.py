@@ -1,0 +1,76 @@
+"""Paths: what particles that fly free are on, and which of them rest on one another."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import FieldError
+
+_KEYS = ("motion", "contacts", "forces")
+
+
+class Paths(Mapping[str, Any]):
+    """The parabolas of all particles and their lasting contacts; with them a run goes on bit for bit.
+
+    motion: one row per particle, its columns those of systems.collision.arrays.MOVING. contacts: a particle
+    and one that it touches, in the order in which they are looked at, shape (k, 2). forces: in them, N.
+
+    As a mapping it is what a model file holds.
+    """
+
+    def __init__(
+        self, motion: NDArray[np.float64], contacts: NDArray[np.int64], forces: NDArray[np.float64]
+    ) -> None:
+        self.motion = motion
+        self.contacts = contacts
+        self.forces = forces
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that it takes."""
+        return self.motion.nbytes + self.contacts.nbytes + self.forces.nbytes
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_KEYS)
+
+    def __len__(self) -> int:
+        return len(_KEYS)
+
+    def __getitem__(self, key: str) -> Any:
+        if key not in _KEYS:
+            raise KeyError(key)
+        values = getattr(self, key).tolist()
+        if key == "motion":  # no file can hold infinity
+            return [[None if number == math.inf else number for number in row] for row in values]
+        return values
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Paths) and all(
+            getattr(self, key).tobytes() == getattr(other, key).tobytes() for key in _KEYS
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+def check_paths(value: Any, where: str) -> Paths:
+    """Paths from what a model file holds. Raises FieldError."""
+    if isinstance(value, Paths):
+        return value
+    try:
+        numbers = [[math.inf if number is None else number for number in row] for row in value["motion"]]
+        motion = np.array(numbers, dtype=np.float64)
+        contacts = np.array(value["contacts"], dtype=np.int64).reshape(-1, 2)
+        forces = np.array(value["forces"], dtype=np.float64).reshape(-1)
+        whole = set(value) == set(_KEYS) and motion.ndim == 2 and len(forces) == len(contacts)
+    except (TypeError, ValueError, KeyError, OverflowError):
+        whole = False
+    if not whole or (contacts < 0).any() or (contacts >= len(motion)).any() or np.isnan(motion).any():
+        raise FieldError(
+            f"{where}: paths are not what a saved run holds; remove them, and it goes on to within round-off."
+        )
+    return Paths(motion, contacts, forces)

@@ -1,0 +1,1 @@
+"""Discs that overlap where a run begins."""

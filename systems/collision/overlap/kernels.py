@@ -1,0 +1,45 @@
+"""Discs that overlap are moved apart along their lines of centres, shares by inverse mass."""
+
+import math
+
+from systems.collision.kernels import entry
+
+MORE = 0.05  # of an overlap, by which discs are moved farther than apart: sweeps then come to an end
+MOST_SWEEPS = 400  # over the same pairs
+GOLDEN_ANGLE = 2.399963229728653  # between the directions of discs with one centre, so that all differ
+
+
+@entry
+def separate(first, second, position, displacement, radius, inverse_mass, slack):
+    """Move the discs of pairs that overlap by more than slack × reach apart; returns how many sweeps it took.
+
+    Held directions do not move. What is left after MOST_SWEEPS stays.
+    """
+    for sweep in range(MOST_SWEEPS):
+        apart = True
+        for k in range(first.shape[0]):
+            i, j = first[k], second[k]
+            reach = radius[i] + radius[j]
+            x = (position[j, 0] - position[i, 0]) + (displacement[j, 0] - displacement[i, 0])
+            y = (position[j, 1] - position[i, 1]) + (displacement[j, 1] - displacement[i, 1])
+            distance = math.sqrt(x * x + y * y)
+            overlap = reach - distance
+            if overlap <= slack * reach:
+                continue
+            if distance > 0.0:
+                x, y = x / distance, y / distance
+            else:
+                x, y = math.cos(GOLDEN_ANGLE * j), math.sin(GOLDEN_ANGLE * j)
+            along = (inverse_mass[i, 0] + inverse_mass[j, 0]) * x * x
+            along += (inverse_mass[i, 1] + inverse_mass[j, 1]) * y * y
+            if along == 0.0:
+                continue
+            share = (1.0 + MORE * (sweep > 0)) * overlap / along
+            displacement[i, 0] -= share * inverse_mass[i, 0] * x
+            displacement[i, 1] -= share * inverse_mass[i, 1] * y
+            displacement[j, 0] += share * inverse_mass[j, 0] * x
+            displacement[j, 1] += share * inverse_mass[j, 1] * y
+            apart = False
+        if apart:
+            return sweep
+    return MOST_SWEEPS
