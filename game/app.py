@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import time
 from dataclasses import replace
@@ -14,7 +15,7 @@ from components.camera import Camera, Viewport
 from components.model import Model
 from components.toolbar import Toolbar
 from components.view import View
-from game.desk import ModelFile
+from game.desk import Desk, ModelFile
 from game.preferences import DEFAULT_THEME, preferred_theme, remember_theme
 from game.raster_program import load_raster
 from game.scenes.load import Load
@@ -97,6 +98,7 @@ class App:
         self._follow_size()
         self.session.view.fit(model)
         self._full_screen = False
+        self._desk: Desk | None = None
 
     def run(self) -> None:
         """Frames at 60 Hz until the window is closed."""
@@ -126,6 +128,8 @@ class App:
         self._follow_theme()
         if self.render.drawn:
             self.window.flip()
+        elif not self.session.busy:
+            self._clean_up()
 
     def _follow_size(self) -> None:
         """Let the viewport and the size of type follow the window, and the display's pixel density."""
@@ -143,6 +147,17 @@ class App:
         title = f"{'• ' if session.desk.unsaved else ''}{name} – Pinjoint" if name else "Pinjoint"
         if title != self.window.title:
             self.window.title = title
+
+    def _clean_up(self) -> None:
+        """While nothing happens, let the garbage collector look through a newly opened model for the last time.
+
+        Its elements stay; to look through those of a large one takes a tenth of a second, else in mid drag.
+        """
+        if self._desk is not self.session.desk:
+            self._desk = self.session.desk
+            gc.unfreeze()
+            gc.collect()
+            gc.freeze()
 
     def _follow_theme(self) -> None:
         """Keep what the person chooses for the next time."""

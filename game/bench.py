@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 CHECKOUT = Path(__file__).resolve().parent.parent
-NAMES = ("speed",)
+NAMES = ("speed", "editing")
 
 Row = Mapping[str, Any]
 

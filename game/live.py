@@ -6,6 +6,8 @@ from game.clock import FrameClock
 from game.simulation import Simulation
 from systems.physics.pace import natural_pace
 
+MANY, SHARE = 2000, 0.1  # elements from which on a change by a smaller share leaves the pace as it is
+
 
 class Live:
     """A simulation and the clock of its frames."""
@@ -14,6 +16,7 @@ class Live:
         self.simulation = simulation
         self.clock = FrameClock()
         self._pace_revision = -1
+        self._pace_size = 0
 
     def frame(self, elapsed: float) -> None:
         """Take the steps of one frame that comes `elapsed` seconds after the last."""
@@ -28,8 +31,14 @@ class Live:
         self.clock.took(taken, simulation.compute_seconds - before)
 
     def _find_pace(self) -> None:
-        """Let the clock follow the pace that suits the model, found once after every edit."""
-        revision = self.simulation.armed_revision
-        if revision != self._pace_revision:
-            self._pace_revision = revision
-            self.clock.natural = natural_pace(self.simulation.model)
+        """Let the clock follow the pace that suits the model, found after every edit.
+
+        One more or less of many elements hardly changes it, and finding it takes longer than a frame then.
+        """
+        revision, model = self.simulation.armed_revision, self.simulation.model
+        size = model.particles.count + model.rods.count
+        hardly_changed = size > MANY and abs(size - self._pace_size) < SHARE * size
+        if revision != self._pace_revision and not hardly_changed:
+            self._pace_size = size
+            self.clock.natural = natural_pace(model)
+        self._pace_revision = revision

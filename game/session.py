@@ -338,6 +338,7 @@ class Session:
         self._note_beginning()
         self.history.end_run()
         self.history.begin_run(single=True)
+        self.get_ready()  # so that the moment that stepping back may return to is
         if steps >= 0:
             with self.timeline.recording():
                 self.simulation.advance(steps)

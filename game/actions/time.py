@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
 PACE_STEP = 2.0
 FAR = 0.2  # s shown, by which time is skipped forward or back
-MOST_WORK = 10_000_000  # steps × elements that one skip takes, some 0.2 s
+MOST_WORK = 1_000_000  # steps × elements that one skip takes, some 20 ms
+MANY = 2000  # elements of which finding the pace that suits them would take longer
 
 
 def _arrow(direction: Vector, steps: int, *, far: bool) -> Action:
@@ -41,9 +42,11 @@ for _name, _direction, _steps in (
 def _far(session: Session) -> int:
     """How many steps to skip; fewer in large models, so that one does not wait."""
     model = session.model
-    size = model.clock.step_size
-    wanted = round(FAR * session.pace / size) if size > 0.0 else 1
-    return max(min(wanted, MOST_WORK // (model.particles.count + model.rods.count + 1)), 1)
+    elements, size = model.particles.count + model.rods.count + 1, model.clock.step_size
+    most = max(MOST_WORK // elements, 1)
+    if elements > MANY or size == 0.0:
+        return most if size > 0.0 else 1
+    return min(max(round(FAR * session.pace / size), 1), most)
 
 
 def _step(session: Session, steps: int) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -93,18 +93,18 @@ class Pull(Law):
         return x, y
 
 
-def hand_on(model: Model, view: View, particle: Particle, pace: float) -> Hand:
-    """A hand that holds a particle where it is; `pace`: seconds simulated per second shown.
+def hand_on(model: Model, view: View, particle: Particle, pace: Callable[[], float]) -> Hand:
+    """A hand that holds a particle where it is; `pace()`: seconds simulated per second shown.
 
-    A particle without rods follows the pointer within FOLLOWS_WITHIN. One of a structure is pulled no
-    harder than by the usual force of the model when the pointer is COMFORTABLE points away, so that a
-    stiff truss bends instead of being torn apart. The damper is critical for the particle by itself.
+    A particle without rods follows the pointer within FOLLOWS_WITHIN. One of a structure is pulled by no
+    more than the usual force of the model when the pointer is COMFORTABLE points away, so that a stiff
+    truss bends instead of being torn apart. The damper is critical for the particle by itself.
     """
-    rods = model.rods.between
-    frequency = min(2.0 * math.pi / (FOLLOWS_WITHIN * pace), 1.0 / (STEPS_PER_RADIAN * model.clock.step_size))
-    stiffness = particle.mass * frequency**2 / 1000.0
-    if (rods == particle.row).any():
+    fastest = 1.0 / (STEPS_PER_RADIAN * model.clock.step_size)
+    if (model.rods.between == particle.row).any():
         reach = COMFORTABLE * view.pixel_ratio / view.camera.scale / model.settings.displacement_scale
-        stiffness = min(stiffness, usual_force(model) / reach)
+        stiffness = min(particle.mass * fastest**2 / 1000.0, usual_force(model) / reach)
+    else:
+        stiffness = particle.mass * min(2.0 * math.pi / (FOLLOWS_WITHIN * pace()), fastest) ** 2 / 1000.0
     damping = 2.0 * math.sqrt(1000.0 * stiffness * particle.mass) / 1000.0
     return Hand(particle, stiffness, damping, particle.displacement)

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from typing import Protocol
 
+import numpy as np
+
 from components.camera import Viewport
 from components.view import View
-from systems.render.marks import Mark, Panel, Text
+from systems.render.marks import Fills, Mark, Panel, Text
 from systems.render.theme import Theme, faded
 from systems.render.typography import line_height, shortened, text_width
 
@@ -34,7 +36,9 @@ def draw_help(sheet: Drawn) -> list[Mark]:
     if not keys:
         return []
     v = sheet.viewport
-    veil = Panel(v.left, v.top, v.width, v.height, 0.0, faded(sheet.theme.background, 0.75))
+    right, bottom = v.left + v.width, v.top + v.height
+    corners = np.array([[(v.left, v.top), (right, v.top), (right, bottom), (v.left, bottom)]], dtype=np.float64)
+    veil = Fills(corners, faded(sheet.theme.background, 0.75))
     for points in _SIZES:
         card = _Card(sheet, keys, points)
         if card.fits or points == _SIZES[-1]:

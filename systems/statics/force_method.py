@@ -160,8 +160,9 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     for unknown in unknowns:
         _check_strains(model, unknown)
     load = external_forces(model).at(1.0)
-    real = _Linear(model).under(load, prestressed=True)
-    released = _Linear(model, unknowns)
+    whole = _Linear(model)
+    real = whole.under(load, prestressed=True)
+    released = _Linear(model, unknowns) if unknowns else whole
     base = released.under(load, prestressed=True)
     units = tuple(released.under(unit_force(model, unknown), prestressed=False) for unknown in unknowns)
     delta_real = np.array([_delta(model, unknown, real) for unknown in unknowns])

@@ -1,0 +1,176 @@
+"""How soon one sees what one did in a model of 10 000 rods: from the action to the finished picture."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from itertools import count
+
+os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
+
+import pygame
+
+from components.field import Vector
+from game import library
+from game.app import App
+from tests.benchmarks.models import lattice
+
+FRAME = 1.0 / 60.0
+MOST = 50.0  # ms within which one wants to see what one did
+
+Row = dict[str, object]
+
+
+class Hand:
+    """Somebody at a window without a display, with a lattice of rods before them."""
+
+    def __init__(self, rods: int) -> None:
+        self.app = App(lattice(rods, damping=1.0))
+        self.session = self.app.session
+        self._fresh = count(1)  # something else every time: a particle, a place
+        for _ in range(2):
+            self.frame()
+
+    def frame(self) -> None:
+        """One frame of the window, which has an event to deal with."""
+        pygame.event.post(pygame.event.Event(pygame.USEREVENT))
+        self.app.frame(FRAME)
+
+    def pixel(self, x: float, y: float) -> Vector:
+        """Where a point of the model is on the screen."""
+        left, top = self.session.view.camera.to_pixels((x, y)).tolist()
+        return left, top
+
+    def press(self, key: str, at: Vector | None = None) -> None:
+        """A key or button, with the pointer at a pixel."""
+        at = at or self.pixel(0.5, 0.5)
+        self.session.view.pointer = at
+        self.session.press(key, at)
+
+    def point(self, across: float = 0.0, up: float = 0.0) -> Vector:
+        """The pixel of another particle every time, or of a place near it."""
+        side = round(self.session.particles.count**0.5)
+        column, row = divmod(next(self._fresh) * 7, side - 4)
+        return self.pixel(2 + column % (side - 4) + across, 2 + row + up)
+
+
+Act = Callable[[Hand], None]
+
+
+def keys(*pressed: str) -> Act:
+    """Press these keys."""
+    return lambda hand: [hand.press(key) for key in pressed] and None  # type: ignore[func-returns-value]
+
+
+def at_particle(*pressed: str) -> Act:
+    """Press these keys over a particle."""
+
+    def act(hand: Hand) -> None:
+        place = hand.point()
+        for key in pressed:
+            hand.press(key, place)
+
+    return act
+
+
+def _force(hand: Hand) -> None:
+    x, y = hand.point()
+    hand.press("f", (x, y))
+    hand.press("f", (x + 30.0, y + 20.0))
+
+
+def _rod(hand: Hand) -> None:
+    x, y = hand.point()
+    hand.press("l", (x, y))
+    hand.press("l", (x + 2.0 * hand.session.view.camera.scale, y))
+
+
+def _box(hand: Hand) -> None:
+    for key, place in (("drag", (300.0, 200.0)), ("drag to", (600.0, 500.0)), ("drop", (600.0, 500.0))):
+        hand.press(key, place)
+
+
+def _drag(hand: Hand) -> None:
+    x, y = hand.point()
+    for key, place in (("drag", (x, y)), ("drag to", (x + 9.0, y + 9.0)), ("drop", (x + 9.0, y + 9.0))):
+        hand.press(key, place)
+
+
+def _type(hand: Hand) -> None:
+    hand.session.click_box("stiffness")
+    hand.session.type("2")
+
+
+# What is done, in this order, and how often; a name without times is done once and not measured.
+SESSION: tuple[tuple[str, Act, int], ...] = (
+    ("point at a particle", lambda hand: setattr(hand.session.view, "pointer", hand.point()), 7),
+    ("zoom", keys("wheel up"), 3),
+    ("", keys("home"), 1),
+    ("move the view", lambda hand: hand.session.press("drag middle", (5.0, 3.0)), 7),
+    ("select a particle", at_particle("click"), 7),
+    ("new particle", lambda hand: hand.press("p", hand.point(0.5, 0.25)), 7),
+    ("new rod", _rod, 7),
+    ("support", at_particle("c"), 7),
+    ("force", _force, 7),
+    ("delete a particle with its rods", at_particle("click", "delete"), 7),
+    ("undo", keys("ctrl+z"), 7),
+    ("redo", keys("ctrl+y"), 7),
+    ("drag a particle", _drag, 7),
+    ("select in a box", _box, 3),
+    ("copy, paste, undo", keys("ctrl+c", "ctrl+v", "ctrl+z"), 3),
+    ("select all", keys("ctrl+a"), 3),
+    ("move all", keys("right"), 7),
+    ("properties of all", keys("return"), 1),
+    ("type into a box of all", _type, 7),
+    ("apply to all", keys("escape", "escape"), 1),
+    ("undo that", keys("ctrl+z"), 1),
+    ("diagrams of all", keys("i"), 4),
+    ("", keys("escape"), 1),
+    ("new grid", keys("g"), 3),
+    ("help", keys("f1"), 4),
+    ("save again", keys("ctrl+s"), 3),
+    ("", keys("space"), 1),
+    ("a frame while it runs", lambda hand: None, 7),
+    ("new particle while it runs", lambda hand: hand.press("p", hand.point(0.5, 0.25)), 7),
+    ("delete while it runs", at_particle("click", "delete"), 7),
+    ("", keys("space"), 1),
+    ("a step", keys("."), 7),
+    ("a step back", keys(","), 7),
+)
+
+
+def reactions(*, quick: bool) -> Iterator[Row]:
+    """Milliseconds from an action to the picture that shows it: the median, and the longest."""
+    with tempfile.TemporaryDirectory() as folder:
+        before = os.environ.get(library.DATA_VARIABLE)
+        os.environ[library.DATA_VARIABLE] = folder
+        hand = Hand(2_000 if quick else 10_000)
+        hand.session.save_as(library.data_folder() / "lattice.json")
+        for what, act, times in SESSION:
+            taken = sorted(_milliseconds(hand, act) for _ in range(times))
+            if what:
+                median = taken[len(taken) // 2]
+                yield {
+                    "action": what,
+                    "rods": hand.session.rods.count,
+                    "median_ms": median,
+                    "longest_ms": taken[-1],
+                    "seen_in_time": "yes" if median <= MOST else "no",
+                }
+        del os.environ[library.DATA_VARIABLE]
+        if before is not None:
+            os.environ[library.DATA_VARIABLE] = before
+
+
+def _milliseconds(hand: Hand, act: Act) -> float:
+    started = time.perf_counter()
+    act(hand)
+    hand.frame()
+    return 1e3 * (time.perf_counter() - started)
+
+
+def report(*, quick: bool) -> dict[str, list[Row]]:
+    """Everything this benchmark measures, by table."""
+    return {"reactions": list(reactions(quick=quick))}

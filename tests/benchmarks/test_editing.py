@@ -1,0 +1,34 @@
+"""The session that the editing benchmark measures does what it says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from game import library
+from tests.benchmarks import editing
+from tests.benchmarks.editing import SESSION, Hand
+
+
+def test_every_action_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path))
+    hand = Hand(200)
+    hand.session.save_as(tmp_path / "lattice.json")
+    rods = hand.session.rods.count
+    for what, act, times in SESSION:
+        seen = False
+        for _ in range(times):
+            act(hand)
+            hand.frame()
+            seen |= hand.app.render.drawn
+        assert seen or not what, what
+    assert hand.session.scene == "pause"
+    assert hand.session.rods.count < rods
+    assert len(hand.session.history._done) > 30
+
+
+def test_the_table_names_every_action(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(editing, "SESSION", SESSION[:2])
+    table = editing.report(quick=True)["reactions"]
+    assert [row["action"] for row in table] == ["point at a particle", "zoom"]
