@@ -74,32 +74,42 @@ def _client_of(distributed: Any, scheduler: str) -> Any:
 
 
 def _distributed(distributed: Any, client: Any, plan: Plan, numbers: Sequence[int]) -> Iterator[list[Outcome]]:
-    shared = client.scatter(plan, broadcast=True)
+    shared = client.submit(_same, plan, pure=False)  # unlike scattered data, survives the death of its workers
+
+    def submit(task: Sequence[int]) -> Any:
+        return client.submit(Plan.compute_all, shared, task, pure=False)
+
     workers = max(len(client.scheduler_info()["workers"]), 1)
-    tasks = {
-        client.submit(Plan.compute_all, shared, task, pure=False): task for task in _tasks(numbers, workers)
-    }
-    ready = distributed.as_completed(tasks)
-    for future in ready:
+    tasks = {submit(task): task for task in _tasks(numbers, workers)}
+    suspects: list[int] = []
+    for future in distributed.as_completed(tasks):
         task = tasks.pop(future)
-        try:
-            found = future.result()
-        except distributed.KilledWorker:
-            if len(task) == 1:
-                found = [plan.failure(task[0], "Every worker that computed it died; perhaps memory ran out.")]
-            else:  # find out which one it was
-                again = {
-                    client.submit(Plan.compute_all, shared, [number], pure=False): [number] for number in task
-                }
-                tasks |= again
-                ready.update(again)
-                continue
-        except Exception as error:
-            raise SweepError(
-                f"A worker cannot compute this: {error}. Install there what is installed here."
-            ) from None
-        future.release()
-        yield found
+        found = _result(distributed, future)
+        if found is None:
+            suspects += task
+        else:
+            yield found
+    for number in sorted(suspects):  # one at a time, so that only what kills a worker is blamed for it
+        found = _result(distributed, submit([number]))
+        yield found or [plan.failure(number, "Every worker that computed it died; perhaps memory ran out.")]
+
+
+def _result(distributed: Any, future: Any) -> list[Outcome] | None:
+    """What a task came to; None if its workers died."""
+    try:
+        found: list[Outcome] = future.result()
+    except distributed.KilledWorker:
+        return None
+    except Exception as error:
+        raise SweepError(
+            f"A worker cannot compute this: {error}. Install there what is installed here."
+        ) from None
+    future.release()
+    return found
+
+
+def _same(plan: Plan) -> Plan:
+    return plan
 
 
 def _tasks(numbers: Sequence[int], workers: int) -> list[Sequence[int]]:

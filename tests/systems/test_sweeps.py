@@ -96,7 +96,7 @@ def test_every_rod_is_drawn_for_itself_and_more_samples_keep_the_first() -> None
 def test_what_is_drawn_has_the_mean_and_deviation_asked_for(
     distribution: str, mean: float, deviation: float
 ) -> None:
-    from game.sweeps.sweep import plan_of
+    from game.sweeps.run import plan_of
 
     plan = plan_of(MODEL, [f"{STIFFNESS}~{distribution}"], ["residual"], STATIC, (), 4000, 3)
     drawn = np.array([plan.values(number)[0] for number in range(plan.size)], dtype=float)
@@ -311,7 +311,7 @@ def test_sweeps_that_cannot_be_done(reason: str, change: dict[str, Any]) -> None
 def test_an_installation_that_differs_does_not_compute() -> None:
     from dataclasses import replace
 
-    from game.sweeps.sweep import plan_of
+    from game.sweeps.run import plan_of
 
     plan = plan_of(MODEL, [FORCE_Y], MEASURES, STATIC, (), None, 0)
     with pytest.raises(SweepError, match=r"the sweep is of 9\.9"):
