@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from components.field import Vector
 from components.tags import Hovered
+from components.view import View
 from systems.base import Phase, System
 from systems.edit.picking import pick
 
@@ -19,6 +22,9 @@ class Hover(System):
     phase = Phase.EDIT
     scenes = ("simulation", "pause", "properties", "force method")
 
+    def __init__(self) -> None:
+        self._looked: Any = None  # at what, from where and at which point, in the last frame
+
     def needs(self, model: Model) -> bool:
         return model.particles.count + model.grids.count > 0
 
@@ -26,8 +32,15 @@ class Hover(System):
         """Move the mark if the pointer is over something else now."""
         model, view = frame.session.focus
         pointer = frame.session.view.pointer
-        inside = pointer is not None and view.camera.viewport.contains(pointer)
-        hit = pick(model, view, pointer) if inside else None
+        if self._looked == (model.context, model.revision, view.camera, view.strip, pointer):
+            return
+        self._mark(model, view, pointer)
+        self._looked = (model.context, model.revision, replace(view.camera), view.strip, pointer)
+
+    def _mark(self, model: Model, view: View, pointer: Vector | None) -> None:
+        hit = None
+        if pointer is not None and view.camera.viewport.contains(pointer):
+            hit = pick(model, view, pointer)
         before = model.tagged(Hovered)
         if before == [hit] or (hit is None and not before):
             return

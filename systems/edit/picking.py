@@ -28,24 +28,27 @@ def pick_particle(model: Model, view: View, pixel: Vector) -> Particle | None:
     """The particle that is nearest to being hit at a pixel, if one is; none under the toolbar."""
     if model.particles.count == 0 or view.strip.contains(pixel):
         return None
-    distance = np.hypot(*(view.camera.to_pixels(drawn_positions(model)) - pixel).T)
+    x, y = (view.camera.to_pixels(drawn_positions(model)) - pixel).T
     reach = np.maximum(model.particles.radius * view.camera.scale, PARTICLE_REACH * view.pixel_ratio)
-    nearest = int(np.argmin(distance - reach))
-    return model.particles[nearest] if distance[nearest] <= reach[nearest] else None
+    beyond = np.hypot(x, y) - reach
+    nearest = int(np.argmin(beyond))
+    return model.particles[nearest] if beyond[nearest] <= 0.0 else None
 
 
 def pick_rod(model: Model, view: View, pixel: Vector) -> Rod | None:
     """The nearest rod within reach of a pixel."""
     if model.rods.count == 0:
         return None
-    ends = view.camera.to_pixels(drawn_positions(model))[model.rods.between.astype(np.intp)]
-    start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
-    squared = (along**2).sum(axis=1)
-    share = ((pixel - start) * along).sum(axis=1) / np.where(squared > 0.0, squared, 1.0)
-    foot = start + np.clip(share, 0.0, 1.0)[:, None] * along
-    distance = np.hypot(*(foot - pixel).T)
+    x, y = (view.camera.to_pixels(drawn_positions(model)) - pixel).T
+    first, last = model.rods.between.astype(np.intp).T
+    start_x, start_y = x[first], y[first]
+    along_x, along_y = x[last] - start_x, y[last] - start_y
+    squared = along_x**2 + along_y**2
+    share = -(start_x * along_x + start_y * along_y) / np.where(squared > 0.0, squared, 1.0)
+    share = np.minimum(np.maximum(share, 0.0), 1.0)  # of the rod, up to its point nearest to the pixel
+    distance = (start_x + share * along_x) ** 2 + (start_y + share * along_y) ** 2
     nearest = int(np.argmin(distance))
-    return model.rods[nearest] if distance[nearest] <= ROD_REACH * view.pixel_ratio else None
+    return model.rods[nearest] if distance[nearest] <= (ROD_REACH * view.pixel_ratio) ** 2 else None
 
 
 def _grid_at(model: Model, view: View, pixel: Vector) -> Grid | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from typing import Any
 
 import pygame
@@ -14,7 +15,8 @@ from systems.input.bindings import TEXT, repeats
 CLICK_REACH = (
     4.0  # px that the pointer may move between pressing and releasing a button in a click; more: a drag
 )
-IDLE_WAIT = 100  # ms to sleep for an event while nothing moves
+IDLE_PAUSE = 0.016  # s between looks for events while nothing moves
+IDLE_LOOKS = 16  # until a frame goes by without any
 
 _NAMES = {
     pygame.K_ESCAPE: "escape",
@@ -37,6 +39,15 @@ _NAMES = {
 }
 
 
+def _awaited() -> list[pygame.event.Event]:
+    """The next events, or none after a while. pygame.event.wait looks so often that it takes 2 % of a core."""
+    for _ in range(IDLE_LOOKS):
+        time.sleep(IDLE_PAUSE)
+        if events := pygame.event.get():
+            return events
+    return []
+
+
 class PygameInput(System):
     """Turns events into pressed keys and buttons; `closed` once the window's close icon was clicked."""
 
@@ -53,7 +64,7 @@ class PygameInput(System):
         """Collect the events since the last frame; sleep a little where nothing can happen without one."""
         events = pygame.event.get()
         if not events and not frame.session.busy:
-            events = [pygame.event.wait(IDLE_WAIT), *pygame.event.get()]
+            events = _awaited()
         for event in events:
             self._handle(event, frame)
 

@@ -1,0 +1,68 @@
+"""Nothing is drawn, and nothing looked for under the pointer, while nothing changes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
+
+import pygame
+import pytest
+
+import systems.edit.hover
+from game import models
+from game.app import App
+from systems.input import pygame_input
+
+
+@pytest.fixture
+def app(monkeypatch: pytest.MonkeyPatch) -> Iterator[App]:
+    """A window with a triangle in it that has come to rest, which does not sleep between frames."""
+    monkeypatch.setattr(pygame_input, "IDLE_PAUSE", 0.0)
+    window = App(models.load("isostatic"))
+    frames(window, 3)
+    yield window
+    pygame.display.quit()
+
+
+def frames(app: App, count: int) -> int:
+    """How many of so many frames drew a picture."""
+    drawn = 0
+    for _ in range(count):
+        app.frame(1 / 60)
+        drawn += app.render.drawn
+    return drawn
+
+
+def test_a_paused_window_draws_nothing(app: App) -> None:
+    assert frames(app, 20) == 0
+
+
+def test_what_changes_is_drawn_once(app: App) -> None:
+    app.session.press("i")
+    assert frames(app, 20) == 1
+    app.session.particles["B"].force = (1.0, 2.0)
+    assert frames(app, 20) == 1
+    app.session.view.camera.pan((3.0, 0.0))
+    assert frames(app, 20) == 1
+
+
+def test_a_running_window_draws_every_frame_and_one_at_rest_none(app: App) -> None:
+    app.session.press("space")
+    assert frames(app, 5) == 5
+    app.session.run(until="rest")
+    frames(app, 2)
+    assert frames(app, 20) == 0
+
+
+def test_what_lies_under_a_resting_pointer_is_looked_up_once(app: App, monkeypatch: pytest.MonkeyPatch) -> None:
+    looked: list[object] = []
+    found = systems.edit.hover.pick
+    monkeypatch.setattr(systems.edit.hover, "pick", lambda *where: looked.append(where) or found(*where))
+    app.session.view.pointer = tuple(app.session.view.camera.to_pixels(app.session.particles["B"].position))
+    assert frames(app, 20) == 1  # it is marked
+    assert len(looked) <= 2  # and once more, now that its mark has changed the model
+    app.session.view.pointer = (1.0, 1.0)
+    assert frames(app, 20) == 1
+    assert len(looked) <= 4
