@@ -269,10 +269,11 @@ def _sweep(words: Sequence[str]) -> int:
     add("--samples", type=int, metavar="N", help="how many are drawn from distributions (~)")
     add("--seed", type=int, default=0, metavar="N", help="of what is drawn; default 0")
     where = parser.add_mutually_exclusive_group()
-    where.add_argument("--workers", type=int, metavar="N", help="processes on this machine; default: all cores")
+    where.add_argument(
+        "--workers", type=int, metavar="N", help="processes on this machine; default: as many as suit"
+    )
     where.add_argument("--scheduler", metavar="tcp://…", help="compute on a running Dask cluster")
     options = parser.parse_args(words)
-    from game.sweeps.execution import cores
     from game.sweeps.progress import ProgressBar
     from game.sweeps.results import check_output
 
@@ -293,7 +294,7 @@ def _sweep(words: Sequence[str]) -> int:
             samples=options.samples,
             seed=options.seed,
             output=options.output,
-            workers=options.workers if options.workers is not None else cores(),
+            workers=options.workers,
             scheduler=options.scheduler,
             progress=ProgressBar(sys.stderr),
         )

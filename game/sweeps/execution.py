@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import os
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
 from typing import Any
 
 from game.sweeps.plan import Outcome, Plan
@@ -14,21 +13,27 @@ from game.sweeps.variation import INSTALL, SweepError
 MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
 TASKS_PER_WORKER = 16  # so that no worker waits long for another's last task
 ANSWER_WITHIN = 10.0  # s
+LARGE = 30_000  # variants × rods from which workers are worth the seconds in which they start
+LIGHT = 100  # rods up to which a variant takes as long as one of this many
 
 
-def cores() -> int:
-    """How many this process may use."""
+def suitable_workers(plan: Plan, variants: int) -> int:
+    """All cores that this process may use where there is much to do, by a rule; else 1."""
+    if variants * max(len(plan.document.get("rods", ())), LIGHT) < LARGE:
+        return 1
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def outcomes(
-    plan: Plan, numbers: Sequence[int], workers: int, scheduler: str | None
+    plan: Plan, numbers: Sequence[int], workers: int | None, scheduler: str | None
 ) -> Iterator[list[Outcome]]:
     """Compute these variants, some at a time, in whatever order they get ready.
 
-    workers: 1 computes in this process; more start that many on this machine. scheduler: the address of
-    that of a running Dask cluster, which computes instead. Raises SweepError.
+    workers: 1 computes in this process; more start that many on this machine; None: as many as suit.
+    scheduler: the address of that of a running Dask cluster, which computes instead. Raises SweepError.
     """
+    if workers is None:
+        workers = suitable_workers(plan, len(numbers))
     if scheduler is None and workers == 1:
         for task in _tasks(numbers, 1):
             yield plan.compute_all(task)
@@ -39,11 +44,10 @@ def outcomes(
         raise SweepError(
             f"Several workers need dask.distributed; use --workers 1, or install it with: {INSTALL}"
         ) from None
-    with ExitStack() as stack:
-        if scheduler is None:
-            client = stack.enter_context(_local_client(distributed, min(workers, len(numbers))))
-        else:
-            client = stack.enter_context(_client_of(distributed, scheduler))
+    workers = min(workers, len(numbers))
+    with (
+        _local_client(distributed, workers) if scheduler is None else _client_of(distributed, scheduler)
+    ) as client:
         yield from _distributed(distributed, client, plan, numbers)
 
 

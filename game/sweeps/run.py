@@ -31,7 +31,7 @@ def sweep(
     samples: int | None = None,
     seed: int = 0,
     output: str | Path | None = None,
-    workers: int = 1,
+    workers: int | None = 1,
     scheduler: str | None = None,
     progress: Progress = lambda done, total, failed: None,
 ) -> Results:
@@ -42,14 +42,15 @@ def sweep(
     measure: paths such as "rods.CD.plastic_strain"; a vector becomes two columns. analysis: what is asked of
     each. overrides: what is changed in all, as in "rods.*.damping=0". samples, seed: of what is drawn.
     output: a .csv or .parquet file; while it is not complete, a file beside it keeps what is finished, and
-    the same sweep goes on from there. workers: processes; 1 is this one (a script that
-    asks for more guards its main code by `if __name__ == "__main__"`). scheduler: of a Dask cluster, instead.
+    the same sweep goes on from there. workers: processes; 1 is this one, None as many as suit (a script that
+    asks for more than 1 guards its main code by `if __name__ == "__main__"`). scheduler: the address of that of
+    a running Dask cluster, which computes instead. progress: told how many are done, of how many, and failed.
 
     Same arguments, same bits, however many workers. Raises SweepError, ModelError,
     OverrideError, and OSError if the output cannot be written.
     """
     plan = plan_of(source, vary, measure, analysis, overrides, samples, seed)
-    if workers < 1:
+    if workers is not None and workers < 1:
         raise SweepError(f"{workers} workers cannot compute; ask for at least 1.")
     path = None if output is None else Path(output)
     if path is not None:
