@@ -29,15 +29,18 @@ class Snapshot:
         }
         return cls(columns, {table.name: table.entities.copy() for table in chosen})
 
+    def column(self, world: World, name: str) -> Column:
+        """A state column, "table.field", by the rows of now; entities that did not exist then get its default."""
+        table = world.tables[name.partition(".")[0]]
+        then = self.entities[table.name]
+        if np.array_equal(then, table.entities):
+            return self.columns[name]
+        rows = world.row_of_entity[then]
+        column = table.fields[name.partition(".")[2]].allocate(table.count)
+        column[rows[rows >= 0]] = self.columns[name][rows >= 0]
+        return column
+
     def restore(self, world: World) -> None:
         """Put the state back, bit for bit; entities that did not exist then get their defaults."""
-        for name, column in self.columns.items():
-            table = world.tables[name.partition(".")[0]]
-            target = world.writable(name)
-            then = self.entities[table.name]
-            if np.array_equal(then, table.entities):
-                target[...] = column
-                continue
-            rows = world.row_of_entity[then]
-            target[...] = table.fields[name.partition(".")[2]].allocate(table.count)
-            target[rows[rows >= 0]] = column[rows >= 0]
+        for name in self.columns:
+            world.writable(name)[...] = self.column(world, name)

@@ -11,6 +11,7 @@ from components.field import Role
 from components.model import Model
 from components.snapshot import Snapshot
 from game import models
+from game.beside import Beside
 from game.history import History
 from game.live import Live
 from game.schedule import Schedule
@@ -42,6 +43,7 @@ class Desk:
         self.history = History(model, self.simulation, on_edit=self._edited)
         self.live = Live(self.simulation)
         self.beginning: Snapshot | None = None
+        self.beside = Beside(model, self.simulation)
         self.file = file
         self.spare: Path | None = None
         self.saved = self._last_edit = model.revision
@@ -49,6 +51,12 @@ class Desk:
     def _edited(self) -> None:
         self._last_edit = self.model.revision
         self.timeline.clear()
+        self.beside.disturb()
+
+    def begin(self) -> None:
+        """Time begins to pass from the present state."""
+        self.beginning = Snapshot.take(self.model)
+        self.beside.begin(self.beginning)
 
     @property
     def newest(self) -> int:

@@ -15,6 +15,7 @@ from game.session import DEFAULT_LIMIT, Session
 from systems.base import StopReason
 
 if TYPE_CHECKING:
+    from systems.statics.events import Event
     from systems.statics.settle import StaticState
 
 FOUND = ("equilibrium", "at rest", "time reached")  # statuses of a run that found what was asked for
@@ -74,17 +75,13 @@ def run_static(session: Session, name: str, factors: Sequence[float]) -> Run:
     started = time.perf_counter()
     settlement = settle(session.model, factors)
     seconds = time.perf_counter() - started
-    events = [
-        {"kind": e.kind, "load_factor": e.load_factor, "message": e.message, "rods": list(e.rods)}
-        for e in settlement.events
-    ]
     states = [_static_state(session, found) for found in settlement.states]
     return _run(session, name, settlement.status, states) | {
         "message": settlement.message,
         "wall_seconds": seconds,
         "time_step": None,
         "integrator": None,
-        "events": events,
+        "events": _records(session, settlement.events),
     }
 
 
@@ -125,6 +122,12 @@ def _state(session: Session) -> State:
     return state(session.model, session.energy.as_dict(), None, session.simulation.residual)
 
 
+def _records(session: Session, events: Sequence[Event]) -> list[dict[str, Any]]:
+    from systems.statics.events import event_record
+
+    return [event_record(session.model, event) for event in events]
+
+
 def _run(session: Session, name: str, status: str, states: list[State]) -> dict[str, Any]:
     clock, simulation = session.model.clock, session.simulation
     return {
@@ -137,6 +140,6 @@ def _run(session: Session, name: str, status: str, states: list[State]) -> dict[
         "integrator": simulation.integrator,
         "wall_seconds": simulation.compute_seconds,
         "compile_seconds": simulation.compile_seconds,
-        "events": [],
+        "events": _records(session, session.remarks),
         "states": states,
     }

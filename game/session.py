@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 from components.settings import Settings
-from components.snapshot import Snapshot
 from components.table import Table
 from components.tags import Selected
 from components.view import Preview, Status, View
@@ -43,6 +42,9 @@ from systems.edit.refusal import Refusal
 from systems.input.bindings import LIVE, TEXT, action_for, help_lines
 from systems.input.bindings import PANELS as FORMS
 from systems.physics.pace import natural_pace
+
+if TYPE_CHECKING:
+    from systems.statics.events import Event
 
 CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
 ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
@@ -252,7 +254,13 @@ class Session:
     @property
     def message(self) -> str:
         """Why the run stopped, or what to beware of; "" if there is nothing to say."""
-        return self.fault or self.simulation.message or self.simulation.warning or self.notice
+        said = self.fault or self.simulation.message or self.simulation.warning or self.notice
+        return " ".join([*filter(None, [said]), *(remark.message for remark in self.remarks)])
+
+    @property
+    def remarks(self) -> tuple[Event, ...]:
+        """What the run did that a slowly growing load would not have done, once it is at rest."""
+        return self.desk.beside.remarks
 
     @property
     def fault(self) -> str:
@@ -356,7 +364,7 @@ class Session:
 
     def _note_beginning(self) -> None:
         if self.at_beginning:
-            self.desk.beginning = Snapshot.take(self.model)
+            self.desk.begin()
 
     @property
     def at_beginning(self) -> bool:
@@ -609,7 +617,7 @@ class Session:
             state=self._state_word(),
             hint=self._drawing_hint() or scene.hint(self),
             problem=self._problem(),
-            notice=self.notice,
+            notice=self.notice or " ".join(remark.message for remark in self.remarks),
         )
 
     def _preview(self) -> Preview | None:

@@ -30,7 +30,6 @@ from systems.statics.verify import (
     Theories,
     compare,
     observed,
-    overshoots,
     theories,
 )
 from systems.statics.vibration import vibrations
@@ -67,9 +66,9 @@ def verify(session: Session, name: str, limit: float, *, simulate: bool = True) 
         simulated = observed(model) if status == "at rest" else None
     comparison = compare(model, theory, simulated) if model.rods.count else Comparison(())
     found |= _by_element(comparison)
-    worst = {"simulation": comparison.worst_simulation, "linear": comparison.worst_linear}
+    worst = {way: comparison.worst(way) for way in ("simulation", "linear")}
     found["worst"] = {way: row and asdict(row) for way, row in worst.items()}
-    found["overshoot"] = [asdict(overshoot) for overshoot in overshoots(model, theory)]
+    found["remarks"] = [event_record(model, event) for event in session.remarks]
     complete = theory.exact is not None and (simulated is not None or not simulate)
     found["status"] = VERIFIED if complete and model.rods.count else NOT_VERIFIED
     found["message"] = "\n".join(_messages(found))
@@ -128,8 +127,9 @@ def _messages(found: Found) -> Iterator[str]:
     for way in ("simulation", "linear", "exact"):
         if found[way] is not None and found[way]["message"] and found[way]["status"] != "at rest":
             yield f"{way.capitalize()}: {found[way]['message']}"
-    for overshoot in found["overshoot"]:
-        yield overshoot["message"]
+    for remark in found["remarks"]:
+        if remark["message"] not in found["exact"]["message"]:
+            yield remark["message"]
 
 
 # --- influence lines -----------------------------------------------------------------------------------

@@ -79,6 +79,7 @@ class PullParticle(Gesture):
             raise Refusal("Displacements are drawn at scale 0, so nothing can be pulled; set it above 0.")
         self._particle = particle
         session.simulation.advance(0)
+        session.desk.beside.disturb()
         session.timeline.hold(hand_on(session.model, session.view, particle, lambda: session.pace))
 
     def move(self, session: Session, pixel: Vector) -> None:

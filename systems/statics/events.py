@@ -18,7 +18,7 @@ class Event:
     """Something that happened on the way to a load factor.
 
     kind: "yield", "plastic mechanism", "snap-through", "bifurcation", "collapse", "mechanism",
-        "free body" or "note".
+        "free body" or "note"; of a simulation beside it "overshoot" or "other equilibrium".
     load_factor: at which it happened. rods: names of those concerned.
     motion: of all particles, (n, 2), the largest of them 1 long; None if nothing moves.
     """

@@ -224,7 +224,7 @@ class Loading:
             what = "Bifurcation: the equilibrium became unstable"
             after = " It gave way to one side; to the other would have been as possible."
         else:
-            what = "Snap-through: the structure passed its unstable position"
+            what = "Snap-through: the structure passed through its unstable position"
             after = ""
         rods = f" {_sentence(rod_names(self.model, yielded))} yielded on the way." if len(yielded) else ""
         message = f"{what} {self._at(critical.t)} and went on to the next stable one, {where}.{after}{rods}"

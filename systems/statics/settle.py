@@ -83,8 +83,26 @@ class Settlement:
         return tuple(event for state in self.states for event in state.events)
 
 
-def settle(model: Model, factors: Sequence[float] = (1.0,), geometry: str = "exact") -> Settlement:
-    """The equilibria at these load factors in turn, from the model's present state; does not change it.
+@dataclass(frozen=True)
+class Start:
+    """What settling starts from: displacement (n, 2) in m and plastic strain (rods,)."""
+
+    displacement: Array
+    plastic_strain: Array
+
+    @classmethod
+    def present(cls, model: Model) -> Start:
+        """A model's present state."""
+        return cls(model.particles.displacement.copy(), model.rods.plastic_strain.copy())
+
+
+def settle(
+    model: Model,
+    factors: Sequence[float] = (1.0,),
+    geometry: str = "exact",
+    start: Start | None = None,
+) -> Settlement:
+    """The equilibria at these load factors in turn, from a state (None: the present one); changes nothing.
 
     Factors multiply forces and loads; accelerations grow from 0 to 1 with the first factor and then stay.
     In a model that has not moved yet, lack of fit and moved supports act before the load does; in any other
@@ -98,7 +116,7 @@ def settle(model: Model, factors: Sequence[float] = (1.0,), geometry: str = "exa
     problem = incomputable(model)
     if problem:
         raise FieldError(problem)
-    settling = _Settling(model, geometry)
+    settling = _Settling(model, geometry, start or Start.present(model))
     states: list[StaticState] = []
     for factor in factors:
         states.append(settling.to(float(factor)))
@@ -117,7 +135,7 @@ def apply(model: Model, state: StaticState) -> None:
 class _Settling:
     """A structure on its way through the load factors: its last equilibrium, and what holds it there."""
 
-    def __init__(self, model: Model, geometry: str) -> None:
+    def __init__(self, model: Model, geometry: str, start: Start) -> None:
         self.model = model
         self.structure = Structure.of(model, geometry)
         self.external = external_forces(model)
@@ -125,7 +143,7 @@ class _Settling:
         self.factor, self.largest = 0.0, 0.0
         self.looked_for_bodies = self.soft = False
         at_rest = Path(self.structure, self._nothing, self._nothing)
-        self.point = at_rest.start(model.particles.displacement.copy(), model.rods.plastic_strain.copy())
+        self.point = at_rest.start(start.displacement, start.plastic_strain)
         self.load = self._holding()
 
     @property

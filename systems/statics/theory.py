@@ -15,6 +15,7 @@ from systems.statics.events import NoEquilibrium
 from systems.statics.explain import describe_motion
 from systems.statics.external import external_forces
 from systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes
+from systems.statics.settle import Start
 
 REFINEMENTS = 4  # of a linear solution
 FULL = 600  # unknowns up to which singular values are computed
@@ -33,21 +34,22 @@ class LinearState:
     reaction: Array
 
 
-def linear(model: Model, factor: float = 1.0) -> LinearState:
+def linear(model: Model, start: Start | None = None) -> LinearState:
     """The direct stiffness method: K u = f about the original positions, all rods elastic.
 
-    Lack of fit and plastic strain act as initial forces, displacements of constrained directions as moved
-    supports. Raises NoEquilibrium, naming who moves, for a mechanism or a free body that the load moves.
+    Of the state that it starts from (None: the present one), plastic strain acts as initial forces like lack
+    of fit, and displacements of constrained directions as moved supports. Raises NoEquilibrium, naming who
+    moves, for a mechanism or a free body that the load moves.
     """
-    structure = Structure.of(model, "linear")
-    load = external_forces(model).at(factor)
+    structure, start = Structure.of(model, "linear"), start or Start.present(model)
+    load = external_forces(model).at(1.0)
     for body in loose_bodies(structure, load):
         if body.pull:
-            raise NoEquilibrium("mechanism", loose_event(model, body, factor).message)
-    supports = np.where(structure.fixed, model.particles.displacement, 0.0)
-    initial = structure.respond(supports, model.rods.plastic_strain)
+            raise NoEquilibrium("mechanism", loose_event(model, body, 1.0).message)
+    supports = np.where(structure.fixed, start.displacement, 0.0)
+    initial = structure.respond(supports, start.plastic_strain)
     displacement = supports + _deflection(model, structure, load - _internal(structure, initial))
-    final = structure.respond(displacement, model.rods.plastic_strain)
+    final = structure.respond(displacement, start.plastic_strain)
     reaction = np.where(structure.fixed, _internal(structure, final) - load, 0.0)
     return LinearState(displacement, final.elastic_force, reaction)
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from components.model import Model
 from systems.statics.equations import Array
-from systems.statics.events import NoEquilibrium
+from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import rod_names
-from systems.statics.settle import Settlement, settle
+from systems.statics.settle import Settlement, Start, settle
 from systems.statics.theory import LinearState, linear
 
 QUANTITIES = {
@@ -19,6 +19,12 @@ QUANTITIES = {
     "displacement": ("particles", "m"),
     "reaction": ("particles", "kN"),
 }
+
+
+JUMPS = ("snap-through", "bifurcation")
+ELSEWHERE = 1e-3  # of the largest displacement: a difference that no integration error makes
+FURTHER = 1e-2  # of the plastic strain of statics: more is an overshoot
+LEAST = 1e-6  # of the strain at first yield: less is rounding
 
 
 @dataclass(frozen=True)
@@ -32,15 +38,15 @@ class Answer:
 
 @dataclass(frozen=True)
 class Theories:
-    """What theory says about a model. linear: None if it has no answer, which `refusal` explains.
+    """What theory says about a model that starts from some state.
 
-    plastic_strain: of the state from which the exact answer was followed, (rods,).
+    linear: None if it has no answer, which `refusal` explains.
     """
 
+    start: Start
     linear: LinearState | None
     refusal: str
     settlement: Settlement
-    plastic_strain: Array
 
     @property
     def exact(self) -> Answer | None:
@@ -51,14 +57,15 @@ class Theories:
         return Answer(final.axial_force, final.displacement, final.reaction)
 
 
-def theories(model: Model) -> Theories:
-    """Linear and exact answers from the model's present state on; take them before simulating."""
+def theories(model: Model, start: Start | None = None) -> Theories:
+    """Linear and exact answers under the model's load, from a state (None: the present one) on."""
+    start = start or Start.present(model)
     refusal, first_order = "", None
     try:
-        first_order = linear(model)
+        first_order = linear(model, start)
     except NoEquilibrium as reason:
         refusal = str(reason)
-    return Theories(first_order, refusal, settle(model), model.rods.plastic_strain.copy())
+    return Theories(start, first_order, refusal, settle(model, start=start))
 
 
 def observed(model: Model) -> Answer:
@@ -99,17 +106,12 @@ class Comparison:
 
     rows: tuple[Row, ...]
 
-    @property
-    def worst_simulation(self) -> Row | None:
-        """The row with the largest error of the simulation."""
-        rows = [row for row in self.rows if row.simulation_error is not None]
-        return max(rows, key=lambda row: row.simulation_error or 0.0, default=None)
-
-    @property
-    def worst_linear(self) -> Row | None:
-        """The row with the largest error of linear theory."""
-        rows = [row for row in self.rows if row.linear_error is not None]
-        return max(rows, key=lambda row: row.linear_error or 0.0, default=None)
+    def worst(self, way: str, quantity: str = "") -> Row | None:
+        """The row with the largest error of the "simulation" or of "linear" theory (of one quantity, if given)."""
+        errors = {row: getattr(row, f"{way}_error") for row in self.rows if quantity in ("", row.quantity)}
+        return max(
+            (r for r, e in errors.items() if e is not None), key=lambda r: float(errors[r]), default=None
+        )
 
 
 def compare(model: Model, theory: Theories, simulated: Answer | None) -> Comparison:
@@ -145,29 +147,63 @@ def _rows(model: Model, quantity: str, answers: Mapping[str, Answer | LinearStat
         )
 
 
-@dataclass(frozen=True)
-class Overshoot:
-    """A rod that yielded in a simulation only because the load came suddenly; message: a sentence about it."""
-
-    rod: str
-    message: str
+# --- what a simulation did that a slowly growing load does not do ---------------------------------------------
 
 
-def overshoots(model: Model, theory: Theories) -> list[Overshoot]:
-    """Rods that yielded on the way to the model's present state, but do not when the load grows slowly."""
-    final, names = theory.settlement.final, model.rods.column("name")
+def remarks(model: Model, theory: Theories) -> list[Event]:
+    """What is worth knowing about a model at rest: passed unstable positions, and what came of an overshoot.
+
+    Its load must have been one, applied at once or growing by one history, from theory.start on.
+    """
     if theory.exact is None:
         return []
-    unyielded = final.plastic_strain == theory.plastic_strain
-    present = model.rods.plastic_strain
-    found = []
-    for row in np.flatnonzero(unyielded & (present != theory.plastic_strain)).tolist():
-        stretched = present[row] > theory.plastic_strain[row]
-        strength = float((model.rods.tension_limit if stretched else model.rods.compression_limit)[row])
-        message = (
-            f"{rod_names(model, np.array([row]))} yielded only in the overshoot of a sudden load: static force"
-            f" {abs(final.axial_force[row]):.4g} kN < strength {strength:.4g} kN."
-            " Load it more slowly, or raise its damping."
-        )
-        found.append(Overshoot(str(names[row]), message[:1].upper() + message[1:]))
+    overshot = overshoots(model, theory)
+    worst = compare(model, theory, observed(model)).worst("simulation", "displacement")
+    elsewhere = worst is not None and (worst.simulation_error or 0.0) > ELSEWHERE
+    if (
+        elsewhere
+        and not overshot
+        and (model.rods.plastic_strain == theory.settlement.final.plastic_strain).all()
+    ):
+        return [_elsewhere(worst)] if worst is not None and not _gave_way(theory) else []
+    return [event for event in theory.settlement.events if event.kind in JUMPS] + overshot
+
+
+def _gave_way(theory: Theories) -> bool:
+    """True if another way would have been as possible."""
+    return any(event.kind in ("bifurcation", "mechanism") for event in theory.settlement.events)
+
+
+def _elsewhere(worst: Row) -> Event:
+    distance = abs((worst.simulation or 0.0) - (worst.exact or 0.0))
+    message = (
+        f"At rest in another equilibrium than the one that a slowly growing load leads to: the {worst.title}"
+        f" differs by {distance:.4g} m. The sudden load carried the structure past an unstable position."
+    )
+    return Event("other equilibrium", 1.0, message)
+
+
+def overshoots(model: Model, theory: Theories) -> list[Event]:
+    """Rods that yielded, or yielded further, though a slowly growing load would not have made them."""
+    final, present, begun = theory.settlement.final, model.rods.plastic_strain, theory.start.plastic_strain
+    if theory.exact is None:
+        return []
+    static, flowed = np.abs(final.plastic_strain - begun), np.abs(present - begun)
+    limit = np.where(present > begun, model.rods.tension_limit, model.rods.compression_limit)
+    further = flowed - static > np.maximum(FURTHER * static, LEAST * limit / model.rods.stiffness)
+    names, found = model.rods.column("name"), []
+    for row in np.flatnonzero(np.isfinite(limit) & further).tolist():
+        who = rod_names(model, np.array([row]))
+        if static[row] == 0.0:
+            what = (
+                f"{who} yielded only in the overshoot: static force {abs(final.axial_force[row]):.4g} kN"
+                f" < strength {limit[row]:.4g} kN"
+            )
+        else:
+            what = (
+                f"{who} yielded further in the overshoot: plastic strain {present[row]:.4g}, under a slowly"
+                f" growing load {final.plastic_strain[row]:.4g}"
+            )
+        message = f"{what[:1].upper()}{what[1:]}. Load it more slowly, or raise the damping."
+        found.append(Event("overshoot", 1.0, message, (str(names[row]),)))
     return found

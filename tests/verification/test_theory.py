@@ -278,9 +278,10 @@ def test_errors_are_relative_to_the_largest_exact_value() -> None:
     assert row.linear == pytest.approx(20.0, rel=1e-12)
     assert row.exact == pytest.approx(20.0678998039911, rel=1e-12)
     assert row.linear_error == pytest.approx((20.0678998039911 - 20.0) / 198.0274601694, rel=1e-9)
-    assert comparison.worst_linear is not None
-    assert comparison.worst_linear.title == "displacement y of particle B"
-    assert comparison.worst_simulation is None
+    worst = comparison.worst("linear")
+    assert worst is not None
+    assert worst.title == "displacement y of particle B"
+    assert comparison.worst("simulation") is None
 
 
 def verify(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, dict[str, Any]]:
@@ -303,7 +304,7 @@ def test_verify_puts_simulation_linear_and_exact_side_by_side(capsys: pytest.Cap
 def test_verify_points_out_a_rod_that_yielded_in_the_overshoot(capsys: pytest.CaptureFixture[str]) -> None:
     status, found = verify(capsys, "overshoot_yield")
     assert status == 0
-    assert found["overshoot"][0]["rod"] == "AB"
+    assert found["remarks"][0]["rods"] == ["AB"]
     assert "static force 9 kN < strength 10 kN" in found["message"]
 
 

@@ -1,0 +1,95 @@
+"""Beside: theory beside the run of one model, found when somebody asks, and again after an edit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from components.field import Role
+from components.load import CONSTANT, HISTORIES
+from components.model import Model
+from components.snapshot import Snapshot
+from systems.base import StopReason
+
+if TYPE_CHECKING:
+    from game.simulation import Simulation
+    from systems.statics.events import Event
+    from systems.statics.verify import Comparison, Theories
+
+LARGEST = 2000  # rods up to which theory is found without being asked for; more would take noticeable time
+
+
+class Beside:
+    """What theory says about a run, from the moment it began.
+
+    undisturbed: nobody has edited the model or pulled a particle since.
+    """
+
+    def __init__(self, model: Model, simulation: Simulation) -> None:
+        self._model = model
+        self._simulation = simulation
+        self._beginning: Snapshot | None = None
+        self.undisturbed = True
+        self._theories: tuple[int, Theories] | None = None
+        self._remarks: tuple[tuple[int, int], tuple[Event, ...]] | None = None
+
+    def begin(self, beginning: Snapshot) -> None:
+        """A run begins in this state."""
+        self._beginning, self.undisturbed = beginning, True
+        self._theories = self._remarks = None
+
+    def disturb(self) -> None:
+        """Something was changed during the run."""
+        self.undisturbed = False
+
+    @property
+    def theories(self) -> Theories:
+        """Linear and exact answers from the beginning of the run, under the present load."""
+        from systems.statics.settle import Start
+        from systems.statics.verify import theories
+
+        revision = self._model.newest(Role.DOCUMENT)
+        if self._theories is None or self._theories[0] != revision:
+            start = None
+            if self._beginning is not None:
+                names = ("particles.displacement", "rods.plastic_strain")
+                start = Start(*(self._beginning.column(self._model, name).copy() for name in names))
+            self._theories = revision, theories(self._model, start)
+        return self._theories[1]
+
+    def comparison(self) -> Comparison:
+        """The run as it is now beside theory."""
+        from systems.statics.verify import compare, observed
+
+        return compare(self._model, self.theories, observed(self._model))
+
+    @property
+    def remarks(self) -> tuple[Event, ...]:
+        """What a run that came to rest did and a slowly growing load would not have done; none if unsure."""
+        at_rest = self._simulation.halted and self._simulation.reason is StopReason.REST
+        if not at_rest or not self._is_comparable():
+            return ()
+        key = (self._simulation.armed_revision, self._model.clock.steps)
+        if self._remarks is None or self._remarks[0] != key:
+            from systems.statics.verify import remarks
+
+            self._remarks = key, tuple(remarks(self._model, self.theories))
+        return self._remarks[1]
+
+    def _is_comparable(self) -> bool:
+        """True if the run is that of a structure at rest under one load, at once or by one history."""
+        beginning = self._beginning
+        if beginning is None or not (self.undisturbed and 0 < self._model.rods.count <= LARGEST):
+            return False
+        moved = (beginning.columns[f"particles.{name}"].any() for name in ("displacement", "velocity"))
+        return not any(moved) and len(_histories(self._model)) == 1
+
+
+def _histories(model: Model) -> set[str]:
+    """The different ways in which the loads of a model change in time, as text."""
+    particles, environment = model.particles, model.environment
+    steady = particles.force.any() or particles.acceleration.any()
+    found = {repr(dict(load.history)) for load in model.loads if any(load.force)}
+    if steady or any(environment.force) or any(environment.acceleration):
+        found.add(repr(CONSTANT))
+    unsteady = (HISTORIES[load.history["kind"]].static != 1.0 for load in model.loads)
+    return set() if any(unsteady) else found

@@ -1,0 +1,98 @@
+"""Remarks: what a run did that a slowly growing load would not have done, said where it comes to rest."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from game import Session, models
+from game.cli import main
+from tests.reference.models import von_mises_truss
+
+
+def at_rest(source: str | dict[str, Any]) -> Session:
+    session = Session.open(source)
+    assert session.run(until="rest") == "at rest"
+    return session
+
+
+def kinds(session: Session) -> list[str]:
+    return [remark.kind for remark in session.remarks]
+
+
+def test_a_rod_that_yielded_only_in_the_overshoot() -> None:
+    session = at_rest("overshoot_yield")
+    assert kinds(session) == ["overshoot"]
+    assert "Rod AB yielded only in the overshoot: static force 9 kN < strength 10 kN" in session.message
+
+
+def test_the_window_says_it_too() -> None:
+    session = Session.open("overshoot_yield")
+    session.press("space")
+    while not session.simulation.halted:
+        session.frame(0.05)
+    session.update_view()
+    assert "static force 9 kN < strength 10 kN" in session.view.status.notice
+    session.press("r")
+    session.frame(0.0)
+    assert "overshoot" not in session.view.status.notice
+
+
+def test_a_structure_that_passed_through_its_unstable_position() -> None:
+    session = at_rest("snap_through")
+    assert kinds(session) == ["snap-through"]
+    assert "passed through its unstable position at the load factor 0.0254084 (25.4084 kN" in session.message
+
+
+def test_run_prints_it_and_lists_it_among_the_events(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "overshoot_yield", "--format", "json"]) == 0
+    run = json.loads(capsys.readouterr().out)
+    assert "only in the overshoot" in run["message"]
+    assert [(event["kind"], event["rods"]) for event in run["events"]] == [("overshoot", ["AB"])]
+
+
+def test_a_rod_that_yielded_further_than_under_a_slow_ramp() -> None:
+    document = models.document(models.load("hyperstatic_yield"))
+    for rod in document["rods"]:
+        rod["damping"] = 2.0
+    assert "CD yielded further in the overshoot" in at_rest(document).message
+
+
+def test_a_sudden_load_below_the_limit_that_carried_it_past_the_unstable_position() -> None:
+    """2910.8 kN snap the undamped von Mises truss that carries 3789.46 kN; so do 3500 kN with little damping."""
+    document = von_mises_truss(force=-3500.0, damping=50.0)
+    session = at_rest(document | {"environment": {"drag": 2.0}})
+    assert kinds(session) == ["other equilibrium"]
+    assert "displacement y of particle B differs by" in session.message
+
+
+@pytest.mark.parametrize("name", ["isostatic", "hyperstatic", "hyperstatic_yield", "three_bar_plastic"])
+def test_nothing_is_said_of_what_theory_would_do_as_well(name: str) -> None:
+    session = at_rest(name)
+    assert session.remarks == ()
+    assert session.message.startswith("At rest since")
+    assert session.message.count(".") == 2
+
+
+def test_nothing_is_said_when_theory_does_not_know_the_history() -> None:
+    """Edited on the way, or under loads that come one after the other."""
+    session = at_rest("hyperstatic_yield")
+    session.loads[0].force = (0, 0)
+    assert session.run(until="rest") == "at rest"
+    assert session.remarks == ()
+    document = models.document(models.load("hyperstatic_yield"))
+    later = {"kind": "ramp", "start": 1.0, "duration": 0.5}
+    document["loads"].append({"on": "C", "force": [0, 260], "history": later})
+    session = at_rest(document)
+    assert session.rods["CD"].plastic_strain != 0.0
+    assert session.remarks == ()
+
+
+def test_restarting_forgets_that_the_model_was_edited_during_the_run() -> None:
+    session = at_rest("overshoot_yield")
+    session.particles["B"].force = (0, -8.5)
+    session.restart()
+    assert session.run(until="rest") == "at rest"
+    assert "static force 8.5 kN < strength 10 kN" in session.message
