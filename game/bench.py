@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 CHECKOUT = Path(__file__).resolve().parent.parent
-NAMES = ("speed", "editing")
+NAMES = ("speed", "drawing", "editing")
 
 Row = Mapping[str, Any]
 
@@ -54,10 +54,13 @@ def _shown(value: Any) -> str:
 
 
 def write(name: str, tables: Mapping[str, Sequence[Row]], folder: Path) -> None:
-    """One CSV file per table."""
+    """One CSV file per table, and a picture where the benchmark has one."""
     folder.mkdir(parents=True, exist_ok=True)
     for title, rows in tables.items():
         with open(folder / f"{name}_{title}.csv", "w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, list(rows[0]))
             writer.writeheader()
             writer.writerows(rows)
+    module = importlib.import_module(f"tests.benchmarks.{name}")
+    if hasattr(module, "draw"):
+        module.draw(tables, folder / f"{name}.png")

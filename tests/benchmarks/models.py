@@ -29,22 +29,38 @@ def truss(**rods: Any) -> Model:
 def lattice(rods: int, **columns: Any) -> Model:
     """A square lattice with both diagonals and about so many rods, its left edge held, pulled to the right."""
     side = max(round((rods / 4.0) ** 0.5), 2)
-    x, y = np.meshgrid(np.arange(side, dtype=float), np.arange(side, dtype=float))
+    return _held_at_the_left(side, side, _with_diagonals(side), columns)
+
+
+def mesh(rods: int, **columns: Any) -> Model:
+    """Like a lattice, without diagonals, and wider than high: half as many particles as rods."""
+    height = max(round((rods / 3.2) ** 0.5), 2)
+    width = round(1.6 * height)
+    return _held_at_the_left(width, height, _across_and_up(width, height), columns)
+
+
+def _held_at_the_left(width: int, height: int, ends: np.ndarray, columns: dict[str, Any]) -> Model:
+    x, y = np.meshgrid(np.arange(width, dtype=float), np.arange(height, dtype=float))
     position = np.stack([x.ravel(), y.ravel()], axis=1)
-    left, right = position[:, 0] == 0.0, position[:, 0] == side - 1.0
+    left, right = position[:, 0] == 0.0, position[:, 0] == width - 1.0
     force = np.zeros_like(position)
     force[right, 0] = 100.0
     model = Model()
     model.create(Particle, len(position), position=position, fixed=np.stack([left, left], axis=1), force=force)
-    spawn_rods(model, _neighbours(side), **columns)
+    spawn_rods(model, ends, **columns)
     return model
 
 
-def _neighbours(side: int) -> np.ndarray:
-    index = np.arange(side * side).reshape(side, side)
+def _across_and_up(width: int, height: int) -> np.ndarray:
+    index = np.arange(width * height).reshape(height, width)
     across = np.stack([index[:, :-1].ravel(), index[:, 1:].ravel()], axis=1)
     up = np.stack([index[:-1].ravel(), index[1:].ravel()], axis=1)
+    return np.concatenate([across, up])
+
+
+def _with_diagonals(side: int) -> np.ndarray:
+    index = np.arange(side * side).reshape(side, side)
     rising = np.stack([index[:-1, :-1].ravel(), index[1:, 1:].ravel()], axis=1)
     falling = np.stack([index[:-1, 1:].ravel(), index[1:, :-1].ravel()], axis=1)
-    pairs = np.concatenate([across, up, rising, falling])
+    pairs = np.concatenate([_across_and_up(side, side), rising, falling])
     return pairs[np.argsort(pairs.min(axis=1), kind="stable")]

@@ -1,11 +1,18 @@
-"""How fast the step programs are: time per rod and step against a plain kernel and peers in the same run."""
+"""How fast the step programs are: time per rod and step against a plain kernel, peers and the machine's ceiling.
+
+All in the same run, in turns. `pinjoint bench speed --output DIR` also writes the tables as CSV and a picture.
+"""
 
 from __future__ import annotations
 
+import gc
+import math
 import subprocess
 import sys
 import time
+import tracemalloc
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +22,7 @@ from game.catalogue import DRIVERS, step_systems
 from game.document import document
 from game.program import Program
 from game.schedule import Schedule
+from tests.benchmarks.ceiling import BYTES_PER_PARTICLE, BYTES_PER_ROD, bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, truss
 from tests.benchmarks.plain import arrays_of, elastic_verlet, full_verlet
 
@@ -28,12 +36,48 @@ Row = dict[str, Any]
 
 
 def step_costs(*, quick: bool) -> list[Row]:
-    """Nanoseconds per rod and step, by model: our program, a plain kernel, and peers."""
-    sizes = (1_000, 100_000) if quick else (1_000, 10_000, 100_000)
+    """Nanoseconds per rod and step, by model: our program, a plain kernel, and the ceiling for elastic rods."""
+    sizes = (1_000, 100_000) if quick else (100, 1_000, 10_000, 100_000, 1_000_000)
     rows = []
     for kind, rods in KINDS.items():
-        for model in [truss(**rods), *(lattice(size, **rods) for size in sizes)]:
-            rows.append(_step_cost(kind, model))
+        rows.append(_step_cost(kind, truss(**rods)))
+        rows += [_step_cost(kind, lattice(size, **rods)) for size in sizes]
+    return rows
+
+
+def scaling(steps: list[Row]) -> list[Row]:
+    """The exponent p of time per step ∝ rods^p from 1000 rods on, by least squares of the logarithms."""
+    rows = []
+    for kind in KINDS:
+        large = [row for row in steps if row["kind"] == kind and row["rods"] > 900]
+        rods, time_per_step = ([math.log(row[what]) for row in large] for what in ("rods", "us_per_step"))
+        rows.append({"kind": kind, "exponent": float(np.polyfit(rods, time_per_step, 1)[0])})
+    return rows
+
+
+def ceilings(steps: list[Row]) -> list[Row]:
+    """The least time that elastic rods could take here, by arithmetic and by memory, and how near we come.
+
+    Memory: every step moves all columns once; arrays of the same size together are streamed for comparison.
+    """
+    arithmetic = seconds_per_rod() * 1e9
+    rows = []
+    for row in steps:
+        if row["kind"] == "elastic" and row["rods"] > 900:
+            moved = BYTES_PER_ROD + BYTES_PER_PARTICLE * row["particles"] / row["rods"]
+            speed = bandwidth(moved * row["rods"])
+            memory = moved / speed * 1e9
+            rows.append(
+                {
+                    "rods": row["rods"],
+                    "bytes_per_rod": moved,
+                    "GB_per_s": speed / 1e9,
+                    "memory_ns_per_rod": memory,
+                    "arithmetic_ns_per_rod": arithmetic,
+                    "ours_ns_per_rod": row["ns_per_rod"],
+                    "share_of_ceiling": max(memory, arithmetic) / row["ns_per_rod"],
+                }
+            )
     return rows
 
 
@@ -46,6 +90,7 @@ def _step_cost(kind: str, model: Model) -> Row:
     return {
         "kind": kind,
         "rods": rods,
+        "particles": model.particles.count,
         "us_per_step": seconds / steps * 1e6,
         "ns_per_rod": seconds / steps / rods * 1e9,
         "plain_ns_per_rod": plain_seconds / steps / rods * 1e9,
@@ -157,6 +202,22 @@ def _fresh(code: str) -> float:
     return float(best)
 
 
+def memory() -> list[Row]:
+    """Bytes per element: of its columns, and of its entity, handle and name beside them."""
+    tracemalloc.start()
+    model = lattice(10_000)
+    gc.collect()
+    whole, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    tables = model.rods, model.particles
+    columns = {table.name: sum(table.column(name)[:1].nbytes for name in table.fields) for table in tables}
+    allocated = sum(len(table.entity) * (columns[table.name] + table.entity.itemsize) for table in tables)
+    beside = (whole - allocated) / sum(table.count for table in tables)
+    return [
+        {"what": f"columns of {name}", "bytes_per_element": float(size)} for name, size in columns.items()
+    ] + [{"what": "entity, handle and name", "bytes_per_element": beside}]
+
+
 def bulk_creation() -> list[Row]:
     """Seconds to create particles and rods in bulk."""
     started = time.perf_counter()
@@ -166,8 +227,33 @@ def bulk_creation() -> list[Row]:
 
 def report(*, quick: bool) -> dict[str, list[Row]]:
     """Everything this benchmark measures, by table."""
+    steps = step_costs(quick=quick)
     return {
-        "steps": step_costs(quick=quick),
+        "steps": steps,
+        "scaling": scaling(steps),
+        "ceiling": ceilings(steps),
+        "memory": memory(),
         "peers": peers(quick=quick),
         "start": [*start_up(), *bulk_creation()],
     }
+
+
+def draw(tables: dict[str, list[Row]], path: Path) -> None:
+    """Nanoseconds per rod and step over the number of rods, as a PNG."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.0, 4.5), layout="constrained")
+    axes = figure.add_subplot(xscale="log", yscale="log", xlabel="rods", ylabel="ns per rod and step, one core")
+    for kind in KINDS:
+        rows = [row for row in tables["steps"] if row["kind"] == kind]
+        rods = [row["rods"] for row in rows]
+        (line,) = axes.plot(rods, [row["ns_per_rod"] for row in rows], "o-", label=kind)
+        plain = [row["plain_ns_per_rod"] for row in rows]
+        axes.plot(rods, plain, ":", color=line.get_color(), label=f"{kind}, plain kernel")
+    ceiling = tables["ceiling"]
+    least = [max(row["memory_ns_per_rod"], row["arithmetic_ns_per_rod"]) for row in ceiling]
+    axes.plot([row["rods"] for row in ceiling], least, "k--", label="elastic, this machine's ceiling")
+    for row in tables["peers"]:
+        axes.plot([row["rods"]], [row["ns_per_rod"]], "x", label=row["peer"])
+    axes.legend(fontsize="small")
+    figure.savefig(path, dpi=150)

@@ -1,0 +1,54 @@
+"""Benchmarks measure what they say; how fast it is, is not tested."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from game import bench
+from tests.benchmarks import drawing, speed
+from tests.benchmarks.ceiling import bandwidth, seconds_per_rod
+from tests.benchmarks.models import lattice, mesh
+
+
+@pytest.mark.parametrize("rods", [100, 1_000, 10_000])
+def test_models_have_about_the_size_they_are_asked_for(rods: int) -> None:
+    for model in (lattice(rods), mesh(rods)):
+        assert model.rods.count == pytest.approx(rods, rel=0.3)
+    assert mesh(rods).particles.count == pytest.approx(rods / 2, rel=0.3)
+
+
+def test_the_ceiling_is_a_speed() -> None:
+    assert bandwidth(1e5) > 1e8
+    assert 0.0 < seconds_per_rod() < 1e-6
+
+
+def test_an_exponent_of_one_is_found() -> None:
+    rows = [
+        {"kind": kind, "rods": n, "us_per_step": 0.01 * n} for kind in speed.KINDS for n in (1000, 10**4, 10**5)
+    ]
+    assert [row["exponent"] for row in speed.scaling(rows)] == pytest.approx([1.0, 1.0])
+
+
+def test_every_part_of_a_frame_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = {row["part"]: row["ms"] for row in drawing._frame(300, count=2)}
+    assert {"render.pygame", "input.pygame", "edit.hover", "steps", "whole frame"} <= set(rows)
+    assert sum(rows.values()) - rows["whole frame"] <= rows["whole frame"]
+
+
+def test_tables_and_the_picture_are_written(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    step = {"us_per_step": 1.0, "ns_per_rod": 10.0, "plain_ns_per_rod": 9.0, "rods": 1000}
+    tables = {
+        "steps": [{"kind": kind, **step} for kind in speed.KINDS],
+        "ceiling": [{"rods": 1000, "memory_ns_per_rod": 2.0, "arithmetic_ns_per_rod": 1.0}],
+        "peers": [{"peer": "another", "rods": 1000, "ns_per_rod": 200.0}],
+    }
+    bench.write("speed", tables, tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "speed_steps.csv",
+        "speed_ceiling.csv",
+        "speed_peers.csv",
+        "speed.png",
+    }
