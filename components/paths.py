@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from components.field import FieldError
 
-_KEYS = ("motion", "contacts", "forces")
+_KEYS = ("motion", "contacts", "forces", "crowd")
 
 
 class Paths(Mapping[str, Any]):
@@ -19,21 +19,27 @@ class Paths(Mapping[str, Any]):
 
     motion: one row per particle, its columns those of systems.collision.arrays.MOVING. contacts: a particle
     and one that it touches, in the order in which they are looked at, shape (k, 2). forces: in them, N.
+    crowd: how far a pile is with its steps, as Discs.paths has it.
 
     As a mapping it is what a model file holds.
     """
 
     def __init__(
-        self, motion: NDArray[np.float64], contacts: NDArray[np.int64], forces: NDArray[np.float64]
+        self,
+        motion: NDArray[np.float64],
+        contacts: NDArray[np.int64],
+        forces: NDArray[np.float64],
+        crowd: NDArray[np.float64],
     ) -> None:
         self.motion = motion
         self.contacts = contacts
         self.forces = forces
+        self.crowd = crowd
 
     @property
     def nbytes(self) -> int:
         """Memory that it takes."""
-        return self.motion.nbytes + self.contacts.nbytes + self.forces.nbytes
+        return sum(getattr(self, key).nbytes for key in _KEYS)
 
     def __iter__(self) -> Iterator[str]:
         return iter(_KEYS)
@@ -66,11 +72,13 @@ def check_paths(value: Any, where: str) -> Paths:
         motion = np.array(numbers, dtype=np.float64)
         contacts = np.array(value["contacts"], dtype=np.int64).reshape(-1, 2)
         forces = np.array(value["forces"], dtype=np.float64).reshape(-1)
+        crowd = np.array(value["crowd"], dtype=np.float64)
         whole = set(value) == set(_KEYS) and motion.ndim == 2 and len(forces) == len(contacts)
+        whole = whole and crowd.ndim == 1
     except (TypeError, ValueError, KeyError, OverflowError):
         whole = False
     if not whole or (contacts < 0).any() or (contacts >= len(motion)).any() or np.isnan(motion).any():
         raise FieldError(
             f"{where}: paths are not what a saved run holds; remove them, and it goes on to within round-off."
         )
-    return Paths(motion, contacts, forces)
+    return Paths(motion, contacts, forces, crowd)

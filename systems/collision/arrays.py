@@ -12,6 +12,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 EPSILON = 2.220446049250313e-16
+SPEED_NOISE = 16.0 * EPSILON  # of the speeds that an impact or its contacts deal with: its round-off
 NONE = -1
 
 # Columns of `discs`, shape (n, DISC_WIDTH): one row per disc, its path since its epoch t₀, the time of its last
@@ -26,8 +27,9 @@ WX, WY = 10, 11  # inverse mass in each direction, 1/kg; 0 where the disc is hel
 GX, GY = 12, 13  # acceleration without contact forces, m/s²
 STEP = 14  # s; when the forces in its lasting contacts are due again
 CHANGES = 15  # of its path so far
-DISC_WIDTH = 16
-MOVING = (UX, UY, VX, VY, AX, AY, EPOCH, STEP)  # what time changes, as components/paths.py has it
+NOISE = 16  # m/s; round-off in its velocity, from the impact or the contacts that gave it
+DISC_WIDTH = 17
+MOVING = (UX, UY, VX, VY, AX, AY, EPOCH, STEP, NOISE)  # what time changes, as components/paths.py has it
 
 
 class Grid(NamedTuple):
@@ -91,6 +93,7 @@ class Group(NamedTuple):
     N_cᵀ M⁻¹ N_d is the compliance of the contacts under the members' supports.
     motion: what impulses change, shape (n, 2): velocities, m/s, with impulses in N·s; or accelerations, m/s²,
     with forces in N. initial, start, other: notes of other motion.
+    noise: rate below which a contact closes by round-off only, shape (1,).
     marks: work space, shape (3, c); rows below. matrix: work space, shape (DIRECT + 1, DIRECT).
     """
 
@@ -103,6 +106,7 @@ class Group(NamedTuple):
     initial: Floats
     start: Floats
     other: Floats
+    noise: Floats
     marks: Integers
     matrix: Floats
 
@@ -139,7 +143,11 @@ CELL = 3  # m; of the finest layer of the grid
 CROWDING = 4  # neighbours found per area of boxes, 1/m²
 RESTITUTION = 5
 REST_HEIGHT = 6  # of the smaller radius; bounces that would rise less end in contact
-NUMBERS = 7
+SMALLEST = 7  # m; radius of the smallest disc
+STEP_LENGTH = 8  # s; of the steps of piles, ∞ where nothing is pulled
+STEP_END = 9  # s; of the present one
+WORK_SINCE = 10  # s; since when WORK is counted
+NUMBERS = 11
 
 # `counts`, int64
 QUEUED = 0  # meetings in the queue
@@ -151,7 +159,12 @@ LEVEL = 5  # coarsest level that a disc needed beyond those of the grid
 RENEW = 6  # 1: the window must be opened anew before anything else
 SPARE = 7  # first unused entry of the table of lasting contacts
 SPARES = 8  # how many are unused
-COUNTS = 9
+STEPPING = 9  # 1: discs take the steps of a pile
+CALM = 10  # steps one after the other in which no contact moved
+WORK = 11  # contacts in the events of late
+DISCS = 12  # how many there are
+COUNTS = 13
+CROWD_COUNTS, CROWD_TIMES = (STEPPING, CALM, WORK), (STEP_END, WORK_SINCE)  # what a pile goes on from
 
 
 class Reason(IntEnum):

@@ -16,6 +16,7 @@ from components.paths import Paths
 from systems.collision import arrays
 from systems.collision.arrays import Floats, Grid, Group, Integers, Queue, Reason, Report, Ties
 from systems.collision.flight.kernels import advance
+from systems.collision.pile.kernels import STEP_SHARE
 
 REPORT = 4096  # impacts reported at a time
 REST_HEIGHT = 1e-9  # of the radius; larger: bouncing ends sooner
@@ -81,12 +82,18 @@ class Discs:
         self.rows[:, arrays.RADIUS] = radius
         self.rows[:, arrays.EPOCH] = time
         self.rows[:, arrays.STEP] = np.inf
+        speed = np.abs(self._columns(arrays.VX)).sum(axis=1)
+        self.rows[:, arrays.NOISE] = arrays.SPEED_NOISE * speed
         self.numbers = np.zeros(arrays.NUMBERS)
         self.numbers[arrays.NOW] = time
         self.numbers[arrays.RESTITUTION] = restitution
         self.numbers[arrays.REST_HEIGHT] = rest_height
         self.counts = np.zeros(arrays.COUNTS, dtype=np.int64)
         self.counts[arrays.RENEW] = 1
+        self.counts[arrays.DISCS] = n
+        self.numbers[arrays.SMALLEST] = self.rows[:, arrays.RADIUS].min(initial=np.inf)
+        self.numbers[arrays.STEP_LENGTH] = STEP_SHARE * self._fall_time()
+        self.numbers[arrays.WORK_SINCE] = time
         self.queue = _queue(2 * n + 64)
         self.grid = _grid(n, 2)
         self.group = _group(n, 4 * n + 64)
@@ -96,6 +103,12 @@ class Discs:
     def _columns(self, first: int) -> Floats:
         """The x and y columns that begin with one."""
         return self.rows[:, first : first + 2]
+
+    def _fall_time(self) -> float:
+        """Median time (s) in which discs that are pulled fall through their diameters; ∞ without any."""
+        pull = np.hypot(*self._columns(arrays.GX).T)
+        radius, pull = self.rows[pull > 0.0, arrays.RADIUS], pull[pull > 0.0]
+        return float(np.median(np.sqrt(4.0 * radius / pull))) if len(pull) else np.inf
 
     # --- time -------------------------------------------------------------------------------------
 
@@ -153,11 +166,15 @@ class Discs:
         """All that the future follows from besides what the discs are: with it others go on, bit for bit."""
         owners, entries = self._lasting_entries()
         pairs = np.column_stack([owners, self.ties.lasting[entries, arrays.OTHER]])
-        return Paths(self.rows[:, list(arrays.MOVING)], pairs, self.ties.forces[entries])
+        crowd = np.concatenate([self.counts[list(arrays.CROWD_COUNTS)], self.numbers[list(arrays.CROWD_TIMES)]])
+        return Paths(self.rows[:, list(arrays.MOVING)], pairs, self.ties.forces[entries], crowd)
 
     def follow(self, paths: Paths) -> None:
         """Go on as the discs did that these paths were taken from."""
         self.rows[:, list(arrays.MOVING)] = paths.motion
+        counted = len(arrays.CROWD_COUNTS)
+        self.counts[list(arrays.CROWD_COUNTS)] = paths.crowd[:counted]
+        self.numbers[list(arrays.CROWD_TIMES)] = paths.crowd[counted:]
         self.counts[arrays.RENEW] = 1
         while len(paths.contacts) > self.counts[arrays.SPARES]:
             self.ties = _more_lasting(self.ties, 2 * len(self.ties.lasting), self.counts)
@@ -250,6 +267,7 @@ def _group(n: int, contacts: int) -> Group:
         initial=np.zeros((n, 2)),
         start=np.zeros((n, 2)),
         other=np.zeros((n, 2)),
+        noise=np.zeros(1),
         marks=np.zeros((3, contacts), dtype=np.int64),
         matrix=np.zeros((arrays.DIRECT + 1, arrays.DIRECT)),
     )

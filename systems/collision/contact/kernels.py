@@ -32,9 +32,9 @@ from systems.collision.arrays import (
     WX,
     WY,
 )
-from systems.collision.gap.kernels import NEVER, place_noise
+from systems.collision.gap.kernels import NEVER, place_noise, touch_speed
 from systems.collision.kernels import compiled
-from systems.collision.projection.kernels import copy_motion, opening_rate, project, rate_noise
+from systems.collision.projection.kernels import begin, copy_motion, opening_rate, project
 
 STILL = 1e-10  # of the speed and acceleration that gravity gives; what moves less is at rest
 STEP_ANGLE = 0.0156  # by which discs turn around one another in a step; discs sink by its cube / 8 of a radius
@@ -101,7 +101,7 @@ def stop_sinking(count, touching, group):
             group.marks[ACTIVE, active] = c
             active += 1
     if active > 0:
-        copy_motion(group.motion, group.initial, count)
+        begin(count, group)
         project(count, active, 0.0, group)
 
 
@@ -116,11 +116,11 @@ def support(count, touching, discs, group, numbers):
     velocities; sets the column FORCE.
     """
     copy_motion(group.motion, group.other, count)
-    closed = _list_closed(touching, group)
+    closed = _list_closed(touching, discs, group, numbers)
     for c in range(touching):
         group.contacts[c, FORCE] = 0.0
     _pull(count, discs, group)
-    copy_motion(group.motion, group.initial, count)
+    begin(count, group)
     project(count, closed, 0.0, group)
     duration = NEVER
     if not _stop_where_still(count, closed, discs, group):
@@ -148,14 +148,15 @@ def _relative(c, motion, group):
 
 
 @compiled
-def _list_closed(touching, group):
+def _list_closed(touching, discs, group, numbers):
     """List the contacts that do not separate; their bias becomes |Δv|²/d. Returns how many there are."""
     contacts = group.contacts
     closed = 0
     for c in range(touching):
         contacts[c, BIAS] = 0.0
-        noise = 4.0 * rate_noise(c, group)
-        if contacts[c, OPENING] > 0.0 and opening_rate(c, group.other, group) <= noise:
+        i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+        slow = max(4.0 * group.noise[0], touch_speed(discs, i, j, numbers[NOW]))
+        if contacts[c, OPENING] > 0.0 and opening_rate(c, group.other, group) <= slow:
             x, y = _relative(c, group.other, group)
             contacts[c, BIAS] = (x * x + y * y) / contacts[c, DISTANCE]
             contacts[c, GIVEN] = contacts[c, FORCE]

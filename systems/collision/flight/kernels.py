@@ -25,6 +25,7 @@ from systems.collision.arrays import (
     LAYERS,
     LEVEL,
     NEXT,
+    NOISE,
     NONE,
     NOW,
     NX,
@@ -40,7 +41,10 @@ from systems.collision.arrays import (
     REST_HEIGHT,
     RESTITUTION,
     SPARES,
+    SPEED_NOISE,
     STEP,
+    STEP_END,
+    STEPPING,
     UX,
     UY,
     VX,
@@ -57,10 +61,11 @@ from systems.collision.contact.kernels import (
     stop_sinking,
     support,
 )
-from systems.collision.gap.kernels import NEVER, place_noise, relative_motion
+from systems.collision.gap.kernels import NEVER, place_noise, relative_motion, rest_speed, touch_speed
 from systems.collision.grid.kernels import enclose, enter, layer_of, leave, level_of, neighbours, place_box
 from systems.collision.impact.kernels import respond
 from systems.collision.kernels import compiled, entry
+from systems.collision.pile.kernels import begin_steps, crowded, step
 from systems.collision.projection.kernels import compliance, opening_rate
 from systems.collision.queue.kernels import drop_first, is_void
 from systems.collision.window.kernels import expect, find_bond, open_window
@@ -77,6 +82,10 @@ def advance(until, most_events, discs, grid, ties, queue, group, report, numbers
     """
     last = counts[EVENTS] + most_events
     while True:
+        if counts[STEPPING]:
+            reason = _step(until, last, discs, grid, ties, group, report, numbers, counts)
+            if counts[STEPPING]:
+                return reason
         if counts[RENEW]:
             reason = open_window(discs, grid, ties, queue, numbers, counts)
             if reason != DONE:
@@ -104,10 +113,14 @@ def _happen(discs, grid, ties, queue, group, report, numbers, counts):
     """The first event of the queue happens. Returns a Reason."""
     i, j = queue.meetings[0, 0], queue.meetings[0, 1]
     count, touching = _gather(i, j, discs, grid, ties, group, numbers, counts)
-    crowded = touching > group.links.shape[0] or 2 * touching > counts[SPARES]
-    if crowded or counts[REPORTED] + touching > report.pairs.shape[0]:
+    full = touching > group.links.shape[0] or 2 * touching > counts[SPARES]
+    if full or counts[REPORTED] + touching > report.pairs.shape[0]:
         _dismiss(count, group)
-        return GROUP_FULL if crowded else REPORT_FULL
+        return GROUP_FULL if full else REPORT_FULL
+    if crowded(touching, numbers, counts):
+        _dismiss(count, group)
+        begin_steps(numbers, counts)
+        return DONE
     drop_first(queue, counts[QUEUED])
     counts[QUEUED] -= 1
     counts[EVENTS] += 1
@@ -117,6 +130,7 @@ def _happen(discs, grid, ties, queue, group, report, numbers, counts):
     duration = support(count, touching, discs, group, numbers)
     _make_contacts_last(count, touching, discs, ties, group, counts)
     struck = 0 if i == j else 2
+    _note_noise(count, touching, discs, group)
     _redirect(count, struck, duration, discs, group, numbers)
     _enclose_anew(count, discs, grid, group, numbers, counts)
     reason = DONE
@@ -125,6 +139,23 @@ def _happen(discs, grid, ties, queue, group, report, numbers, counts):
         reason = QUEUE_FULL
     _dismiss(count, group)
     return reason
+
+
+@compiled
+def _step(until, last, discs, grid, ties, group, report, numbers, counts):
+    """Let a pile take its steps, until it is at rest or dissolved. Returns a Reason."""
+    while counts[STEPPING]:
+        if numbers[STEP_END] > until:
+            numbers[NOW] = max(numbers[NOW], until)
+            return DONE
+        if counts[EVENTS] >= last:
+            return BUSY
+        numbers[NOW] = numbers[STEP_END]
+        reason = step(discs, grid, ties, group, report, numbers, counts)
+        if reason != DONE:
+            return reason
+        counts[EVENTS] += 1
+    return DONE
 
 
 # --- who takes part -----------------------------------------------------------------------------------------
@@ -248,19 +279,6 @@ def _gather_lasting(m, count, touching, discs, ties, group, now):
 
 
 @compiled
-def rest_speed(i, j, discs, restitution, rest_height, time):
-    """Speed (m/s) of two discs from each other below which they stay in contact: √(2 g h).
-
-    g is the larger acceleration of the two, h the height that is not worth a bounce.
-    """
-    height = place_noise(discs, i, j, time)
-    if restitution < 1.0:
-        height = max(height, rest_height * min(discs[i, RADIUS], discs[j, RADIUS]))
-    pull = max(math.hypot(discs[i, GX], discs[i, GY]), math.hypot(discs[j, GX], discs[j, GY]))
-    return math.sqrt(2.0 * pull * height)
-
-
-@compiled
 def _restitution(touching, discs, group, numbers):
     """The restitution, or 0 if nothing in the group approaches faster than rest."""
     for c in range(touching):
@@ -273,7 +291,7 @@ def _restitution(touching, discs, group, numbers):
 
 @compiled
 def _report(touching, discs, group, report, numbers, counts):
-    """Report the contacts that had an impulse.
+    """Report the contacts that had an impulse, other than to bring to rest what moves by round-off only.
 
     The energy lost is −Σ p (s + s')/2, with s, s' the speeds of separation before and after; in a joint
     impact, where contacts pass energy on, each has a share of the sum in proportion to its impulse.
@@ -285,9 +303,10 @@ def _report(touching, discs, group, report, numbers, counts):
         impulses += group.contacts[c, IMPULSE]
     for c in range(touching):
         impulse = group.contacts[c, IMPULSE]
-        if impulse > 0.0:
+        i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+        slow = max(group.noise[0], touch_speed(discs, i, j, numbers[NOW]))
+        if impulse * group.contacts[c, OPENING] > slow:
             k = counts[REPORTED]
-            i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
             report.pairs[k, 0], report.pairs[k, 1] = min(i, j), max(i, j)
             report.details[k, 0] = numbers[NOW]
             report.details[k, 1] = impulse
@@ -317,6 +336,21 @@ def _make_contacts_last(count, touching, discs, ties, group, counts):
             i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
             note_lasting(i, j, force, discs, ties, counts)
             note_lasting(j, i, force, discs, ties, counts)
+
+
+@compiled
+def _note_noise(count, touching, discs, group):
+    """Round-off in the members' velocities: of what they are, and of what impulses and contact forces added."""
+    for m in range(count):
+        discs[group.members[m], NOISE] = SPEED_NOISE * (abs(group.other[m, 0]) + abs(group.other[m, 1]))
+    for c in range(touching):
+        for p in range(2):
+            m = group.links[c, p]
+            i = group.members[m]
+            change = group.contacts[c, IMPULSE] * max(group.mobility[m, 0], group.mobility[m, 1])
+            if group.contacts[c, FORCE] > 0.0:
+                change += math.sqrt(math.hypot(discs[i, GX], discs[i, GY]) * discs[i, RADIUS])
+            discs[i, NOISE] += SPEED_NOISE * change
 
 
 @compiled

@@ -7,11 +7,26 @@ All are evaluated along the path, which keeps the digits that expanded coefficie
 
 import math
 
-from systems.collision.arrays import AX, AY, EPOCH, EPSILON, GX, GY, OX, OY, RADIUS, UX, UY, VX, VY
+from systems.collision.arrays import (
+    AX,
+    AY,
+    EPOCH,
+    EPSILON,
+    GX,
+    GY,
+    NOISE,
+    OX,
+    OY,
+    RADIUS,
+    SPEED_NOISE,
+    UX,
+    UY,
+    VX,
+    VY,
+)
 from systems.collision.kernels import compiled
 
 NEVER = math.inf
-SPEED_NOISE = 16.0 * EPSILON  # of both speeds: a slower approach is round-off
 PLACE_NOISE = 64.0 * EPSILON  # of both positions and paths: discs this near touch
 MOST_ITERATIONS = 2200  # what bisection alone needs across all exponents and bits of a double; Newton: 5
 
@@ -50,7 +65,8 @@ def speed_at(discs, i, time):
 @compiled
 def speed_noise(discs, i, j, time):
     """Relative speed (m/s) that the round-off of the two velocities can feign."""
-    return SPEED_NOISE * (speed_at(discs, i, time) + speed_at(discs, j, time))
+    present = SPEED_NOISE * (speed_at(discs, i, time) + speed_at(discs, j, time))
+    return max(present, discs[i, NOISE] + discs[j, NOISE])
 
 
 @compiled
@@ -73,6 +89,31 @@ def extent(discs, i, time):
 def place_noise(discs, i, j, time):
     """Gap (m) that the round-off of the two positions and of the time can feign."""
     return PLACE_NOISE * (extent(discs, i, time) + extent(discs, j, time))
+
+
+@compiled
+def pull_on(discs, i, j):
+    """The larger acceleration (m/s²) of two discs without contacts."""
+    return max(math.hypot(discs[i, GX], discs[i, GY]), math.hypot(discs[j, GX], discs[j, GY]))
+
+
+@compiled
+def touch_speed(discs, i, j, time):
+    """Speed (m/s) at which two discs that touch part by less than round-off before they are pulled back."""
+    return math.sqrt(2.0 * pull_on(discs, i, j) * place_noise(discs, i, j, time))
+
+
+@compiled
+def rest_speed(i, j, discs, restitution, rest_height, time):
+    """Speed (m/s) of two discs from each other below which they stay in contact: √(2 g h).
+
+    g is the larger acceleration of the two, h the height that is not worth a bounce.
+    """
+    speed = touch_speed(discs, i, j, time)
+    if restitution < 1.0:
+        height = rest_height * min(discs[i, RADIUS], discs[j, RADIUS])
+        speed = max(speed, math.sqrt(2.0 * pull_on(discs, i, j) * height))
+    return speed
 
 
 @compiled

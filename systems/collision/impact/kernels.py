@@ -9,7 +9,7 @@ v = e v_elastic + (1 − e) v_plastic. For a single contact it is Newton's law.
 
 from systems.collision.arrays import ACTIVE, GIVEN, IMPULSE, OPENING
 from systems.collision.kernels import compiled
-from systems.collision.projection.kernels import copy_motion, opening_rate, project, push_apart, rate_noise
+from systems.collision.projection.kernels import begin, copy_motion, opening_rate, project, push_apart
 
 MOST_REFLECTIONS = 1000000  # in one impact; after that the rest of it is taken as plastic
 
@@ -20,7 +20,7 @@ def respond(members, count, restitution, group):
 
     `motion` goes from the velocities before to those after, `initial` keeps those before; sets IMPULSE.
     """
-    copy_motion(group.motion, group.initial, members)
+    begin(members, group)
     for c in range(count):
         group.contacts[c, IMPULSE] = 0.0
     if count == 1:
@@ -54,7 +54,7 @@ def _reflect(members, count, group):
         for c in range(count):
             contacts[c, GIVEN] = 0.0
             speed = opening_rate(c, motion, group)
-            if speed < -rate_noise(c, group) and contacts[c, OPENING] > 0.0:
+            if speed < -group.noise[0] and contacts[c, OPENING] > 0.0:
                 group.marks[ACTIVE, approaching] = c
                 approaching += 1
         if approaching == 0:

@@ -7,8 +7,19 @@ solution of many.
 
 import math
 
-from systems.collision.arrays import ACTIVE, BIAS, CHOSEN, DIRECT, EPSILON, GIVEN, NX, NY, OPENING, STATE
-from systems.collision.gap.kernels import SPEED_NOISE
+from systems.collision.arrays import (
+    ACTIVE,
+    BIAS,
+    CHOSEN,
+    DIRECT,
+    EPSILON,
+    GIVEN,
+    NX,
+    NY,
+    OPENING,
+    SPEED_NOISE,
+    STATE,
+)
 from systems.collision.kernels import compiled
 
 IDLE, FITTED, DEPENDENT = 0, 1, 2
@@ -58,14 +69,13 @@ def copy_motion(source, target, members):
 
 
 @compiled
-def rate_noise(c, group):
-    """Rate below which a contact closes by round-off only."""
-    total = 0.0
-    for p in range(2):
-        m = group.links[c, p]
-        total += abs(group.motion[m, 0]) + abs(group.motion[m, 1])
-        total += abs(group.initial[m, 0]) + abs(group.initial[m, 1])
-    return SPEED_NOISE * total
+def begin(members, group):
+    """Note the motion as the initial one; what its largest part can feign by round-off is the noise."""
+    largest = 0.0
+    for m in range(members):
+        group.initial[m, 0], group.initial[m, 1] = group.motion[m, 0], group.motion[m, 1]
+        largest = max(largest, abs(group.motion[m, 0]) + abs(group.motion[m, 1]))
+    group.noise[0] = 2.0 * SPEED_NOISE * largest
 
 
 @compiled
@@ -87,7 +97,7 @@ def project(members, active, tolerance, group):
         for k in range(active):
             c = group.marks[ACTIVE, k]
             push_apart(c, group.contacts[c, GIVEN], group)
-    _solve_by_sweeps(active, tolerance, group)
+    sweep(active, MOST_SWEEPS, tolerance, group)
 
 
 @compiled
@@ -115,7 +125,7 @@ def _worst(active, group):
         c = group.marks[ACTIVE, k]
         if group.marks[STATE, c] == IDLE:
             rate = opening_rate(c, group.motion, group)
-            if rate < fastest and rate < -rate_noise(c, group):
+            if rate < fastest and rate < -group.noise[0]:
                 worst, fastest = c, rate
     return worst
 
@@ -184,17 +194,17 @@ def _solve(count, group):
 
 
 @compiled
-def _solve_by_sweeps(active, tolerance, group):
+def sweep(active, most, tolerance, group):
     """Gauss–Seidel, to and fro, from the impulses GIVEN so far, until rates change by less than the tolerance."""
     contacts = group.contacts
-    for sweep in range(MOST_SWEEPS):
+    for turn in range(most):
         settled = True
         for k in range(active):
-            c = group.marks[ACTIVE, k if sweep % 2 == 0 else active - 1 - k]
+            c = group.marks[ACTIVE, k if turn % 2 == 0 else active - 1 - k]
             rate = opening_rate(c, group.motion, group)
             impulse = max(contacts[c, GIVEN] - rate / contacts[c, OPENING], 0.0)
             change = impulse - contacts[c, GIVEN]
-            if abs(change) * contacts[c, OPENING] > max(tolerance, rate_noise(c, group)):
+            if abs(change) * contacts[c, OPENING] > max(tolerance, group.noise[0]):
                 push_apart(c, change, group)
                 contacts[c, GIVEN] = impulse
                 settled = False

@@ -65,6 +65,26 @@ def find_bond(i, j, ties):
 
 
 @compiled
+def is_joined(i, j, ties):
+    """True if two discs never collide."""
+    bond = find_bond(i, j, ties)
+    return bond >= 0 and ties.bonds[bond] == JOINED
+
+
+@compiled
+def is_left_alone(i, j, gap, ties):
+    """True if two discs overlap from the start; once they have separated, they collide like others."""
+    bond = find_bond(i, j, ties)
+    if bond < 0:
+        return False
+    if gap <= 0.0:
+        return True
+    ties.bonds[find_bond(j, i, ties)] = FREE
+    ties.bonds[bond] = FREE
+    return False
+
+
+@compiled
 def foresee(i, j, discs, ties, end):
     """Time at which two discs next touch while they approach, up to `end`; NEVER if they do not.
 
@@ -76,17 +96,12 @@ def foresee(i, j, discs, ties, end):
         i, j = j, i
     if (is_held(i, discs) and is_held(j, discs)) or find_lasting(i, j, ties) != NONE:
         return NEVER
-    bond = find_bond(i, j, ties)
-    if bond >= 0 and ties.bonds[bond] == JOINED:
+    if is_joined(i, j, ties):
         return NEVER
     start = max(discs[i, EPOCH], discs[j, EPOCH])
     dx, dy, vx, vy, ax, ay = relative_motion(discs, i, j, start)
     reach = discs[i, RADIUS] + discs[j, RADIUS]
-    overlapping = bond >= 0
-    if overlapping and dx * dx + dy * dy > reach * reach:
-        ties.bonds[find_bond(j, i, ties)] = FREE
-        ties.bonds[bond] = FREE
-        overlapping = False
+    overlapping = is_left_alone(i, j, dx * dx + dy * dy - reach * reach, ties)
     noise, growth = speed_noise(discs, i, j, start), pull_noise(discs, i, j)
     return start + first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, end - start, overlapping)
 
@@ -134,7 +149,7 @@ def _fill(crowd, discs, grid, ties, queue, numbers, counts):
     numbers[END] = numbers[NOW] + numbers[WINDOW]
     for i in range(discs.shape[0]):
         enclose(i, discs, grid, numbers[NOW], numbers[END])
-    _set_layers(grid, numbers, counts)
+    set_layers(grid, numbers, counts)
     layers, cell = counts[LAYERS], numbers[CELL]
     if 4 * discs.shape[0] * layers > grid.entries.shape[0]:
         return GRID_FULL, 0
@@ -228,7 +243,7 @@ def _spread(discs):
 
 
 @compiled
-def _set_layers(grid, numbers, counts):
+def set_layers(grid, numbers, counts):
     """Choose the finest cells and the layers that the boxes need, and give every disc its layer."""
     count = grid.boxes.shape[0]
     numbers[CELL] = _cell_size(grid)
