@@ -27,6 +27,7 @@ class HistoryKind:
         parameters, flattened in order of declaration.
     static: the factor that stands for it in statics.
     ends: the time after which the factor no longer changes (infinite: never), from the parameters.
+    check: raises FieldError for parameters that make no sense. mod: the mod that brought it, if one did.
     """
 
     name: str
@@ -35,6 +36,7 @@ class HistoryKind:
     static: float
     ends: Callable[[History], float]
     check: Callable[[History, str], None] = lambda history, where: None
+    mod: Any = None
 
 
 HISTORIES: dict[str, HistoryKind] = {}

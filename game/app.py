@@ -93,6 +93,7 @@ class App:
         systems: list[System] = [self.input, Hover(), *([spares] if spares else []), self.render]
         self.session = Session(model, systems, View(theme=theme), file)
         self.session.window = self
+        self.session.faults_told = 0  # also which mods were left out is shown
         self.session.spares = self.spares = spares
         self._theme = theme
         self._follow_size()

@@ -29,6 +29,8 @@ _RESULTS = {
 class ProgramError(ValueError):
     """A step system that cannot join the program; the message names it, the reason and the remedy."""
 
+    system: StepSystem | None = None
+
 
 @dataclass(frozen=True)
 class Bound:
@@ -72,6 +74,14 @@ class Bound:
 
 def bind(system: StepSystem, model: Model) -> Bound:
     """Find a step system's kernel and its parameters. Raises ProgramError."""
+    try:
+        return _bound(system, model)
+    except ProgramError as error:
+        error.system = system
+        raise
+
+
+def _bound(system: StepSystem, model: Model) -> Bound:
     _check_role(system, model)
     function = _kernel(system)
     if isinstance(system, Driver):
@@ -82,7 +92,8 @@ def bind(system: StepSystem, model: Model) -> Bound:
             f"The kernel of {system.name} is not compiled; put `@compiled` of systems.kernels above it."
         )
     bound = Bound(system, function, tuple(inspect.signature(plain).parameters), system.arrays(model))
-    for name in bound.arrays:
+    for name, array in bound.arrays.items():
+        array.flags.writeable = False  # a kernel that writes does not compile
         if _is_column(name, model):
             raise ProgramError(f"The array '{name}' of {system.name} has the name of a column; rename it.")
     if bound.each != "loads":
@@ -97,9 +108,11 @@ def check_names(bound: Iterable[Bound]) -> None:
     for b in bound:
         for name in (b.call, *b.arrays):
             if name in owner:
-                raise ProgramError(
+                error = ProgramError(
                     f"{owner[name]} and {b.system.name} are both '{name}' in the step program; rename one."
                 )
+                error.system = b.system
+                raise error
             owner[name] = b.system.name
 
 
@@ -123,10 +136,11 @@ def _check_role(system: StepSystem, model: Model) -> None:
 
 def _kernel(system: StepSystem) -> Callable[..., Any]:
     if not isinstance(system.kernel, str):
-        return system.kernel
+        found: Callable[..., Any] = getattr(system.kernel, "__func__", system.kernel)  # of a class: a method
+        return found
     module, _, attribute = system.kernel.partition(":")
     try:
-        found: Callable[..., Any] = getattr(importlib.import_module(module), attribute)
+        found = getattr(importlib.import_module(module), attribute)
     except (ImportError, AttributeError, ValueError) as error:
         raise ProgramError(
             f"The kernel '{system.kernel}' of {system.name} cannot be found: {error}; write it like"
@@ -174,17 +188,25 @@ def _is_column(name: str, model: Model) -> bool:
 def explain(bound: Iterable[Bound], model: Model, error: Exception) -> ProgramError:
     """Why a program did not compile: the first kernel that fails by itself or returns the wrong thing."""
     for b in bound:
-        try:
-            made = _result_type(b, model)
-        except Exception as failure:  # numba raises many kinds
-            lines = [line.strip() for line in str(failure).splitlines() if line.strip()]
-            return ProgramError(f"The kernel of {b.system.name} does not compile: {'; '.join(lines[1:4])}.")
-        role = b.each or "commit"
-        if getattr(made, "count", 1) != (2 if role in ("particles", "commit") else 1):
-            return ProgramError(
-                f"The kernel of {b.system.name} returns {made}; it must return {_RESULTS[role]}."
-            )
+        problem = _problem(b, model)
+        if problem:
+            found = ProgramError(f"The kernel of {b.system.name} {problem}")
+            found.system = b.system
+            return found
     return ProgramError(f"The step program does not compile: {error}")
+
+
+def _problem(b: Bound, model: Model) -> str:
+    """What is wrong with a kernel, compiled by itself, or ""."""
+    try:
+        made = _result_type(b, model)
+    except Exception as failure:  # numba raises many kinds
+        lines = [line.strip() for line in str(failure).splitlines() if line.strip()]
+        return f"does not compile: {'; '.join(lines[1:4])}."
+    role = b.each or "commit"
+    if getattr(made, "count", 1) != (2 if role in ("particles", "commit") else 1):
+        return f"returns {made}; it must return {_RESULTS[role]}."
+    return ""
 
 
 def _result_type(b: Bound, model: Model) -> Any:
@@ -204,7 +226,7 @@ def _result_type(b: Bound, model: Model) -> Any:
         scalar = from_dtype(storage)
         return types.UniTuple(scalar, 2) if shape else scalar  # type: ignore[no-untyped-call]
 
-    of_load = (types.float64, types.Array(types.float64, 1, "C"), types.uint32)
+    of_load = (types.float64, types.Array(types.float64, 1, "C", readonly=True), types.uint32)
     signature = of_load if b.each == "loads" else tuple(map(type_of, b.parameters))
     b.function.compile(signature)  # type: ignore[attr-defined]
     return b.function.overloads[signature].signature.return_type  # type: ignore[attr-defined]

@@ -120,7 +120,7 @@ class Session:
         self.on_resize: Callable[[], None] | None = None  # and here
         self.spares: Spares | None = None  # unsaved work is kept in them, in a window
         self._keyed = ""  # the scene in which a key was pressed last
-        self._faults = len(FAULTS)  # those that were told, or are from before
+        self.faults_told = len(FAULTS)  # of mods; the others are shown
         self._offer_tools()
         self._begin_at_desk()
 
@@ -265,7 +265,7 @@ class Session:
     @property
     def fault(self) -> str:
         """The mod that failed last and why, until Escape is pressed; "" if none did."""
-        return FAULTS[-1] if len(FAULTS) > self._faults else ""
+        return FAULTS[-1] if len(FAULTS) > self.faults_told else ""
 
     # --- time --------------------------------------------------------------------------------------
 
@@ -472,8 +472,8 @@ class Session:
             return
         pixel = pixel if pixel is not None else self.pointer
         name = self._action_at(key, pixel)
-        if key == "escape" and self.fault:
-            self._faults = len(FAULTS)
+        if key == "escape" and self.fault and self.scene not in FORMS:
+            self.faults_told = len(FAULTS)
         elif name is not None:
             if self.on_press is not None:
                 self.on_press(key, pixel)

@@ -14,8 +14,10 @@ from components.model import Model
 from components.snapshot import Snapshot
 from components.world import Derivation
 from game.catalogue import DRIVERS
+from game.culprit import blame_mod, find_culprit
 from game.moment import Moment
 from game.program import Program
+from game.program_binding import ProgramError
 from game.program_writer import REVIEW_INTERVAL
 from game.schedule import Schedule
 from systems.base import Driver, StepSystem, StopReason
@@ -221,14 +223,23 @@ class Simulation:
         return (*(system.name for system in systems), self.driver.name)
 
     def _bind(self) -> None:
-        systems = self.schedule.step_plan(self.model)
+        """Take hold of the model by the program of its plan, without mods whose systems cannot join it."""
+        while self._program is None:
+            systems = self.schedule.step_plan(self.model)
+            try:
+                self._program = self._bound(systems)
+            except ProgramError as error:
+                if not blame_mod(error):
+                    raise
+
+    def _bound(self, systems: list[StepSystem]) -> Program:
         key = self._key(systems)
         if key in self._programs:
             self._programs[key].bind()
         else:
             self._programs[key] = Program(self.model, systems, self.driver)
             self.compile_seconds += self._programs[key].compile_seconds
-        self._program = self._programs[key]
+        return self._programs[key]
 
     def _account(self) -> tuple[float, float, float]:
         """(initial energy, work, potential reference) in J, edits since the last step included.
@@ -323,12 +334,12 @@ class Simulation:
 
     def advance(self, steps: int) -> int:
         """Take up to `steps` fixed steps; returns how many. Stops at rest and before garbage."""
-        program, clock = self._arm(), self.model.clock
-        started = time.perf_counter()
+        self._arm()
+        started, clock = time.perf_counter(), self.model.clock
         first = clock.steps
         while clock.steps - first < steps and not self.halted:
             ahead = steps - (clock.steps - first)
-            _, reason = program.advance(ahead if self.watch is None else min(ahead, self.watch()))
+            _, reason = self._arm().advance(ahead if self.watch is None else min(ahead, self.watch()))
             self._heed(reason)
         self.compute_seconds += time.perf_counter() - started
         return clock.steps - first
@@ -338,11 +349,22 @@ class Simulation:
         self.reason = reason
         if reason is StopReason.REST:
             self.message = f"At rest since t = {self.model.clock.time:.6g} s."
-        elif reason is StopReason.DIVERGED and not self._retry():
+        elif reason is StopReason.DIVERGED and not (self._go_on_without_mod() or self._retry()):
             self._explain_divergence()
         elif reason is StopReason.REVIEW:
             self._safe, self._retries = Snapshot.take(self.model), 0
             self._review_step()
+
+    def _go_on_without_mod(self) -> bool:
+        """If a mod made a number that is not finite, switch it off and return to the last good state."""
+        assert self._safe is not None
+        mod = find_culprit(self.program, self._safe)
+        if mod is None:
+            return False
+        self._safe.restore(self.model)
+        self.before_change()  # what is lost with the mod counts as an edit
+        self.reason = StopReason.DONE
+        return True
 
     def _retry(self) -> bool:
         """An automatic step that proved too long (the geometry changed) is halved from the last safe state."""

@@ -15,13 +15,12 @@ from components.view import Readout
 from game import models, registry
 from game.actions.registry import ACTIONS, WHILE_DRAWING, Action, action
 from game.catalogue import DRIVERS, register_driver
-from game.mods.guard import guarded_scene, guarded_system
+from game.mods.guard import guarded_history, guarded_scene, guarded_system
 from game.mods.mod import Mod, ModError
 from game.scenes import Scene, all_scenes
 from systems.base import Driver, System
 from systems.edit.refusal import Refusal
 from systems.input.bindings import LIVE, Binding, add_binding, remove_binding
-from systems.loads.system import VaryingLoads
 from systems.render.picture import ABOVE, BELOW, Layer
 
 if TYPE_CHECKING:
@@ -74,12 +73,12 @@ class App:
 
     def history(self, kind: HistoryKind) -> None:
         """Add a way in which loads change in time."""
+        kind = guarded_history(self._mod, kind)
         try:
             register_history(kind)
         except ValueError as error:
             raise ModError(str(error)) from None
         self._undo.append(lambda: HISTORIES.pop(kind.name))
-        self._add(registry.SYSTEMS, lambda: guarded_system(self._mod, VaryingLoads(kind)))
 
     def models(self, folder: str | Path) -> None:
         """Let the models in a folder be opened by name, like those that come with Pinjoint."""

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from components.field import FieldError
+from components.load import History, HistoryKind
 from components.snapshot import Snapshot
 from game.mods.mod import Mod
 from game.mods.watchdog import interrupted_after
@@ -24,6 +28,7 @@ def guarded_system(mod: Mod, system: System) -> System:
     whole, and the columns that it declares it writes are as before.
     """
     needs, process = system.needs, system.process
+    arrays = system.arrays if isinstance(system, StepSystem) else None
 
     def needed(model: Model) -> bool:
         return bool(mod.call(f"the question whether '{system.name}' is needed", needs, model, otherwise=False))
@@ -46,9 +51,29 @@ def guarded_system(mod: Mod, system: System) -> System:
 
     system.mod = mod
     vars(system)["needs"] = needed
-    if not isinstance(system, StepSystem):
+    if arrays is None:
         vars(system)["process"] = processed
+    else:
+        asked = f"the question for the arrays of '{system.name}'"
+        vars(system)["arrays"] = lambda model: mod.call(asked, arrays, model, otherwise={})
     return system
+
+
+def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
+    """The history of a mod, whose Python functions switch the mod off if they fail."""
+
+    def check(history: History, where: str) -> None:
+        try:
+            kind.check(history, where)
+        except FieldError:
+            raise
+        except Exception as error:  # whatever a stranger's code raises
+            mod.fail(f"the check of the history '{kind.name}'", error)
+
+    def ends(history: History) -> float:
+        return float(mod.call(f"the end of the history '{kind.name}'", kind.ends, history, otherwise=-math.inf))
+
+    return replace(kind, check=check, ends=ends, mod=mod)
 
 
 _METHODS = tuple(name for name, method in vars(Scene).items() if callable(method) and name[0] != "_")

@@ -13,7 +13,7 @@ from game.catalogue import step_systems
 from game.mods import finding
 from game.mods.app import App, check_plugin
 from game.mods.manifest import MANIFEST
-from game.mods.mod import Mod, ModError
+from game.mods.mod import FAULTS, Mod, ModError
 from game.mods.order import in_order, required
 from game.mods.watchdog import interrupted_after
 from game.preferences import preferred_keys
@@ -42,6 +42,7 @@ def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list
     MODS.extend(new)
     for mod in ordered:
         _load(mod)
+    FAULTS.extend(f"The mod '{mod.name}' was left out: {mod.problem}" for mod in new if mod.off)
     for scene, key, action in preferred_keys() if new else ():
         prefer(scene, key, action)
     return [known.get(mod.folder, mod) for mod in found]

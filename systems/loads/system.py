@@ -23,7 +23,7 @@ class VaryingLoads(Law):
     adds = ("particles.force",)
 
     def __init__(self, kind: HistoryKind) -> None:
-        self.kind = kind
+        self.kind, self.mod = kind, kind.mod
         self.name = f"loads.{kind.name}"  # type: ignore[misc]
         self.kernel = kind.factor  # type: ignore[misc]
 
@@ -32,7 +32,7 @@ class VaryingLoads(Law):
         return [row for row, history in enumerate(histories) if history["kind"] == self.kind.name]
 
     def needs(self, model: Model) -> bool:
-        return bool(self._rows(model))
+        return not (self.mod is not None and self.mod.off) and bool(self._rows(model))
 
     def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
         """Particles, forces and flattened parameters of these loads."""

@@ -1,0 +1,93 @@
+"""Culprits: which mod spoilt a step program or its numbers; it is switched off, and the run goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from components.model import Model
+from components.snapshot import Snapshot
+from game.program import Program
+from game.program_binding import ProgramError, bind
+from game.program_rows import in_turn
+from game.program_writer import REVIEW_INTERVAL
+from systems.base import StepSystem
+
+if TYPE_CHECKING:
+    from game.mods.mod import Mod
+
+STATE = ("particles.displacement", "particles.velocity")
+
+
+def blame_mod(error: ProgramError) -> bool:
+    """Switch off the mod whose system cannot join the step program; False if it is none of a mod."""
+    mod: Mod | None = error.system.mod if error.system is not None else None
+    if mod is None:
+        return False
+    if not mod.off:
+        mod.switch_off(str(error), error)
+    return True
+
+
+def find_culprit(program: Program, safe: Snapshot) -> Mod | None:
+    """Switch off the mod whose kernel first gave what is not finite after a safe state; None if none did.
+
+    The steps are taken again one by one, then the kernels are called one after the other, row by row, in
+    the state before the first bad step and in the one it led to.
+    """
+    model = program.model
+    if not any(system.mod for system in program.systems) or _finite(model):
+        return None
+    good = _last_good(program, safe)
+    led_to = {name: model.column(name).copy() for name in (*STATE, "clock.time")}
+    good.restore(model)
+    found = _bad_kernel(program, model)
+    if found is None:
+        for name, values in led_to.items():  # where they are numbers
+            model.writable(name)[...] = np.where(np.isfinite(values), values, model.column(name))
+        found = _bad_kernel(program, model)
+    if found is None or found[0].mod is None:
+        return None
+    system, element, value = found
+    mod: Mod = system.mod
+    mod.switch_off(f"{system.name} gave {value} for {element}{_place(system, model)}, which is not finite.")
+    return mod
+
+
+def _finite(model: Model) -> bool:
+    return all(bool(np.isfinite(model.column(name)).all()) for name in STATE)
+
+
+def _last_good(program: Program, safe: Snapshot) -> Snapshot:
+    """The state before the first step that leads to what is not finite; the model is left after it."""
+    model = program.model
+    safe.restore(model)
+    before = safe
+    for _ in range(REVIEW_INTERVAL):
+        before = Snapshot.take(model)
+        program.advance(1)
+        if not _finite(model):
+            break
+    return before
+
+
+def _bad_kernel(program: Program, model: Model) -> tuple[StepSystem, str, float] | None:
+    """The first system with a result that is not finite, the element and the result."""
+    for system, given in in_turn(program.systems, model):
+        for row, column in np.argwhere(~np.isfinite(given))[:1].tolist():
+            return system, _element(system, model, row), float(given[row, column])
+    return None
+
+
+def _element(system: StepSystem, model: Model, row: int) -> str:
+    each = getattr(system, "each", "rods")
+    return model.describe(model.tables[each][row]) if row < model.tables[each].count else f"row {row}"
+
+
+def _place(system: StepSystem, model: Model) -> str:
+    """The file and the line in which its kernel begins."""
+    function: Callable[..., Any] = bind(system, model).function
+    code = getattr(function, "py_func", function).__code__
+    return f" ({'/'.join(code.co_filename.split('/')[-2:])}, line {code.co_firstlineno})"

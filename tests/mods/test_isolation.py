@@ -1,0 +1,296 @@
+"""Mods that fail while the program runs: each is named with its reason, switched off, and the model is intact."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from components.world import World
+from game import Session, mods
+from game.models import document
+from game.mods import guard
+from tests.mods.conftest import Write
+
+TRUSS: dict[str, Any] = {
+    "format": "pinjoint model",
+    "version": 1,
+    "particles": [
+        {"name": "A", "position": [0.0, 0.0], "fixed": [True, True]},
+        {"name": "B", "position": [1.0, 0.0], "fixed": [False, True]},
+        {"name": "C", "position": [0.5, 1.0], "force": [1.0, -2.0]},
+    ],
+    "rods": [{"name": "AC", "between": ["A", "C"]}, {"name": "BC", "between": ["B", "C"]}],
+}
+
+SYSTEM = """
+import esper
+import numpy as np
+from components import Particle
+from systems.base import Phase, System
+
+class Bad(System):
+    name = "apple.bad"
+    phase = Phase.{phase}
+    writes = ("particles.velocity",)
+
+    def process(self, frame):
+        model = frame.session.model
+        {body}
+
+def plugin(app):
+    app.system(Bad)
+"""
+
+LAW = """
+from components import HistoryKind
+from numba import njit
+from systems.base import Commit, Law
+
+{kernel}
+
+class Bad(Law):
+    name = "apple.bad"
+    each = "particles"
+    kernel = bad
+    reads = ("particles.position",)
+    {more}
+
+def plugin(app):
+    app.system(Bad)
+"""
+FAIR = "@njit\ndef bad(particles_position):\n    return 0.0, 0.0"
+
+OTHER = "def plugin(app):\n    {}"
+
+DELETE_ALL = "for p in session.particles: session.model.delete([p])"
+
+
+@pytest.fixture
+def session(write_mod: Write) -> Any:
+    """A session with the mod that its code makes, and what the model was before."""
+
+    def open_with(code: str) -> tuple[Session, dict[str, Any]]:
+        made = Session.open(TRUSS, mods=[write_mod("apple", code)])
+        return made, document(made.model)
+
+    return open_with
+
+
+def check_switched_off(session: Session, before: dict[str, Any], said: str) -> None:
+    """The mod is named with the reason; the document is as it was; what follows works."""
+    session.update_view()
+    problem = session.view.status.problem
+    assert "The mod 'apple' was switched off" in problem
+    assert said in problem
+    now = document(session.model)
+    for section in ("environment", "settings", "particles", "rods"):
+        stripped = [
+            [{k: v for k, v in e.items() if k not in ("displacement", "velocity")} for e in made[section]]
+            if isinstance(made[section], list)
+            else made[section]
+            for made in (before, now)
+        ]
+        assert stripped[0] == stripped[1]
+    session.press("escape")
+    session.update_view()
+    assert not session.fault
+    session.particles["C"].force = (2.0, -2.0)
+    session.frame(0.01)
+    assert not session.fault
+    session.undo()
+
+
+# --- frame systems -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("phase", ["INPUT", "EDIT", "EVENTS", "RENDER"])
+def test_an_exception_in_a_phase(session: Any, phase: str) -> None:
+    body = 'model.particles["C"].force = (9.0, 9.0); model.writable("particles.velocity")[:] = 5.0; 1 / 0'
+    made, before = session(SYSTEM.format(phase=phase, body=body))
+    made.frame(0.01)
+    assert made.particles.velocity.tolist() == [[0.0, 0.0]] * 3
+    assert not made.can_undo
+    check_switched_off(made, before, "ZeroDivisionError: division by zero (apple/__init__.py, line 14)")
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "while True: pass",
+        'while True: model.particles["C"].force = (model.particles["C"].force[0] + 1.0, 0.0)',
+        "while True: model.create(Particle, 1)",
+    ],
+)
+def test_a_system_that_does_not_end_is_interrupted(
+    session: Any, body: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(guard, "PATIENCE", 0.2)
+    made, before = session(SYSTEM.format(phase="EDIT", body=body))
+    made.frame(0.01)
+    check_switched_off(made, before, "it ran for more than 0.2 s (")
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "[model.delete([p]) for p in model.particles]; model.particles[0].force",
+        "[esper.delete_entity(e, immediate=True) for e, _ in esper.get_component(Particle)]",
+        "[esper.delete_entity(e) for e, _ in esper.get_component(Particle)]",
+        "esper.clear_database()",
+        "[esper.remove_component(e, Particle) for e, _ in esper.get_component(Particle)]",
+    ],
+)
+def test_a_system_that_deletes_everything(session: Any, body: str) -> None:
+    made, before = session(SYSTEM.format(phase="EDIT", body=body))
+    made.select(made.particles["C"])
+    made.frame(0.01)
+    assert [made.model.describe(handle) for handle in made.selected] in (["particle C"], [])
+    check_switched_off(made, before, "Error: ")
+    made.model.delete([made.particles["C"]])
+    assert made.rods.count == 0
+    made.undo()
+    assert made.rods.count == 2
+
+
+def test_what_a_system_does_by_commands_is_one_step_of_undo(session: Any) -> None:
+    body = 'model.particles["C"].force = (9.0, 9.0); model.particles["C"].mass = 4.0'
+    made, before = session(SYSTEM.format(phase="EDIT", body=body))
+    made.frame(0.01)
+    assert made.particles["C"].mass == 4.0
+    made.undo()
+    assert document(made.model) == before
+
+
+# --- compiled code ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("kernel", "more", "said"),
+    [
+        (
+            "@njit(error_model='numpy')\ndef bad(particles_position):\n"
+            "    return 1.0 / (particles_position[1] - 1.0), 0.0",
+            "",
+            "apple.bad gave inf for particle C (apple/__init__.py, line 6), which is not finite",
+        ),
+        ("@njit\ndef bad(particles_position):\n    return particles_position.nothing, 0.0", "", "does not compile"),
+        ("@njit\ndef bad(particles_position):\n    return 1.0", "", "must return a pair"),
+        ("@njit\ndef bad(particles_position):\n    particles_position[0] = 1.0\n    return 1.0, 1.0", "", "compile"),
+        ("@njit\ndef bad(particles_mass):\n    return 0.0, 0.0", "", "does not declare that it reads"),
+        ("@njit\ndef bad(particles_weight):\n    return 0.0, 0.0", "", "there is no column particles.weight"),
+        ("def bad(particles_position):\n    return 0.0, 0.0", "", "is not compiled"),
+        (FAIR, "def needs(self, model): return 1 / 0", "ZeroDivisionError: division by zero (apple/__init__.py"),
+        (FAIR, "def arrays(self, model): return 1 / 0", "ZeroDivisionError: division by zero (apple/__init__.py"),
+        (FAIR, "reads = ('particles.mass',)", "does not declare that it reads"),
+    ],
+)  # fmt: skip
+def test_a_law_that_spoils_the_step_program(session: Any, kernel: str, more: str, said: str) -> None:
+    made, before = session(LAW.format(kernel=kernel, more=more))
+    assert made.run(time=0.01) == "time reached"
+    check_switched_off(made, before, said)
+    alone = Session.open(TRUSS)
+    mods.unload(mods.MODS[-1:])
+    alone = Session.open(TRUSS)
+    alone.run(time=0.01)
+    assert made.model.clock.time == alone.model.clock.time
+    assert made.particles.velocity.tobytes() == alone.particles.velocity.tobytes()
+
+
+def test_a_law_that_is_spoilt_later_leaves_the_last_good_state(session: Any) -> None:
+    kernel = """
+@njit(error_model="numpy")
+def bad(particles_position, particles_velocity, time):
+    return (0.005 - time) ** 0.5 - 0.005 ** 0.5, 0.0
+"""
+    more = "reads = ('particles.position', 'particles.velocity')"
+    made, before = session(LAW.format(kernel=kernel, more=more))
+    assert made.run(time=0.01) == "time reached"
+    check_switched_off(made, before, "apple.bad gave nan for particle A (apple/__init__.py, line 7)")
+
+
+HISTORY = """
+from components import HistoryKind
+from numba import njit
+
+@njit
+def factor(time, values, first):
+    {body}
+    return 1.0
+
+def plugin(app):
+    app.history(HistoryKind("apple", {{"a": 1.0}}, {factor}, 1.0, {ends}))
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "ends", "said"),
+    [
+        ("values[first] = 2.0", "lambda history: 0.0", "loads.apple does not compile"),
+        ("pass", "lambda history: history['b']", "KeyError: 'b' (apple/__init__.py, line 11)"),
+    ],
+)
+def test_a_history_that_fails(session: Any, body: str, ends: str, said: str) -> None:
+    made, _ = session(HISTORY.format(body=body, ends=ends, factor="factor"))
+    session_with = {**TRUSS, "loads": [{"on": "C", "force": [1.0, 0.0], "history": {"kind": "apple"}}]}
+    made.open_here(session_with)
+    before = document(made.model)
+    assert made.run(time=0.01) == "time reached"
+    check_switched_off(made, before, said)
+
+
+# --- what is seen and pressed --------------------------------------------------------------------------------------
+
+
+def test_an_action_that_fails_changes_nothing(session: Any) -> None:
+    code = OTHER.format("app.action('apple.a', key='j')(bad)\n\ndef bad(session, pixel):\n    {}\n    1 / 0")
+    made, before = session(code.replace("{}", DELETE_ALL))
+    made.press("j")
+    check_switched_off(made, before, "the action 'apple.a' failed: ZeroDivisionError: division by zero (apple/")
+    made.press("j")
+    assert "is switched off" in made.notice
+
+
+def test_a_panel_that_fails(session: Any) -> None:
+    made, before = session(OTHER.format("app.panel(lambda session: 'text')"))
+    check_switched_off(made, before, "returned 'text', not a Readout or None")
+
+
+def test_a_layer_that_fails(session: Any) -> None:
+    from systems.render.picture import compose
+    from systems.render.theme import load_theme
+
+    made, before = session(OTHER.format("app.layer(lambda sheet: sheet.nothing)"))
+    compose(made.model, made.view, load_theme("light"))
+    check_switched_off(made, before, "its drawing layer failed: AttributeError")
+
+
+@pytest.mark.parametrize("method", ["enter", "advance", "hint", "busy"])
+def test_a_scene_that_fails_leads_back_to_pause(session: Any, method: str) -> None:
+    code = f"""
+from game.scenes import Scene
+
+class Bad(Scene):
+    name = "bad"
+    sources = ("pause",)
+
+    def {method}(self, *arguments):
+        raise RuntimeError("no luck")
+
+def plugin(app):
+    app.scene(Bad)
+    app.action("apple.go", key="j")(lambda session, pixel: session.scenes.request("bad"))
+"""
+    made, before = session(code)
+    made.press("j")
+    for _ in range(3):
+        made.frame(0.01)
+    assert made.scene == "pause"
+    check_switched_off(
+        made, before, "the scene 'bad' failed: RuntimeError: no luck (apple/__init__.py, line 9)"
+    )
+
+
+def test_a_world_is_whole_after_its_entities_were_checked() -> None:
+    session = Session.open(TRUSS)
+    World.check_entities(session.model)
