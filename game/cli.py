@@ -14,6 +14,7 @@ from typing import NoReturn
 from components.field import FieldError
 from components.settings import INTEGRATORS
 from game import __version__, bench, models, script
+from game.curve import as_csv as as_curve
 from game.desk import ModelFile, file_of
 from game.mods import ModError, command
 from game.mods.command import load_as_asked
@@ -313,6 +314,32 @@ def _sweep(words: Sequence[str]) -> int:
     return ANSWERED if any(status in FOUND for status in counts) else NOT_ANSWERED
 
 
+# --- load–displacement curves --------------------------------------------------------------------------------
+
+
+def _curve(words: Sequence[str]) -> int:
+    parser = Parser(
+        prog="pinjoint curve",
+        description="Load–displacement curve as CSV: equilibria while the load grows, and falls where it must.",
+    )
+    _add_model(parser)
+    goal = parser.add_mutually_exclusive_group()
+    goal.add_argument("--factor", type=float, default=1.0, help="end where the load factor is first this (1)")
+    goal.add_argument("--until", metavar="B.y=-2.5", help="end where a particle is displaced so far (m)")
+    parser.add_argument("--points", type=int, default=500, metavar="N", help="at most so many equilibria")
+    parser.add_argument("--output", metavar="FILE.csv", help="write to a file instead of standard output")
+    options = parser.parse_args(words)
+    session = _session(options)
+    try:
+        found = session.load_path(options.factor, until=options.until, points=options.points)
+    except ValueError as error:
+        raise Refusal(str(error)) from None
+    _write(as_curve(session.model, found), options.output)
+    if not found.complete:
+        print(f"pinjoint: The curve ends at the load factor {found.load_factor[-1]:.6g}.", file=sys.stderr)
+    return ANSWERED if found.complete else NOT_ANSWERED
+
+
 # --- force method ------------------------------------------------------------------------------------------
 
 
@@ -455,6 +482,7 @@ COMMANDS: dict[str, Callable[[list[str]], int]] = {
     "bench": _bench,
     "play": _play,
     "verify": _verify,
+    "curve": _curve,
     "force-method": _force_method,
     "mods": _mods,
     "sweep": _sweep,

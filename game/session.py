@@ -25,6 +25,7 @@ from game import models
 from game.actions import ACTIONS, WHILE_DRAWING
 from game.catalogue import step_systems
 from game.clock import FrameClock
+from game.curve import goal_of
 from game.desk import Desk, Desks, ModelFile, file_of
 from game.document import missing_mods
 from game.gestures import TOOL_HINTS, Gesture
@@ -45,6 +46,7 @@ from systems.physics.pace import natural_pace
 
 if TYPE_CHECKING:
     from systems.statics.events import Event
+    from systems.statics.path import Curve
 
 CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
 ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
@@ -322,6 +324,16 @@ class Session:
             self.model.give("clock.origin_steps", np.array([self.model.clock.steps]))
         self.notice = found.message or f"Settled: {found.status}."
         return found.status
+
+    def load_path(self, factor: float = 1.0, *, until: str | None = None, points: int = 500) -> Curve:
+        """The load–displacement curve, through limit points, up to a load factor or a displacement "B.y=-2.5".
+
+        Changes nothing. Its arrays are load_factor (k,), displacement (k, particles, 2) in m, axial_force
+        (k, rods) in kN and stable (k,); complete: False if it could not be followed so far. Raises ValueError.
+        """
+        from systems.statics.path import load_path
+
+        return load_path(self.model, goal_of(self.model, factor, until), points=points)
 
     def restart(self) -> None:
         """Go back to the beginning of time, keeping all edits. Can be undone."""

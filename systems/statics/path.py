@@ -9,12 +9,14 @@ from numpy.typing import NDArray
 
 from components.model import Model
 from systems.statics.equations import Array, Structure
-from systems.statics.external import external_forces
-from systems.statics.follow import Path
-from systems.statics.settle import settle
+from systems.statics.external import External, external_forces
+from systems.statics.follow import Path, Point, Step, Tangent
+from systems.statics.settle import StaticState, settle
 
 DETAIL = 0.02  # of a rod's length between points; smaller: a smoother curve
 FIRST = 1e-3  # of the same, for the first increment
+LANDED = 1e-13  # of the goal, or of the last increment: near enough
+LANDINGS = 60  # trials
 
 
 @dataclass(frozen=True)
@@ -30,52 +32,104 @@ class Curve:
     complete: bool
 
 
-def load_path(
-    model: Model,
-    *,
-    until_factor: float | None = None,
-    until_displacement: tuple[int, int, float] | None = None,
-    points: int = 500,
-    detail: float = DETAIL,
-) -> Curve:
+@dataclass(frozen=True)
+class Goal:
+    """Where a curve ends: where the load factor first is `value`, or (particle row, axis) is displaced by it (m)."""
+
+    value: float
+    displaced: tuple[int, int] | None = None
+
+
+def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DETAIL) -> Curve:
     """The curve from the load factor 0 on, by arc-length continuation with exact geometry and yielding.
 
-    It ends when the load factor first reaches `until_factor`, when `until_displacement` = (particle row,
-    axis, displacement in m) is reached from either side, or after so many points. Accelerations act in full
-    from the start. It goes straight on through bifurcations. Raises ValueError if nothing is to be scaled,
-    or if there is no equilibrium at the factor 0.
+    The factor first grows, or falls below 0 if that leads towards the goal. The curve ends exactly there, or
+    after so many points. Accelerations act in full from the start. It goes straight on through bifurcations.
+    Raises ValueError if nothing is to be scaled, or if there is no equilibrium at the factor 0.
     """
     structure, external = Structure.of(model), external_forces(model)
     unloaded = settle(model, (0.0,)).final
     if unloaded.status != "equilibrium":
         raise ValueError(f"There is no equilibrium to start from. {unloaded.message}")
-    path = Path(structure, external.at(0.0), external.scaled, passes_limits=True)
-    if not path.push.any():
+    if not structure.gather(external.scaled).any():
         raise ValueError("No force or load acts on a free direction; apply one that the factor can scale.")
-    point = path.start(unloaded.displacement, unloaded.plastic_strain)
-    tangent = path.tangent(point)
-    path.reference = float(np.linalg.norm(tangent.rate))
-    found, increment, complete = [(point, tangent)], FIRST, False
-    sign = _side(point.displacement, until_displacement)
-    while len(found) < points and not complete:
-        largest = detail / structure.move(tangent.rate, point.response.length) * path.stretch(tangent)
-        step = path.advance(point, tangent, min(largest, increment * largest))
-        if step is None:
-            break
-        point, tangent = step.point, step.tangent
-        increment = min(1.0, 2.0 * increment)
-        found.append((point, tangent))
-        complete = until_factor is not None and abs(point.t) >= abs(until_factor)
-        complete |= until_displacement is not None and _side(point.displacement, until_displacement) != sign
+    search = _Search.towards(goal, structure, external, unloaded)
+    found, complete = search.run(points, detail)
     return Curve(
-        load_factor=np.array([p.t for p, _ in found]),
-        displacement=np.array([p.displacement for p, _ in found]),
-        axial_force=np.array([p.response.axial_force for p, _ in found]),
-        stable=np.array([t.stable for _, t in found]),
+        load_factor=search.sign * np.array([point.t for point, _ in found]),
+        displacement=np.array([point.displacement for point, _ in found]),
+        axial_force=np.array([point.response.axial_force for point, _ in found]),
+        stable=np.array([tangent.stable for _, tangent in found]),
         complete=complete,
     )
 
 
-def _side(displacement: Array, goal: tuple[int, int, float] | None) -> bool:
-    """Whether a displacement is beyond the one that is to be reached."""
-    return goal is not None and bool(displacement[goal[0], goal[1]] > goal[2])
+@dataclass(frozen=True)
+class _Search:
+    """The way along a path on which the load factor is sign × t."""
+
+    path: Path
+    start: Point
+    sign: float
+    goal: Goal
+
+    @classmethod
+    def towards(cls, goal: Goal, structure: Structure, external: External, unloaded: StaticState) -> _Search:
+        """The way that begins in the direction of a goal."""
+        found = None
+        for sign in (1.0, -1.0):
+            path = Path(structure, external.at(0.0), sign * external.scaled, passes_limits=True)
+            start = path.start(unloaded.displacement, unloaded.plastic_strain)
+            search = cls(path, start, sign, goal)
+            rate = structure.spread(path.tangent(start).rate)
+            speed = sign if goal.displaced is None else float(rate[goal.displaced])
+            if found is None or search.beyond(start) * speed < 0.0:
+                found = search
+        assert found is not None
+        return found
+
+    def beyond(self, point: Point) -> float:
+        """How far a point is beyond the goal, negative if it is not above it."""
+        displaced = self.goal.displaced
+        return (
+            self.sign * point.t if displaced is None else float(point.displacement[displaced])
+        ) - self.goal.value
+
+    def run(self, points: int, detail: float) -> tuple[list[tuple[Point, Tangent]], bool]:
+        """Points and tangents up to the goal; and whether it was reached."""
+        path, point = self.path, self.start
+        tangent = path.tangent(point)
+        path.reference = float(np.linalg.norm(tangent.rate))
+        found, increment, side = [(point, tangent)], FIRST, self.beyond(point)
+        while side != 0.0 and len(found) < points:
+            largest = detail / path.structure.move(tangent.rate, point.response.length) * path.stretch(tangent)
+            step = path.advance(point, tangent, min(largest, increment * largest))
+            if step is None:
+                return found, False
+            reached = side * self.beyond(step.point) <= 0.0
+            if reached:
+                step = self._landed(found[-1], step)
+            point, tangent = step.point, step.tangent
+            found.append((point, tangent))
+            if reached:
+                return found, True
+            increment = min(1.0, 2.0 * increment)
+        return found, side == 0.0
+
+    def _landed(self, last: tuple[Point, Tangent], step: Step) -> Step:
+        """The last increment shortened so that it ends at the goal, by the secant method with bisection."""
+        low, high = (0.0, self.beyond(last[0])), (step.taken, self.beyond(step.point))
+        for trial in range(LANDINGS):
+            if abs(high[1]) <= LANDED * abs(self.goal.value) or high[0] - low[0] <= LANDED * step.taken:
+                break
+            share = low[1] / (low[1] - high[1]) if trial % 3 < 2 else 0.5
+            increment = low[0] + share * (high[0] - low[0])
+            found = self.path.attempt(*last, increment)
+            if not isinstance(found, tuple):
+                break
+            here = self.beyond(found[0])
+            if here * low[1] > 0.0:
+                low = increment, here
+            else:
+                high, step = (increment, here), Step(*found, increment, increment)
+        return step
