@@ -48,10 +48,14 @@ class Preview:
 
 @dataclass(frozen=True)
 class Page:
-    """Text in place of a model: lines, then a table whose columns are aligned; the first row is its head."""
+    """Text in place of a model: lines, then a table whose columns are aligned; the first row is its head.
+
+    first: rows of the table that are scrolled away.
+    """
 
     lines: tuple[str, ...] = ()
     table: tuple[tuple[str, ...], ...] = ()
+    first: int = 0
 
 
 @dataclass(frozen=True)

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from components.field import Role
+from components.field import Column, Role
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
+from components.table import Table
 from components.tags import Selected
 from components.view import View
 from components.world import Handle
@@ -24,6 +26,7 @@ from systems.statics.force_method import (
     LinearState,
     Solution,
     Unknown,
+    indeterminacy,
     solve,
     unit_force,
 )
@@ -32,8 +35,7 @@ from systems.statics.settle import settle
 PARTS = 7
 DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
 DIAGRAM_HEIGHT = 34.0  # px of the largest force diagram
-
-_NAMES = ("Set 1: real structure", "Set 2: base structure", "Set 3: base structure, unit load")
+SWING = 3.0  # s in which a mechanism is shown to move there and back
 
 
 @dataclass
@@ -44,12 +46,21 @@ class Set:
     view: View
     live: Live
 
+    @property
+    def moves(self) -> bool:
+        """True if frames change it."""
+        return not self.live.simulation.halted
+
+    def advance(self, elapsed: float) -> None:
+        """Let the time of one frame pass."""
+        self.live.frame(elapsed)
+
     def scale_to(self, state: LinearState) -> None:
         """Choose drawing scales for the displacements and forces that it will come to."""
-        size = float(np.ptp(self.model.particles.position, axis=0).max())
         moved = float(np.abs(state.displacement).max(initial=0.0))
         pulled = float(np.abs(state.axial_force).max(initial=0.0))
-        self.model.settings.displacement_scale = _round(DRAWN_SHARE * size / moved) if moved > 0.0 else 1.0
+        share = DRAWN_SHARE * _size(self.model)
+        self.model.settings.displacement_scale = _round(share / moved) if moved > 0.0 else 1.0
         self.model.settings.diagram_scale = _round(DIAGRAM_HEIGHT / pulled) if pulled > 0.0 else 1.0
 
     def settle(self) -> None:
@@ -61,52 +72,82 @@ class Set:
                 self.model.give("particles.velocity", np.zeros_like(final.displacement))
 
 
+class Mechanism:
+    """What a structure does that cannot carry anything: it swings along its motion, (n, 2)."""
+
+    moves = True
+
+    def __init__(self, model: Model, motion: Column, view: View) -> None:
+        self.model, self.view = model, view
+        self.model.settings.displacement_scale = 1.0
+        self._motion = DRAWN_SHARE * _size(model) * motion
+        self._time = 0.0
+
+    def advance(self, elapsed: float) -> None:
+        """Let the time of one frame pass."""
+        self._time += elapsed
+        swing = math.sin(2.0 * math.pi * self._time / SWING)
+        self.model.writable("particles.displacement")[...] = swing * self._motion
+
+
 class Guide:
     """Where the person is in the force method, and what was found.
 
-    part: 1 to 7 as in REQUIREMENTS §4. sets: those that exist so far. Raises ForceMethodError at the
-    start if the structure cannot carry its load.
+    part: 1 to 7 as in REQUIREMENTS §4. released: the static unknowns, the newest last. solution: with all
+    of them. sets: those that exist so far. mechanism: what the last release that was refused would leave.
+    Raises ForceMethodError at the start if the structure cannot carry its load.
     """
 
     def __init__(self, model: Model, schedule: Schedule, view: View) -> None:
-        self._model, self._schedule, self._view = model, schedule, view
+        self.model, self._schedule, self._view = model, schedule, view
         self.part = 1
-        self.unknown: Unknown | None = None
+        self.released: list[Unknown] = []
         self.solution: Solution | None = None
-        self.exact_force: float | None = None
+        self.exact: list[float] | None = None
         self.refusal = ""
-        self._pending: Particle | None = None
+        self.mechanism: Mechanism | None = None
+        self.axis_wanted: Particle | None = None
         real = solve(model, [])
+        self.degree = indeterminacy(model)
         self.sets = [self._make_set([], unit=None)]
         self.sets[0].scale_to(real.real)
+
+    @property
+    def unknown(self) -> Unknown | None:
+        """The unknown that was released last."""
+        return self.released[-1] if self.released else None
 
     # --- sets --------------------------------------------------------------------------------------
 
     def _make_set(self, released: Sequence[Unknown], unit: Unknown | None) -> Set:
         """A copy of the structure without some unknowns, under the real load or only a unit force."""
-        copy = elastic_copy(self._model)
-        copy.settings.time_step = None
-        copy.settings.collisions = False
-        if released:  # the base structure keeps all nodal masses
-            copy.assign(list(copy.particles), "prescribed_mass", self._model.particles.mass.tolist())
+        copy = base_structure(self.model, released)
         if unit is not None:
             _unload(copy)
-            copy.assign(list(copy.particles), "force", unit_force(self._model, unit).tolist())
-        for unknown in released:
-            _release(copy, unknown)
-        view = View(all_diagrams=self._view.all_diagrams, legend=False, pixel_ratio=self._view.pixel_ratio)
-        return Set(copy, view, Live(Simulation(copy, self._schedule)))
+            copy.assign(list(copy.particles), "force", unit_force(self.model, unit).tolist())
+        return Set(copy, view_like(self._view), Live(Simulation(copy, self._schedule)))
 
     @property
     def running(self) -> list[Set]:
         """The sets that move in this part."""
         return {1: self.sets[:1], 3: self.sets[1:2], 5: self.sets[2:3], 7: self.sets[2:3]}.get(self.part, [])
 
+    @property
+    def shown(self) -> list[Set | Mechanism]:
+        """What there is to see, from left to right."""
+        return [*self.sets, self.mechanism] if self.mechanism is not None else [*self.sets]
+
+    @property
+    def moving(self) -> list[Set | Mechanism]:
+        """What frames change."""
+        shown: list[Set | Mechanism] = [*self.running, *([self.mechanism] if self.mechanism else [])]
+        return [one for one in shown if one.moves]
+
     # --- going on ----------------------------------------------------------------------------------
 
     def next(self) -> bool:
         """Go on to the next part; False after the last. Part 2 is left by picking an unknown."""
-        self.refusal = ""
+        self._forget_refusal()
         for running in self.running:
             running.settle()
         if self.part == PARTS:
@@ -118,17 +159,28 @@ class Guide:
         if self.part == 5:
             self._show_set_3()
         elif self.part == 7:
-            self._apply_force()
+            self._apply_forces()
         return True
+
+    @property
+    def can_release_another(self) -> bool:
+        """True if the base structure is hyperstatic still, and all is known of the unknowns so far."""
+        return self.part == PARTS and len(self.released) < self.degree
+
+    def release_another(self) -> None:
+        """Repeat the method for a further unknown, those so far released as well (part 7 → part 2)."""
+        if self.part == PARTS:
+            self.sets[2].settle()
+            self.sets, self.part = self.sets[:1], 2
 
     def pick(self, hit: Handle | None) -> None:
         """Take what was clicked in set 1 as the unknown (part 2)."""
-        self.refusal = ""
-        self._pending = None
+        self._forget_refusal()
+        self.axis_wanted = None
         if isinstance(hit, Rod):
-            self._take(Unknown(self._model.rods[hit.name]))
+            self._take(Unknown(self.model.rods[hit.name]))
         elif isinstance(hit, Particle):
-            self._pick_support(self._model.particles[hit.name])
+            self._pick_support(self.model.particles[hit.name])
 
     def _pick_support(self, particle: Particle) -> None:
         held = [axis for axis in (0, 1) if particle.fixed[axis]]
@@ -137,141 +189,78 @@ class Guide:
         elif len(held) == 1:
             self._take(Unknown(particle, held[0]))
         else:
-            self._pending = particle
+            self.axis_wanted = particle
 
     def pick_axis(self, axis: int) -> None:
         """Choose the direction of a particle constrained in both (part 2)."""
-        if self._pending is not None:
-            self._take(Unknown(self._pending, axis))
+        if self.axis_wanted is not None:
+            self._take(Unknown(self.axis_wanted, axis))
 
     def _take(self, unknown: Unknown) -> None:
-        try:
-            self.solution = solve(self._model, [unknown])
-            exact = exact_forces(self._model, [unknown])
-        except ForceMethodError as error:
-            self.refusal = str(error)
+        wanted = [*self.released, unknown]
+        if unknown.name in {known.name for known in self.released}:
+            self.refusal = f"{unknown.name} is released already; pick another one."
             return
-        self.unknown, self._pending = unknown, None
-        self.exact_force = exact[0] if exact is not None else None
-        self._mark(unknown)
-        base = self._make_set([unknown], unit=None)
+        try:
+            self.solution = solve(self.model, wanted)
+        except ForceMethodError as error:
+            self._refuse(error, wanted)
+            return
+        self.released, self.axis_wanted = wanted, None
+        self.exact = exact_forces(self.model, wanted)
+        self._mark_released()
+        base = self._make_set(wanted, unit=None)
         base.scale_to(self.solution.base)
         self.sets = [self.sets[0], base]
         self.part = 3
 
-    def _mark(self, unknown: Unknown) -> None:
-        """The released element is drawn as selected in set 1."""
+    def _refuse(self, error: ForceMethodError, wanted: Sequence[Unknown]) -> None:
+        """Say why, and show the mechanism, if that is why."""
+        self.refusal = str(error)
+        if error.motion is not None:
+            base = base_structure(self.model, wanted)
+            self.mechanism = Mechanism(base, error.motion, view_like(self._view))
+
+    def _forget_refusal(self) -> None:
+        self.refusal, self.mechanism = "", None
+
+    def _mark_released(self) -> None:
+        """The released elements are drawn as selected in set 1."""
         model = self.sets[0].model
-        table = model.rods if isinstance(unknown.element, Rod) else model.particles
-        for handle in model.tagged(Selected):
-            model.untag(handle, Selected)
-        model.tag(table[unknown.element.name], Selected)
+        tables: dict[str, Table[Any]] = model.tables
+        model.tag_only([tables[one.element.table][one.element.name] for one in self.released], Selected)
 
     def _show_set_3(self) -> None:
-        assert self.unknown is not None
         assert self.solution is not None
-        unit = self._make_set([self.unknown], unit=self.unknown)
-        unit.scale_to(self.solution.units[0])
+        unit = self._make_set(self.released, unit=self.released[-1])
+        unit.scale_to(self.solution.units[-1])
         self.sets.append(unit)
 
-    def _apply_force(self) -> None:
-        """The hyperstatic force in place of the unit force (part 7)."""
-        assert self.unknown is not None
+    def _apply_forces(self) -> None:
+        """The hyperstatic forces in place of the unit force (part 7)."""
         assert self.solution is not None
-        force, unit, third = float(self.solution.force[0]), self.solution.units[0], self.sets[2]
-        applied = force * unit_force(self._model, self.unknown)
-        third.model.assign(list(third.model.particles), "force", applied.tolist())
-        third.scale_to(LinearState(force * unit.displacement, force * unit.axial_force))
+        third = self.sets[2]
+        force, displacement, axial_force = (np.zeros(shape) for shape in _shapes(self.solution))
+        for p, unknown, unit in zip(self.solution.force, self.released, self.solution.units, strict=True):
+            force += p * unit_force(self.model, unknown)
+            displacement += p * unit.displacement
+            axial_force += p * unit.axial_force
+        third.model.assign(list(third.model.particles), "force", force.tolist())
+        third.scale_to(LinearState(displacement, axial_force))
+        for name in ("displacement_scale", "diagram_scale"):  # the same, so that one sees that they add up
+            scale = min(getattr(one.model.settings, name) for one in self.sets)
+            for one in self.sets:
+                setattr(one.model.settings, name, scale)
 
-    # --- what is said --------------------------------------------------------------------------------
 
-    @property
-    def message(self) -> str:
-        """The line of red text: what is happening or expected."""
-        if self.refusal:
-            return self.refusal
-        if self.part == 2:
-            return "Select constraint direction" if self._pending else "Select the discontinuity element"
-        return {
-            1: "Real structure under the real load",
-            3: f"Base structure: {self._released} is released",
-            4: "How far the released place moved",
-            5: f"Base structure under {self._unit_words} alone",
-            6: "How far the unit force moves it",
-            7: "Set 2 + set 3 = set 1",
-        }[self.part]
+def _shapes(solution: Solution) -> tuple[tuple[int, ...], ...]:
+    moved = solution.base.displacement.shape
+    return moved, moved, solution.base.axial_force.shape
 
-    @property
-    def hint(self) -> str:
-        """The next possible step."""
-        if self.part == 2:
-            return (
-                "X or Y direction"
-                if self._pending
-                else "click a rod or a support in set 1     Esc back to pause"
-            )
-        return f"K {'finish' if self.part == PARTS else 'next part'}     I forces     Esc back to pause"
 
-    @property
-    def _released(self) -> str:
-        return self.unknown.name if self.unknown is not None else ""
-
-    @property
-    def _unit_words(self) -> str:
-        if self.unknown is None or self.unknown.axis is None:
-            return "a pair of unit forces"
-        return "a unit force"
-
-    def captions(self) -> list[tuple[str, ...]]:
-        """For every set its name, and its displacement once it has been measured."""
-        shown: list[tuple[str, ...]] = [(name,) for name in _NAMES[: len(self.sets)]]
-        solution = self.solution
-        if solution is None or self.part < 4:
-            return shown
-        what = "Δ" if self.unknown is not None and self.unknown.axis is None else "u"
-        facts = [
-            f"{what}_real = {millimetres(solution.delta_real[0])}",
-            f"{what}₀ = {millimetres(solution.delta_base[0])}",
-        ]
-        if self.part >= 6:
-            facts.append(f"{what}₁ = {millimetres(solution.delta_unit[0, 0])} per kN")
-        shown = [(*caption, fact) for caption, fact in zip(shown, [*facts, ""], strict=False)]
-        if self.part == PARTS:
-            shown[2] = (f"Set 3: base structure, p = {_signed(solution.force[0])} kN", shown[2][1])
-        return shown
-
-    def working(self) -> tuple[str, ...]:
-        """The compatibility equation with its numbers (part 7)."""
-        solution = self.solution
-        if solution is None or self.part < PARTS:
-            return (
-                ("Yielding is switched off: superposition needs linear behaviour.",) if self.part == 1 else ()
-            )
-        real, base, unit = solution.delta_real[0], solution.delta_base[0], solution.delta_unit[0, 0]
-        exact = self.exact_force
-        beside = f"     exact geometry gives {_signed(exact)} kN" if exact is not None else ""
-        return (
-            f"p = (Δ_real − Δ₀) / Δ₁ = ({_mm(real)} − ({_mm(base)})) mm / ({_mm(unit)} mm/kN)"
-            f" = {_signed(solution.force[0])} kN{beside}",
-        )
-
-    def table(self) -> tuple[tuple[str, ...], ...]:
-        """Set 1 = set 2 + set 3, rod by rod (part 7), in kN."""
-        solution = self.solution
-        if solution is None or self.part < PARTS:
-            return ()
-        sum_, rows = solution.superposed.axial_force, []
-        for row, rod in enumerate(self._model.rods):
-            real, base = float(solution.real.axial_force[row]), float(solution.base.axial_force[row])
-            residual = float(sum_[row]) - real
-            rows.append(
-                (
-                    rod.name,
-                    *(_signed(n) for n in (real, base, float(sum_[row]) - base)),
-                    f"{residual:.0e}".replace("-", "−"),
-                )
-            )
-        return (("rod", "set 1", "set 2", "set 3", "residual"), *rows)
+def view_like(view: View) -> View:
+    """How a set is seen in a window that is seen like this."""
+    return View(all_diagrams=view.all_diagrams, legend=False, pixel_ratio=view.pixel_ratio)
 
 
 def elastic_copy(model: Model) -> Model:
@@ -283,6 +272,18 @@ def elastic_copy(model: Model) -> Model:
         for field in table.fields_in(Role.STATE):
             if field is not Rod.plastic_strain:
                 copy.writable(f"{name}.{field.name}")[...] = field.allocate(len(table))
+    return copy
+
+
+def base_structure(model: Model, released: Sequence[Unknown]) -> Model:
+    """An elastic copy without some unknowns, which keeps all nodal masses."""
+    copy = elastic_copy(model)
+    copy.settings.time_step = None
+    copy.settings.collisions = False
+    if released:
+        copy.assign(list(copy.particles), "prescribed_mass", model.particles.mass.tolist())
+    for unknown in released:
+        _release(copy, unknown)
     return copy
 
 
@@ -318,20 +319,11 @@ def _release(model: Model, unknown: Unknown) -> None:
     particle.fixed = (x and unknown.axis != 0, y and unknown.axis != 1)
 
 
+def _size(model: Model) -> float:
+    """The larger of width and height (m)."""
+    return float(np.ptp(model.particles.position, axis=0).max())
+
+
 def _round(number: float) -> float:
     power = 10.0 ** math.floor(math.log10(number))
     return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= number * (1 + 1e-9))
-
-
-def _mm(metres: float) -> str:
-    return f"{1000.0 * metres:.4g}".replace("-", "−")
-
-
-def millimetres(metres: float) -> str:
-    """A displacement in mm, signed."""
-    return f"{_mm(metres)} mm"
-
-
-def _signed(number: float) -> str:
-    """Two decimals, with a real minus sign and no negative zero."""
-    return f"{round(float(number), 2) + 0.0:.2f}".replace("-", "−")

@@ -212,17 +212,23 @@ def read(session: Session, path: str) -> Any:
 
 
 def _of_force_method(session: Session, quantity: str) -> Any:
-    """A quantity of the force method's guide: part, unknown, delta_real, force, …"""
+    """A quantity of the force method's guide: part, unknown, delta_real, force, … of the last unknown."""
+    from game import force_method_words  # which scipy comes with
+
     guide = getattr(session.scenes.active, "guide", None)
     if guide is None:
         raise LookupError("the force method is not going on; press K in pause first.")
     if quantity == "unknown":
         return guide.unknown.name if guide.unknown else None
-    if quantity in ("part", "message", "exact_force"):
-        return getattr(guide, quantity)
+    if quantity == "part":
+        return guide.part
+    if quantity == "message":
+        return force_method_words.message(guide)
     if guide.solution is None:
         raise LookupError("nothing is released yet; pick an unknown in part 2 first.")
-    return float(getattr(guide.solution, quantity).ravel()[0])
+    if quantity == "exact_force":
+        return guide.exact[-1] if guide.exact is not None else None
+    return float(getattr(guide.solution, quantity).ravel()[-1])
 
 
 # --- recording -------------------------------------------------------------------------------------------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from components.tags import DiagramShown
 from components.toolbar import Tool, Toolbar
@@ -51,6 +51,11 @@ def _has_particles(session: Session) -> bool:
     return session.model.particles.count > 0
 
 
+def _guided(session: Session, condition: Callable[[Any], bool]) -> bool:
+    guide = getattr(session.scenes.active, "guide", None)
+    return guide is not None and condition(guide)
+
+
 # Actions that switch something on, and whether it is.
 _PRESSED: dict[str, Condition] = {
     "toggle run": lambda session: session.scene == "simulation",
@@ -71,4 +76,7 @@ _NEEDS: dict[str, Condition] = {
     "velocity": _has_particles,
     "next grid": lambda session: session.model.grids.count > 0,
     "force method": lambda session: session.model.rods.count > 0,
+    "release x": lambda session: _guided(session, lambda guide: guide.axis_wanted is not None),
+    "release y": lambda session: _guided(session, lambda guide: guide.axis_wanted is not None),
+    "release another": lambda session: _guided(session, lambda guide: guide.can_release_another),
 }

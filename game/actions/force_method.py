@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 from components.field import Vector
 from game.actions.registry import action
-from game.scenes.force_method import ForceMethod
+from game.scenes.force_method import PARTS, ForceMethod
 from systems.edit.picking import pick
+from systems.edit.refusal import Refusal
 
 if TYPE_CHECKING:
     from game.force_method import Guide
@@ -30,7 +31,8 @@ def _next_part(session: Session, pixel: Vector) -> None:
 def _pick_unknown(session: Session, pixel: Vector) -> None:
     guide = _guide(session)
     if guide is not None and guide.part == 2:
-        guide.pick(pick(*session.focus, pixel))
+        model, view = session.focus
+        guide.pick(pick(model, view, pixel) if view.camera.viewport.contains(pixel) else None)
 
 
 @action("release x")
@@ -41,6 +43,17 @@ def _release_x(session: Session, pixel: Vector) -> None:
 @action("release y")
 def _release_y(session: Session, pixel: Vector) -> None:
     _pick_axis(session, 1)
+
+
+@action("release another")
+def _release_another(session: Session, pixel: Vector) -> None:
+    guide = _guide(session)
+    if guide is not None and not guide.can_release_another:
+        raise Refusal(
+            "Every unknown is released." if guide.part == PARTS else "Go through all parts first, with K."
+        )
+    if guide is not None:
+        guide.release_another()
 
 
 def _pick_axis(session: Session, axis: int) -> None:
@@ -54,5 +67,5 @@ def _toggle_diagrams(session: Session, pixel: Vector) -> None:
     guide = _guide(session)
     if guide is not None:
         session.view.all_diagrams = not session.view.all_diagrams
-        for one in guide.sets:
+        for one in guide.shown:
             one.view.all_diagrams = session.view.all_diagrams

@@ -18,17 +18,17 @@ THEMES = ("light", "dark", "colour-blind", "colour-blind-dark")  # in the order 
 
 @action("fit", while_drawing=True)
 def _fit(session: Session, pixel: Vector) -> None:
-    session.view.fit(session.model)
+    session.scenes.active.fit(session)
 
 
 @action("zoom in", while_drawing=True)
 def _zoom_in(session: Session, pixel: Vector) -> None:
-    session.view.camera.zoom(ZOOM_STEP, pixel)
+    session.scenes.active.zoom(session, ZOOM_STEP, pixel)
 
 
 @action("zoom out", while_drawing=True)
 def _zoom_out(session: Session, pixel: Vector) -> None:
-    session.view.camera.zoom(1.0 / ZOOM_STEP, pixel)
+    session.scenes.active.zoom(session, 1.0 / ZOOM_STEP, pixel)
 
 
 @action("toggle legend", while_drawing=True)
@@ -53,7 +53,7 @@ def _toggle_help(session: Session, pixel: Vector) -> None:
 @action("pan", while_drawing=True)
 def _pan(session: Session, pixel: Vector) -> None:
     """Here `pixel` is how far the pointer was dragged."""
-    session.view.camera.pan(pixel)
+    session.scenes.active.pan(session, pixel)
 
 
 @action("toggle full screen", while_drawing=True)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 if TYPE_CHECKING:
+    from components.field import Vector
     from components.form import Form
     from components.model import Model
     from components.toolbar import Toolbar
@@ -40,6 +41,18 @@ class Scene:
 
     def advance(self, session: Session, elapsed: float) -> None:
         """Let the time of one frame pass, where it does."""
+
+    def zoom(self, session: Session, factor: float, pixel: Vector) -> None:
+        """Look closer, so that what is under a pixel stays there."""
+        session.view.camera.zoom(factor, pixel)
+
+    def pan(self, session: Session, pixels: Vector) -> None:
+        """Move the picture by so many pixels (right, down)."""
+        session.view.camera.pan(pixels)
+
+    def fit(self, session: Session) -> None:
+        """Show everything."""
+        session.view.fit(session.model)
 
     def resized(self, session: Session) -> None:
         """The window has another size."""

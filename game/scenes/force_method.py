@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from components.camera import Camera, Viewport
+from components.field import Vector
 from components.model import Model
-from components.view import Page, Status, View
+from components.view import Page, Status, View, drawn_positions
 from game.scenes.base import Scene
+from systems.render.overlays import heading_height
+from systems.render.page import page_height
 
 if TYPE_CHECKING:
-    from game.force_method import Guide
+    from game.force_method import Guide, Mechanism, Set
     from game.session import Session
 
-HEAD, FOOT, ROW = 46.0, 30.0, 19.0  # points: the message, the status line, a line of the working
 PARTS = 7
 WIDE = 1.1  # width / height from which the sets stand side by side
+MOST_OF_HEIGHT = 0.45  # that the working takes; more is scrolled
+CAPTION, SCALE, MARGIN = 66.0, 28.0, 40.0  # points above, below and beside a structure in its set
 
 
 class ForceMethod(Scene):
@@ -26,78 +31,152 @@ class ForceMethod(Scene):
     def __init__(self) -> None:
         self.guide: Guide | None = None
         self._problem = ""
+        self._mechanism: Mechanism | None = None  # what the whole structure is, if it cannot be solved
+        self._page, self._page_of, self._first = Page(), -1, 0
         self._blank = Model()
+        self._places = [View(page=Page(), legend=False) for _ in range(3)]
         self._head, self._foot = View(page=Page(), legend=False), View(page=Page(), legend=False)
 
     def enter(self, session: Session) -> None:
-        from game.force_method import Guide  # scipy is imported only here
+        from game.force_method import Guide, Mechanism, base_structure, view_like  # scipy is imported only here
         from systems.statics.force_method import ForceMethodError
 
-        self._problem = ""
+        self._problem, self._mechanism, self._page_of = "", None, -1
         try:
             self.guide = Guide(session.model, session.schedule, session.view)
         except ForceMethodError as error:
-            self.guide, self._problem = None, str(error)
+            self._problem = str(error)
+            if error.motion is not None:
+                copy = base_structure(session.model, [])
+                self._mechanism = Mechanism(copy, error.motion, view_like(session.view))
 
     def exit(self, session: Session) -> None:
-        self.guide = None
+        self.guide = self._mechanism = None
+
+    def _moving(self) -> list[Set | Mechanism]:
+        if self.guide is not None:
+            return self.guide.moving
+        return [self._mechanism] if self._mechanism is not None else []
 
     def advance(self, session: Session, elapsed: float) -> None:
-        for running in self.guide.running if self.guide else []:
-            running.live.frame(elapsed)
+        for moving in self._moving():
+            moving.advance(elapsed)
 
     def busy(self, session: Session) -> bool:
-        running = self.guide.running if self.guide else []
-        return any(not one.live.simulation.halted for one in running)
+        return bool(self._moving())
 
     def hint(self, session: Session) -> str:
-        return self.guide.hint if self.guide else "Esc back to pause"
+        from game import force_method_words as words
+
+        return words.hint(self.guide) if self.guide else "Esc back to pause"
+
+    # --- what is seen ------------------------------------------------------------------------------
 
     def focus(self, session: Session) -> tuple[Model, View]:
-        self.stages(session)  # places the sets
+        """Set 1, from which an unknown is picked."""
+        self._lay_out(session)
         if self.guide is None:
             return self._blank, self._foot
         return self.guide.sets[0].model, self.guide.sets[0].view
 
     def stages(self, session: Session) -> list[tuple[Model, View]]:
         """The message, the sets, and the working with the status line."""
-        guide, ratio = self.guide, session.view.pixel_ratio
-        page = Page(guide.working(), guide.table()) if guide else Page()
-        whole = session.view.canvas
-        head = round(HEAD * ratio)
-        foot = min(round((FOOT + ROW * _rows(page)) * ratio), round(0.45 * whole.height))
-        self._head.heading = guide.message if guide else self._problem
-        self._foot.page = page
+        return [(self._blank, self._head), *self._lay_out(session), (self._blank, self._foot)]
+
+    def _lay_out(self, session: Session) -> list[tuple[Model, View]]:
+        """Place everything in the window; returns what stands in the middle."""
+        from game import force_method_words as words
+
+        guide, ratio, whole = self.guide, session.view.pixel_ratio, session.view.canvas
+        self._head.heading = words.message(guide) if guide else self._problem
         part = f"Part {guide.part} of {PARTS}" if guide else "Not possible"
         self._foot.status = Status(time=None, state=part, hint=self.hint(session))
+        self._foot.page = self._working()
+        head = round(heading_height(self._head.heading, whole.width, ratio))
+        wanted = page_height(self._foot.page, whole.width, ratio)
+        foot = min(wanted, round(MOST_OF_HEIGHT * whole.height))
+        if foot < wanted:
+            self._foot.status = replace(self._foot.status, hint=f"Wheel more rows     {self.hint(session)}")
         middle = Viewport(whole.left, whole.top + head, whole.width, max(whole.height - head - foot, 1))
-        self._place(self._head, Viewport(whole.left, whole.top, whole.width, head), ratio)
-        self._place(self._foot, Viewport(whole.left, middle.top + middle.height, whole.width, foot), ratio)
-        return [(self._blank, self._head), *self._sets(middle, ratio), (self._blank, self._foot)]
+        _place(self._head, Viewport(whole.left, whole.top, whole.width, head), ratio)
+        _place(self._foot, Viewport(whole.left, middle.top + middle.height, whole.width, foot), ratio)
+        return self._sets(middle, ratio)
+
+    def _working(self) -> Page:
+        """The equations and the table; made anew in every part only, since a table may be long."""
+        from game import force_method_words as words
+
+        guide = self.guide
+        if guide is None:
+            return Page()
+        if guide.part != self._page_of:
+            self._page, self._page_of, self._first = (
+                Page(words.working(guide), words.table(guide)),
+                guide.part,
+                0,
+            )
+        return Page(self._page.lines, self._page.table, self._first)
 
     def _sets(self, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
-        if self.guide is None:
-            return [(self._blank, View(Camera(viewport=middle), page=Page(), legend=False, pixel_ratio=ratio))]
+        from game import force_method_words as words
+
+        captions = words.captions(self.guide) if self.guide else [("",)] * 3
+        there: list[Set | Mechanism] = [*self.guide.shown] if self.guide else self._moving()
         shown = []
-        for index, (one, caption) in enumerate(zip(self.guide.sets, self.guide.captions(), strict=True)):
+        for index, caption in enumerate(captions):
             viewport = _third(middle, index)
-            if one.view.camera.viewport != viewport or one.view.pixel_ratio != ratio:
-                self._place(one.view, viewport, ratio)
-                one.view.fit(one.model)
-            one.view.caption = caption
-            shown.append((one.model, one.view))
-        for index in range(len(shown), 3):
-            empty = View(Camera(viewport=_third(middle, index)), page=Page(), legend=False, pixel_ratio=ratio)
-            shown.append((self._blank, empty))
+            if index >= len(there):
+                view = self._places[index]
+                _place(view, viewport, ratio)
+            else:
+                view = there[index].view
+                if view.camera.viewport != viewport or view.pixel_ratio != ratio:
+                    _place(view, viewport, ratio)
+                    _fit(there[index].model, view)
+            view.caption = caption
+            shown.append((there[index].model if index < len(there) else self._blank, view))
         return shown
 
-    @staticmethod
-    def _place(view: View, viewport: Viewport, ratio: float) -> None:
-        view.camera.viewport, view.pixel_ratio = viewport, ratio
+    # --- looking closer: all sets alike ----------------------------------------------------------------
+
+    def cameras(self, session: Session) -> list[Camera]:
+        """Those of the sets; what one shows, the others do."""
+        return [view.camera for _, view in self._lay_out(session)]
+
+    def zoom(self, session: Session, factor: float, pixel: Vector) -> None:
+        foot = self._foot.camera.viewport
+        if foot.contains(pixel):
+            self._scroll(session, 1 if factor < 1.0 else -1)
+            return
+        cameras = self.cameras(session)
+        under = next((c.viewport for c in cameras if c.viewport.contains(pixel)), cameras[0].viewport)
+        for camera in cameras:
+            v = camera.viewport
+            camera.zoom(factor, (pixel[0] - under.left + v.left, pixel[1] - under.top + v.top))
+
+    def _scroll(self, session: Session, rows: int) -> None:
+        last = max(len(self._page.table) - 2, 0)
+        self._first = min(max(self._first + rows, 0), last)
+
+    def pan(self, session: Session, pixels: Vector) -> None:
+        for camera in self.cameras(session):
+            camera.pan(pixels)
+
+    def fit(self, session: Session) -> None:
+        for model, view in self._lay_out(session):
+            _fit(model, view)
 
 
-def _rows(page: Page) -> int:
-    return len(page.lines) + len(page.table) + (1 if page.lines or page.table else 0)
+def _place(view: View, viewport: Viewport, ratio: float) -> None:
+    view.camera.viewport, view.pixel_ratio = viewport, ratio
+
+
+def _fit(model: Model, view: View) -> None:
+    """Show the whole model between the caption, which grows from part to part, and the scale."""
+    v, u = view.camera.viewport, view.pixel_ratio
+    above, below = round(min(CAPTION * u, 0.4 * v.height)), round(min(SCALE * u, 0.1 * v.height))
+    within = Viewport(v.left, v.top + above, v.width, max(v.height - above - below, 1))
+    view.camera.fit(drawn_positions(model), MARGIN * u, within)
 
 
 def _third(middle: Viewport, index: int) -> Viewport:

@@ -58,6 +58,7 @@ BINDINGS: list[Binding] = [
     Binding("i", "toggle diagrams of sets", (FORCE_METHOD,), "force diagrams on / off"),
     Binding("k", "next part", (FORCE_METHOD,), "next part"),
     Binding("click", "pick unknown", (FORCE_METHOD,), "pick the static unknown in set 1"),
+    Binding("n", "release another", (FORCE_METHOD,), "release another unknown as well"),
     Binding("x", "release x", (FORCE_METHOD,), "release the horizontal constraint"),
     Binding("y", "release y", (FORCE_METHOD,), "release the vertical constraint"),
     Binding("p", "place", LIVE, "new particle under the pointer"),
@@ -82,7 +83,7 @@ BINDINGS: list[Binding] = [
     Binding("ctrl+x", "cut", LIVE, "cut the selection"),
     Binding("ctrl+v", "paste", LIVE, "paste at the pointer"),
     Binding("ctrl+d", "duplicate", LIVE, "duplicate the selection"),
-    Binding("home", "fit", LIVE, "fit the view"),
+    Binding("home", "fit", (*LIVE, FORCE_METHOD), "fit the view"),
     Binding("tab", "toggle legend", LIVE, "legend and toolbar on / off"),
     Binding("t", "next theme", (*LIVE, FORCE_METHOD), "next theme: light, dark, colour-blind safe"),
     Binding("return", "accept", (PROPERTIES,), "accept the box; without one, go back"),
@@ -124,15 +125,16 @@ BINDINGS: list[Binding] = [
     Binding("ctrl+drag", "drag to add", LIVE, "add to the selection what is in a box"),
     Binding("drag to", "drag to", LIVE, ""),
     Binding("drop", "drop", LIVE, ""),
-    Binding("wheel up", "zoom in", LIVE, "zoom in at the pointer"),
-    Binding("wheel down", "zoom out", LIVE, "zoom out"),
-    Binding("drag middle", "pan", LIVE, "move the view (or right button)"),
+    Binding("wheel up", "zoom in", (*LIVE, FORCE_METHOD), "zoom in at the pointer"),
+    Binding("wheel down", "zoom out", (*LIVE, FORCE_METHOD), "zoom out"),
+    Binding("drag middle", "pan", (*LIVE, FORCE_METHOD), "move the view (or right button)"),
 ]
 
 # What the toolbar offers, in groups from the top to the bottom.
 TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("toggle run", "restart", "step back", "step", "slower", "faster", "settle"),
-    ("next part", "toggle diagrams of sets", "back"),
+    ("next part", "release x", "release y", "release another"),
+    ("toggle diagrams of sets", "back"),
     ("undo", "redo"),
     ("place", "rod", "support", "force", "velocity"),
     ("toggle diagrams", "fit", "new grid", "next grid"),

@@ -43,6 +43,8 @@ _DIAGRAM: tuple[Part, ...] = (
     ("line", (2.3, -5.5, 2.3, 6.5)),
 )
 
+_RELEASE: tuple[Part, ...] = (("line", (-4, -8, -0.5, -1.5, -7.5, -1.5, -4, -8)), ("line", (-9, 1.5, 1, 1.5)))
+
 ICONS: dict[str, tuple[Part, ...]] = {
     "toggle run": (("area", (-5.5, -8, 8, 0, -5.5, 8)),),
     "pause": (("area", (-6, -7, -2, -7, -2, 7, -6, 7)), ("area", (2, -7, 6, -7, 6, 7, 2, 7))),
@@ -57,6 +59,15 @@ ICONS: dict[str, tuple[Part, ...]] = {
     "slower": (*_GAUGE, ("line", (0, 3, -4.6, -0.4))),
     "faster": (*_GAUGE, ("line", (0, 3, 4.6, -0.4))),
     "next part": (("line", (-8, 0, 8, 0)), ("line", (2, -6, 8, 0, 2, 6))),
+    "release x": (*_RELEASE, ("line", (-2, 8, 8, 8)), ("line", (4.5, 4.8, 8, 8, 4.5, 11.2))),
+    "release y": (*_RELEASE, ("line", (6, 9.5, 6, -0.5)), ("line", (2.8, 3, 6, -0.5, 9.2, 3))),
+    "release another": (
+        _ring(-6.5, 2, 2.2),
+        ("line", (-4, 1, -0.5, -0.5)),
+        ("line", (2, 4, 6, 5.5)),
+        ("line", (5, -9, 5, -3)),
+        ("line", (2, -6, 8, -6)),
+    ),
     "back": (("line", (-6, -6, 6, 6)), ("line", (-6, 6, 6, -6))),
     "undo": _TURN,
     "redo": _mirrored(_TURN),

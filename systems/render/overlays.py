@@ -12,8 +12,9 @@ from systems.render.theme import Colour, faded
 from systems.render.typography import line_height, shortened, text_width, wrapped
 
 _EDGE = 14.0  # points between overlays and the edges of the viewport
+_HEADING = 20.0  # points, size of its type
 _SMALL = 300.0  # points: in a viewport less high, what is not needed is left out
-_BAR = 28.0  # points, height of the status bar
+BAR = 28.0  # points, height of the status bar
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
@@ -72,10 +73,10 @@ def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
     bottom = float(v.top + v.height)
     if not (status.state or (status.hint and _shows_hint(sheet))):
         return [], bottom
-    top, thin = round(bottom - _BAR * u), max(round(u), 1)
+    top, thin = round(bottom - BAR * u), max(round(u), 1)
     bar = np.array([[v.left, top, v.width, v.top + v.height - top]], dtype=np.int64)
     hairline = np.array([[v.left, top, v.width, thin]], dtype=np.int64)
-    sheet.occupancy.block(v.left, top, v.width, _BAR * u)
+    sheet.occupancy.block(v.left, top, v.width, BAR * u)
     marks: list[Mark] = [Rectangles(bar, theme.panel), Rectangles(hairline, theme.line)]
     middle = (top + thin + bottom) / 2
     x = v.left + _EDGE * u
@@ -132,9 +133,16 @@ def _state_colour(sheet: Sheet) -> Colour:
 # --- heading and problem ---------------------------------------------------------------------------
 
 
+def heading_height(text: str, width: float, unit: float) -> float:
+    """Pixels that a heading takes at the top of a viewport."""
+    size = max(round(_HEADING * unit), 7)
+    lines = wrapped(text, width - 2 * _EDGE * unit, size, "semibold")
+    return len(lines) * line_height(size) + _EDGE * unit + 4.0 * unit
+
+
 def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     """The mode's name, or what is expected, top left; and its right and lower end."""
-    v, u, size = sheet.viewport, sheet.unit, sheet.font(20.0)
+    v, u, size = sheet.viewport, sheet.unit, sheet.font(_HEADING)
     left, top = v.left + _EDGE * u, v.top + _EDGE * u
     if not sheet.view.heading:
         return [], (v.left, v.top)
@@ -157,13 +165,23 @@ def _caption(sheet: Sheet, top: float) -> tuple[list[Mark], float]:
     edges = np.array([[v.left, v.top, v.width, thin], [v.left, v.top, thin, v.height]], dtype=np.int64)
     marks: list[Mark] = [Rectangles(edges, theme.line)]
     left, room = v.left + _EDGE * u, v.width - 2 * _EDGE * u
-    for number, line in enumerate(sheet.view.caption):
-        weight, colour = ("semibold", theme.text) if number == 0 else ("regular", theme.muted)
-        text = shortened(line, room, size, weight)
-        y = top + 8.0 * u + (number + 0.5) * line_height(size)
-        sheet.occupancy.block(left, y - size / 2, text_width(text, size, weight), size)
-        marks.append(Text(text, left, y, size, colour, weight))
-    return marks, top + 8.0 * u + len(sheet.view.caption) * line_height(size)
+    number = 0
+    for line in sheet.view.caption:
+        weight, colour = ("semibold", theme.text) if line is sheet.view.caption[0] else ("regular", theme.muted)
+        for text in wrapped(line, room, size, weight):
+            y = top + 8.0 * u + (number + 0.5) * line_height(size)
+            width = text_width(text, size, weight)
+            sheet.occupancy.block(left, y - size / 2, width, size)
+            marks.append(_backing(sheet, left, y, width, size))
+            marks.append(Text(text, left, y, size, colour, weight))
+            number += 1
+    return marks, top + 8.0 * u + number * line_height(size)
+
+
+def _backing(sheet: Sheet, left: float, y: float, width: float, size: int) -> Mark:
+    """Keeps lines of a grid out of a text."""
+    u, paper = sheet.unit, faded(sheet.theme.background, 0.85)
+    return Panel(left - 4.0 * u, y - 0.7 * size, width + 8.0 * u, 1.4 * size, 3.0 * u, paper)
 
 
 def _problem(sheet: Sheet, top: float, bottom: float) -> list[Mark]:
@@ -280,10 +298,11 @@ def draw_scale(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     notes = _notes(sheet)
     for length, said in ((metres * sheet.view.camera.scale, [written_length(metres), *notes]), (0.0, notes)):
         ruler = length + 8.0 * u if length else 0.0
-        text = shortened("   ".join(said), v.width - ruler - 2 * _EDGE * u, size)
+        room_beside = v.width - ruler - 2 * _EDGE * u
+        text = shortened("   ".join(said), room_beside, size)
         width, height = ruler + text_width(text, size) + 12.0 * u, 19.0 * u
         left, top, hidden = _freest(sheet, width, height, room)
-        if hidden == 0 or not length:
+        if (hidden == 0 and text_width("   ".join(said), size) <= room_beside) or not length:
             break
     if not said or hidden:
         return []

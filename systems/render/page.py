@@ -4,65 +4,86 @@ from __future__ import annotations
 
 import numpy as np
 
+from components.view import Page
 from systems.render.marks import Mark, Rectangles, Text
-from systems.render.overlays import draw_overlays
+from systems.render.overlays import BAR, draw_overlays
 from systems.render.sheet import Sheet
-from systems.render.typography import line_height, shortened, text_width
+from systems.render.typography import line_height, text_width, wrapped
 
-_EDGE, _GAP = 14.0, 22.0  # points: to the edges of the viewport, between columns
-_SIZES = (13.0, 12.0, 11.0, 10.0, 9.0)  # points, the first at which all lines fit
+_EDGE, _GAP, _BLOCKS = 14.0, 16.0, 34.0  # points: to the edges, between columns, between blocks of a table
+_SIZE = 12.0  # points
+_ABOVE, _BELOW = 6.0, 6.0  # points
 
 
 def draw_page(sheet: Sheet) -> list[Mark]:
     """Lines, a table with aligned columns, and the status line below them."""
     overlays, (_, bottom) = draw_overlays(sheet)
-    page, v, u = sheet.view.page, sheet.viewport, sheet.unit
+    page, v = sheet.view.page, sheet.viewport
     if page is None or not (page.lines or page.table):
         return overlays
-    lines = len(page.lines) + len(page.table)
-    room = bottom - v.top - 8.0 * u
-    sizes = [sheet.font(points) for points in _SIZES]
-    size = next((s for s in sizes if lines * line_height(s) <= room and _width(sheet, s) <= v.width), sizes[-1])
-    step, left = line_height(size), v.left + _EDGE * u
-    line = np.array([[v.left, v.top, v.width, max(round(u), 1)]], dtype=np.int64)
+    layout = _Layout(page, v.width, sheet.unit)
+    line = np.array([[v.left, v.top, v.width, max(round(sheet.unit), 1)]], dtype=np.int64)
+    y = v.top + _ABOVE * sheet.unit + layout.step / 2
     marks: list[Mark] = [Rectangles(line, sheet.theme.line)]
-    y = v.top + 5.0 * u + step / 2
-    for text in page.lines:
-        marks.append(
-            Text(
-                shortened(text, v.width - 2 * _EDGE * u, size, "semibold"),
-                left,
-                y,
-                size,
-                sheet.theme.text,
-                "semibold",
-            )
-        )
-        y += step
-    shown = page.table[: max(int((bottom - y + step / 2) / step), 0)]
-    return [*marks, *_table(sheet, shown, left, y, size), *overlays]
+    for text in layout.lines:
+        left = v.left + _EDGE * sheet.unit
+        marks.append(Text(text, left, y, layout.size, sheet.theme.text, "semibold"))
+        y += layout.step
+    return [*marks, *_table(sheet, layout, y, bottom), *overlays]
 
 
-def _width(sheet: Sheet, size: int) -> float:
-    page = sheet.view.page
-    assert page is not None
-    return max((text_width(text, size, "semibold") for text in page.lines), default=0) + 2 * _EDGE * sheet.unit
+def page_height(page: Page, width: float, unit: float) -> int:
+    """Pixels that a page takes, its status line included."""
+    if not (page.lines or page.table):
+        return round(BAR * unit)
+    layout = _Layout(page, width, unit)
+    rows = len(layout.lines) + (layout.rows + 1 if page.table else 0)
+    return round(rows * layout.step + (_ABOVE + _BELOW + BAR) * unit)
 
 
-def _table(sheet: Sheet, table: tuple[tuple[str, ...], ...], left: float, y: float, size: int) -> list[Mark]:
-    if not table:
+class _Layout:
+    """A page in lines of a width; its table in blocks side by side, each under the head."""
+
+    def __init__(self, page: Page, width: float, unit: float) -> None:
+        self.page = page
+        self.size = max(round(_SIZE * unit), 7)
+        self.step = line_height(self.size)
+        room = width - 2 * _EDGE * unit
+        self.lines = [line for text in page.lines for line in wrapped(text, room, self.size, "semibold")]
+        self.gap = _GAP * unit
+        sample = page.table[:200]  # enough to know how wide columns are
+        self.widths = [
+            max(text_width(cell, self.size, "semibold") for cell in column)
+            for column in zip(*sample, strict=True)
+        ]
+        self.block = sum(self.widths) + self.gap * (len(self.widths) - 1) + _BLOCKS * unit
+        self.blocks = max(int((room + _BLOCKS * unit) / self.block), 1) if self.widths else 1
+        self.rows = -(-max(len(page.table) - 1, 0) // self.blocks)
+
+
+def _table(sheet: Sheet, layout: _Layout, y: float, bottom: float) -> list[Mark]:
+    """As many rows as there is room for, from the one that was scrolled to."""
+    if not layout.page.table:
         return []
-    step, gap = line_height(size), _GAP * sheet.unit
-    columns = list(zip(*table, strict=True))
-    widths = [max(text_width(cell, size, "semibold") for cell in column) for column in columns]
+    head, *rows = layout.page.table
+    room = max(int((bottom - _BELOW * sheet.unit - y - 0.5 * layout.step) / layout.step + 0.01), 1)
+    high = min(layout.rows, room)
+    first = min(layout.page.first, max(layout.rows - high, 0))
     marks: list[Mark] = []
-    for number, row in enumerate(table):
-        colour = sheet.theme.muted if number == 0 else sheet.theme.text
-        x = left
-        for index, (cell, width) in enumerate(zip(row, widths, strict=True)):
-            if index == 0:
-                marks.append(Text(cell, x, y + number * step, size, colour))
-            else:
-                marks.append(Text(cell, x + width, y + number * step, size, colour, anchor="right"))
-            x += width + gap
+    for block in range(layout.blocks):
+        begin = block * layout.rows
+        shown = rows[begin + first : min(begin + first + high, begin + layout.rows)]
+        left = sheet.viewport.left + _EDGE * sheet.unit + block * layout.block
+        for number, row in enumerate([head, *shown] if shown else []):
+            colour = sheet.theme.muted if number == 0 else sheet.theme.text
+            marks += _row(layout, row, left, y + number * layout.step, colour)
+    return marks
+
+
+def _row(layout: _Layout, row: tuple[str, ...], left: float, y: float, colour: tuple[int, ...]) -> list[Mark]:
+    marks: list[Mark] = []
+    for index, (cell, width) in enumerate(zip(row, layout.widths, strict=True)):
+        at, anchor = (left, "left") if index == 0 else (left + width, "right")
+        marks.append(Text(cell, at, y, layout.size, colour, anchor=anchor))  # type: ignore[arg-type]
+        left += width + layout.gap
     return marks

@@ -27,7 +27,14 @@ _RANK = 1e-9  # relative size below which a pivot is zero
 
 
 class ForceMethodError(ValueError):
-    """A static unknown that cannot be used; the message names it, the reason and the remedy."""
+    """A static unknown that cannot be used; the message names it, the reason and the remedy.
+
+    motion: of the mechanism that its release would leave, (n, 2), the largest 1; None if that is not why.
+    """
+
+    def __init__(self, message: str, motion: Array | None = None) -> None:
+        super().__init__(message)
+        self.motion = motion
 
 
 @dataclass(frozen=True)
@@ -80,6 +87,17 @@ class Solution:
         return LinearState(displacement, axial_force)
 
 
+def indeterminacy(model: Model) -> int:
+    """Degree of static indeterminacy of a structure that is no mechanism: what Gauss leaves undetermined.
+
+    Rods and constraints of the particles that rods join, less two equations for each.
+    """
+    used = np.zeros(model.particles.count, dtype=bool)
+    used[model.rods.between] = True
+    constraints = int(model.particles.fixed[used].sum())
+    return int(model.rods.count + constraints - 2 * used.sum())
+
+
 def find_unknown(model: Model, name: str) -> Unknown:
     """The unknown called "AC" (a rod) or "A.y" (a support). Raises ForceMethodError."""
     if name in model.rods:
@@ -122,8 +140,9 @@ class _Linear:
         self._factor = Factor(matrix)
         modes = soft_modes(matrix, structure.weight)
         if modes.shape[1]:
-            motion = describe_motion(model, np.array([structure.spread(mode) for mode in modes.T]))
-            raise ForceMethodError(self._mechanism(released, motion))
+            motions = np.array([structure.spread(mode) for mode in modes.T])
+            first = motions[0] / np.hypot(*motions[0].T).max()
+            raise ForceMethodError(self._mechanism(released, describe_motion(model, motions)), first)
 
     @staticmethod
     def _mechanism(released: Sequence[Unknown], motion: str) -> str:

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from components.model import Model
 from components.particle import Particle
 from game import Session, models
+from game import force_method_words as words
 from game.force_method import Guide
 from game.scenes.force_method import ForceMethod
+from systems.render.marks import Text
+from systems.render.page import draw_page
 from systems.render.picture import compose
+from systems.render.sheet import measure
 from systems.render.theme import load_theme
 
 
@@ -29,7 +35,7 @@ def test_seven_parts_from_pause_to_pause() -> None:
     session.frame(1 / 60)
     assert guide.sets[0].model.clock.steps > 0
     session.press("k")
-    assert guide.message == "Select the discontinuity element"
+    assert words.message(guide) == "Select the discontinuity element"
     session.press("k")
     assert guide.part == 2  # nothing was picked yet
     session.click(0.5, 1.0)
@@ -43,8 +49,8 @@ def test_seven_parts_from_pause_to_pause() -> None:
         session.frame(1 / 60)
     assert guide.solution is not None
     assert guide.solution.force[0] == pytest.approx(-14.6446609406726, rel=1e-12)
-    assert "−14.64 kN" in guide.working()[0]
-    assert guide.table()[-1][:2] == ("BD", "−14.64")
+    assert "−14.64 kN" in words.working(guide)[0]
+    assert words.table(guide)[-1][:2] == ("BD", "−14.64")
     session.press("k")
     assert session.scene == "pause"
     assert models.document(session.model) == before  # the person's model was only read
@@ -71,7 +77,7 @@ def test_a_particle_constrained_in_both_directions_asks_which() -> None:
     guide = guide_of(session)
     support = next(p for p in session.particles if p.fixed == (True, True))
     session.click(*support.position)
-    assert guide.message == "Select constraint direction"
+    assert words.message(guide) == "Select constraint direction"
     session.press("y")
     assert guide.part == 3 or "mechanism" in guide.refusal
 
@@ -83,7 +89,7 @@ def test_a_rod_that_is_not_redundant_is_refused_and_the_method_goes_on() -> None
     guide = guide_of(session)
     session.click(0.5, 0.5)
     assert guide.part == 2
-    assert "mechanism" in guide.message
+    assert "mechanism" in words.message(guide)
 
 
 def test_escape_leaves_at_once() -> None:
@@ -121,7 +127,7 @@ def test_a_support_without_rods_is_refused() -> None:
     session.press("k")
     session.click(3.0, 0.0)
     assert guide_of(session).part == 2
-    assert "no rod ends at particle 1" in guide_of(session).message
+    assert "no rod ends at particle 1" in words.message(guide_of(session))
 
 
 def test_a_click_is_picked_where_it_is_seen_even_before_the_first_picture() -> None:
@@ -138,3 +144,131 @@ def test_a_click_is_picked_where_it_is_seen_even_before_the_first_picture() -> N
         session.press("click", pixel)
         assert guide_of(session).unknown is not None
         assert guide_of(session).unknown.name == "BD"
+
+
+def released(session: Session, *names: str) -> Guide:
+    """Go through all parts for each of these unknowns."""
+    session.press("k")
+    session.press("k")
+    guide = guide_of(session)
+    for index, name in enumerate(names):
+        if index:
+            session.press("n")
+        guide.pick(guide.sets[0].model.rods[name])
+        for _ in range(4):
+            session.press("k")
+    return guide
+
+
+def test_the_mechanism_that_a_refused_release_would_leave_is_shown_and_swings() -> None:
+    session = Session.open("isostatic")
+    session.press("k")
+    session.press("k")
+    session.click(0.5, 0.5)
+    guide = guide_of(session)
+    assert "Without AB the structure is a mechanism" in words.message(guide)
+    assert guide.mechanism is not None
+    assert "AB" not in guide.mechanism.model.rods
+    assert session.busy
+    seen = []
+    for _ in range(8):
+        session.frame(0.1)
+        seen.append(guide.mechanism.model.particles["B"].displacement)
+    assert len(set(seen)) > 5
+    rod = guide.mechanism.model.rods["BC"]  # nothing resists: the motion does not stretch what is left
+    motion = guide.mechanism.model.particles.displacement
+    assert abs((motion[2] - motion[1]) @ rod.difference) < 1e-12 * np.abs(motion).max()
+    session.press("k")
+    assert guide.mechanism is None
+
+
+def test_a_structure_that_is_a_mechanism_already_is_shown_as_one() -> None:
+    session = Session.open("pendulum")
+    session.press("k")
+    assert session.scene == "force method"
+    heading = session.scenes.active.stages(session)[0][1].heading  # type: ignore[union-attr]
+    assert "mechanism already (bob along y can move)" in heading
+    assert session.busy
+    session.press("escape")
+    assert session.scene == "pause"
+
+
+def test_it_is_repeated_for_a_further_unknown() -> None:
+    session = Session.open("tower")
+    guide = released(session, "R0-R1", "R1-L2")
+    assert [unknown.name for unknown in guide.released] == ["R0-R1", "R1-L2"]
+    assert guide.solution is not None
+    real = guide.solution.real.axial_force
+    rows = [session.model.rods[name].row for name in ("R0-R1", "R1-L2")]
+    assert guide.solution.force == pytest.approx(real[rows], rel=1e-9)
+    assert len(guide.sets[1].model.rods) == session.model.rods.count - 2
+    third = guide.sets[2]
+    third.settle()
+    unit = [solution.displacement for solution in guide.solution.units]
+    expected = guide.solution.force[0] * unit[0] + guide.solution.force[1] * unit[1]
+    largest = np.abs(expected).max()
+    assert np.abs(third.model.particles.displacement - expected).max() < 0.02 * largest  # exact geometry
+    assert "Δ_real = Δ₀ + Σ Δ₁ p" in words.working(guide)[0]
+    assert "p_R0-R1 = −215.43 kN,  p_R1-L2 = −25.02 kN" in words.working(guide)[2]
+
+
+def test_the_degree_says_how_often() -> None:
+    session = Session.open("hyperstatic")
+    guide = released(session, "BD")
+    assert guide.degree == 1
+    assert not guide.can_release_another
+    session.press("n")
+    assert "Every unknown is released" in session.notice
+    assert "1 unknown to release" in words._degree(1)
+
+
+def test_an_unknown_is_not_released_twice() -> None:
+    session = Session.open("tower")
+    guide = released(session, "R0-R1")
+    session.press("n")
+    guide.pick(guide.sets[0].model.rods["R0-R1"])
+    assert words.message(guide) == "R0-R1 is released already; pick another one."
+
+
+def test_all_sets_are_looked_at_alike() -> None:
+    session = Session.open("hyperstatic")
+    released(session, "BD")
+    scene = session.scenes.active
+    assert isinstance(scene, ForceMethod)
+    before = [(camera.centre, camera.scale) for camera in scene.cameras(session)]
+    middle = scene.cameras(session)[1].middle
+    session.press("wheel up", middle)
+    session.press("drag middle", (10.0, 5.0))
+    after = [(camera.centre, camera.scale) for camera in scene.cameras(session)]
+    assert len({round(new[1] / old[1], 12) for old, new in zip(before, after, strict=True)}) == 1
+    assert after[0][1] == pytest.approx(1.2 * before[0][1])
+    session.press("home")
+    assert [(camera.centre, camera.scale) for camera in scene.cameras(session)] == before
+
+
+@pytest.mark.parametrize("size", [(640, 480), (1000, 700), (1920, 1080)])
+def test_a_long_table_is_scrolled_with_the_wheel(size: tuple[int, int]) -> None:
+    session = Session.open("tower")
+    session.resize(*size)
+    released(session, "R0-R1")
+    page = session.stages[-2][1].page
+    assert page is not None
+    assert {"kN", "set 1", page.table[1][0]} <= texts_of_the_working(session)
+    for _ in range(len(page.table)):
+        session.press("wheel down", session.stages[-2][1].camera.viewport.middle)
+    assert {"kN", page.table[-1][0]} <= texts_of_the_working(session)
+
+
+def texts_of_the_working(session: Session) -> set[str]:
+    model, view = session.stages[-2]  # the last stage is the toolbar
+    assert isinstance(model, Model)
+    return {
+        mark.text for mark in draw_page(measure(model, view, load_theme("light"))) if isinstance(mark, Text)
+    }
+
+
+def test_in_the_end_all_sets_are_drawn_to_one_scale_so_that_they_add_up() -> None:
+    session = Session.open("hyperstatic")
+    guide = released(session, "BD")
+    settings = [one.model.settings for one in guide.sets]
+    assert len({(one.displacement_scale, one.diagram_scale) for one in settings}) == 1

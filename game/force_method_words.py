@@ -1,0 +1,181 @@
+"""What is said in the force method: what happens, what was measured, the equations and the table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from game.force_method import PARTS, Guide
+
+if TYPE_CHECKING:
+    from systems.statics.force_method import Solution, Unknown
+
+Caption = tuple[str, ...]
+Table = tuple[tuple[str, ...], ...]
+
+NAMES = ("Set 1: real structure", "Set 2: base structure", "Set 3: base structure")
+TO_COME = ("", "follows in part 3", "follows in part 5")
+
+
+# --- what happens, and what is next ------------------------------------------------------------------
+
+
+def message(guide: Guide) -> str:
+    """The line of red text: what is happening or expected."""
+    if guide.refusal:
+        return guide.refusal
+    if guide.part == 2:
+        return "Select constraint direction" if guide.axis_wanted else "Select the discontinuity element"
+    return {
+        1: "Real structure under the real load",
+        3: f"Base structure: {_released(guide)} {'are' if len(guide.released) > 1 else 'is'} released",
+        4: "How far the released place moved",
+        5: f"Base structure under {_unit_words(guide.unknown)} alone",
+        6: "How far the unit force moves it",
+        7: "Set 2 + set 3 = set 1",
+    }[guide.part]
+
+
+def hint(guide: Guide) -> str:
+    """The next possible step."""
+    steps = ["I forces", "Esc back to pause"]
+    if guide.part == 2 and guide.axis_wanted:
+        steps = ["X horizontal", "Y vertical", "Esc back to pause"]
+    elif guide.part == 2:
+        steps = ["click a rod or a support in set 1", "Esc back to pause"]
+    elif guide.can_release_another:
+        steps = ["K finish", "N release another", *steps]
+    else:
+        steps = ["K finish" if guide.part == PARTS else "K next part", *steps]
+    return "     ".join(steps)
+
+
+def _released(guide: Guide) -> str:
+    names = [unknown.name for unknown in guide.released]
+    return " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+
+
+def _unit_words(unknown: Unknown | None) -> str:
+    return "a pair of unit forces" if unknown is not None and unknown.axis is None else "a unit force"
+
+
+# --- what was measured -------------------------------------------------------------------------------
+
+
+def captions(guide: Guide) -> list[Caption]:
+    """For each of the three places its name, and its displacements once they have been measured."""
+    if guide.mechanism is not None:
+        return [(NAMES[0],), ("A mechanism: nothing resists this motion",), ("",)]
+    there = len(guide.sets)
+    shown: list[Caption] = [(name, *(() if i < there else (TO_COME[i],))) for i, name in enumerate(NAMES)]
+    solution = guide.solution
+    if solution is None or guide.part == 2:
+        return shown
+    load = ("the real load", "the real load", f"{_unit_words(guide.unknown)} at {_name(guide.unknown)}")
+    if guide.part == PARTS:
+        several = len(guide.released) > 1
+        load = (*load[:2], "the forces p below" if several else _force(solution))
+    shown = [
+        (*caption, load[i]) if i < there and guide.part > 2 else caption for i, caption in enumerate(shown)
+    ]
+    if guide.part >= 4:
+        shown[0] = (*shown[0], *_each(guide, "_real", solution.delta_real))
+        shown[1] = (*shown[1], *_each(guide, "₀", solution.delta_base))
+    if guide.part == 6 or (guide.part == PARTS and len(guide.released) == 1):
+        shown[2] = (*shown[2], *_each(guide, "₁", solution.delta_unit[:, -1], " per kN"))
+    return shown
+
+
+def _name(unknown: Unknown | None) -> str:
+    return unknown.name if unknown is not None else ""
+
+
+def _each(guide: Guide, index: str, metres: object, unit: str = "") -> Caption:
+    """The displacement of every unknown: the change of a rod's distance Δ, or that of a support, u."""
+    several = len(guide.released) > 1
+    return tuple(
+        f"{'Δ' if unknown.axis is None else 'u'}{index}{f' {unknown.name}' * several} = {_mm(value)} mm{unit}"
+        for unknown, value in zip(guide.released, metres, strict=True)  # type: ignore[call-overload]
+    )
+
+
+def _force(solution: Solution) -> str:
+    return f"p = {signed(solution.force[0])} kN"
+
+
+# --- the working -------------------------------------------------------------------------------------
+
+
+def working(guide: Guide) -> tuple[str, ...]:
+    """The compatibility equations with their numbers, and the forces that they give (part 7)."""
+    solution = guide.solution
+    if guide.part == 1:
+        return (_degree(guide.degree), "Yielding is switched off: superposition needs linear behaviour.")
+    if solution is None or guide.part < PARTS:
+        return ()
+    lines = _one_equation(solution) if len(solution.unknowns) == 1 else _equations(solution)
+    if guide.exact is None:
+        return lines
+    exact = [signed(force) for force in guide.exact]
+    return (*lines, f"Exact geometry gives {', '.join(exact)} kN.")
+
+
+def _degree(degree: int) -> str:
+    if degree == 0:
+        return "The structure is statically determinate: nothing in it can be released."
+    return f"The structure is statically indeterminate: {degree} unknown{'s' * (degree > 1)} to release."
+
+
+def _one_equation(solution: Solution) -> tuple[str, ...]:
+    real, base, unit = solution.delta_real[0], solution.delta_base[0], solution.delta_unit[0, 0]
+    return (
+        f"p = (Δ_real − Δ₀) / Δ₁ = ({_mm(real)} − {_mm(base, bracket=True)}) mm / ({_mm(unit)} mm/kN)"
+        f" = {signed(solution.force[0])} kN",
+    )
+
+
+def _equations(solution: Solution) -> tuple[str, ...]:
+    """Δ_real = Δ₀ + Σ Δ₁ p, a line for every unknown, and what solves them."""
+    names = [unknown.name for unknown in solution.unknowns]
+    lines = []
+    for row, name in enumerate(names):
+        terms = (
+            f" + {_mm(unit, bracket=True)} p_{other}"
+            for unit, other in zip(solution.delta_unit[row], names, strict=True)
+        )
+        lines.append(
+            f"{name}: Δ_real = Δ₀ + Σ Δ₁ p:  {_mm(solution.delta_real[row])} ="
+            f" {_mm(solution.delta_base[row])}{''.join(terms)}  (mm, kN)"
+        )
+    forces = (f"p_{name} = {signed(p)} kN" for name, p in zip(names, solution.force.tolist(), strict=True))
+    return (*lines, ",  ".join(forces))
+
+
+def table(guide: Guide) -> Table:
+    """Set 1 = set 2 + set 3, rod by rod (part 7), in kN."""
+    solution = guide.solution
+    if solution is None or guide.part < PARTS:
+        return ()
+    total = solution.superposed.axial_force
+    columns = solution.real.axial_force, solution.base.axial_force, total - solution.base.axial_force
+    residual = total - solution.real.axial_force
+    names = guide.model.rods.names
+    rows = zip(names, *(column.tolist() for column in columns), residual.tolist(), strict=True)
+    return (
+        ("kN", "set 1", "= set 2", "+ set 3", "residual"),
+        *((name, *(signed(n) for n in forces), _power(rest)) for name, *forces, rest in rows),
+    )
+
+
+def _power(number: float) -> str:
+    return "0" if number == 0.0 else f"{number:.0e}".replace("-", "−")
+
+
+def _mm(metres: float, *, bracket: bool = False) -> str:
+    """Metres as millimetres to four digits; a negative number in brackets, if it stands behind a sign."""
+    text = f"{1000.0 * metres:.4g}".replace("-", "−")
+    return f"({text})" if bracket and text.startswith("−") else text
+
+
+def signed(number: float) -> str:
+    """Two decimals, with a real minus sign and no negative zero."""
+    return f"{round(float(number), 2) + 0.0:.2f}".replace("-", "−")
