@@ -91,15 +91,22 @@ def _bound(system: StepSystem, model: Model) -> Bound:
         raise ProgramError(
             f"The kernel of {system.name} is not compiled; put `@compiled` of systems.kernels above it."
         )
-    bound = Bound(system, function, tuple(inspect.signature(plain).parameters), system.arrays(model))
-    for name, array in bound.arrays.items():
-        array.flags.writeable = False  # a kernel that writes does not compile
+    arrays = {name: _read_only(array) for name, array in system.arrays(model).items()}
+    bound = Bound(system, function, tuple(inspect.signature(plain).parameters), arrays)
+    for name in bound.arrays:
         if _is_column(name, model):
             raise ProgramError(f"The array '{name}' of {system.name} has the name of a column; rename it.")
     if bound.each != "loads":
         for parameter in bound.parameters:
             _check_parameter(bound, parameter, model)
     return bound
+
+
+def _read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """A view that no kernel compiles to write to; the system itself still may, between steps."""
+    view = array.view()
+    view.flags.writeable = False
+    return view
 
 
 def check_names(bound: Iterable[Bound]) -> None:
