@@ -24,8 +24,8 @@ class HistoryKind:
 
     parameters: name → default of each number (or list of numbers) that a history of this kind has.
     factor: "module:function" of the compiled factor(time, values, first), `values[first:]` being the
-        parameters, flattened in order of declaration.
-    static: the factor that stands for it in statics.
+        parameters, flattened in order of declaration, lists preceded by their length.
+    static: the factor that stands for it in statics, or what computes it from the parameters.
     ends: the time after which the factor no longer changes (infinite: never), from the parameters.
     check: raises FieldError for parameters that make no sense. mod: the mod that brought it, if one did.
     """
@@ -33,15 +33,13 @@ class HistoryKind:
     name: str
     parameters: Mapping[str, Any]
     factor: str
-    static: float
+    static: float | Callable[[History], float]
     ends: Callable[[History], float]
     check: Callable[[History, str], None] = lambda history, where: None
     mod: Any = None
 
 
 HISTORIES: dict[str, HistoryKind] = {}
-
-RESERVED_HISTORIES = ("sine", "pulse", "table")
 
 
 def register_history(kind: HistoryKind) -> None:
@@ -57,10 +55,8 @@ def check_history(value: Any, where: str) -> History:
         raise FieldError(f'{where}: history is {value!r}; it must be like {{"kind": "ramp", "duration": 0.5}}.')
     kind = HISTORIES.get(value["kind"])
     if kind is None:
-        reserved = " (this version does not provide it yet)" if value["kind"] in RESERVED_HISTORIES else ""
         raise FieldError(
-            f"{where}: history kind is '{value['kind']}'{reserved};"
-            f" choose one of {', '.join(sorted(HISTORIES))}."
+            f"{where}: history kind is '{value['kind']}'; choose one of {', '.join(sorted(HISTORIES))}."
         )
     unknown = sorted(map(str, set(value) - {"kind", *kind.parameters}))
     if unknown:
@@ -131,6 +127,12 @@ class Load(Handle):
         """The particle it acts on."""
         found: Particle = self.world.tables["particles"][self.on]
         return found
+
+
+def static_factor(history: History) -> float:
+    """The factor that stands for a history in statics."""
+    static = HISTORIES[history["kind"]].static
+    return static(history) if callable(static) else static
 
 
 def loads_end(world: World) -> float:

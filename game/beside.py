@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from components.field import Role
-from components.load import CONSTANT, HISTORIES
+from components.load import CONSTANT, static_factor
 from components.model import Model
 from components.snapshot import Snapshot
 from systems.base import StopReason
@@ -91,5 +91,5 @@ def _histories(model: Model) -> set[str]:
     found = {repr(dict(load.history)) for load in model.loads if any(load.force)}
     if steady or any(environment.force) or any(environment.acceleration):
         found.add(repr(CONSTANT))
-    unsteady = (HISTORIES[load.history["kind"]].static != 1.0 for load in model.loads)
+    unsteady = (static_factor(load.history) != 1.0 for load in model.loads)
     return set() if any(unsteady) else found

@@ -7,7 +7,7 @@ import json
 import math
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 
@@ -19,6 +19,7 @@ from game.desk import ModelFile, file_of
 from game.mods import ModError, command
 from game.mods.command import load_as_asked
 from game.overrides import OverrideError, apply_override
+from game.registry import COMMANDS
 from game.report import FOUND, Analysis
 from game.results import as_csv, as_json, as_table
 from game.session import DEFAULT_LIMIT, Session
@@ -475,7 +476,7 @@ def _mods(words: Sequence[str]) -> int:
     return command.run(words, parser, __version__)
 
 
-COMMANDS: dict[str, Callable[[list[str]], int]] = {
+COMMANDS |= {
     "open": _open,
     "run": _run,
     "render": _render,

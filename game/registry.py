@@ -14,3 +14,5 @@ if TYPE_CHECKING:
 SYSTEMS: list[Callable[[], System]] = []  # frame systems, laws and commits; made anew for every session
 SCENES: list[Callable[[], Scene]] = []  # made anew for every session
 PANELS: list[Callable[[Session], Readout | None]] = []  # what stands beside the model, if anything now
+
+COMMANDS: dict[str, Callable[[list[str]], int]] = {}  # of the command line, Pinjoint's own (game/cli.py) too

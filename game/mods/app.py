@@ -145,14 +145,13 @@ class App:
 
     def command(self, name: str, run: Callable[[list[str]], int], about: str = "") -> None:
         """Add `pinjoint <name> …`: `run` gets the words after it and returns the exit status."""
-        from game.cli import COMMANDS
-
-        if name in COMMANDS:
+        commands = registry.COMMANDS
+        if name in commands:
             raise ModError(f"There is a command '{name}' already; call this one something else.")
-        COMMANDS[name] = lambda words: int(
+        commands[name] = lambda words: int(
             self._mod.call(f"the command '{name}'", run, list(words), otherwise=2)
         )
-        self._undo.append(lambda: COMMANDS.pop(name))
+        self._undo.append(lambda: commands.pop(name))
 
     # --- what is seen ------------------------------------------------------------------------------------
 

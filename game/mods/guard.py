@@ -73,7 +73,14 @@ def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
     def ends(history: History) -> float:
         return float(mod.call(f"the end of the history '{kind.name}'", kind.ends, history, otherwise=-math.inf))
 
-    return replace(kind, check=check, ends=ends, mod=mod)
+    static = kind.static
+    if callable(static):
+        own, what = static, f"the static factor of the history '{kind.name}'"
+
+        def static(history: History) -> float:
+            return float(mod.call(what, own, history, otherwise=0.0))
+
+    return replace(kind, check=check, ends=ends, static=static, mod=mod)
 
 
 _METHODS = tuple(name for name, method in vars(Scene).items() if callable(method) and name[0] != "_")

@@ -19,6 +19,7 @@ from game.mods.watchdog import interrupted_after
 from game.preferences import preferred_keys
 from game.registry import SYSTEMS
 from game.schedule import Schedule
+from game.version import __version__
 from systems.input.bindings import prefer
 
 PATIENCE = 30.0  # s that loading one mod may take
@@ -31,12 +32,10 @@ def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list
 
     Returns all that were found, each with its `problem` if it was left out. What is loaded already stays.
     """
-    from game import __version__
-
     found = [mod for folder in folders for mod in finding.in_folder(Path(folder))]
     if installed:
         found += [*finding.in_folder(finding.mods_folder()), *finding.in_packages()]
-    known = {mod.folder: mod for mod in MODS if mod.loaded}
+    known = {mod.folder: mod for mod in MODS if mod.loaded and mod.folder is not None}
     new = [mod for mod in found if mod.folder not in known]
     ordered = in_order(new, __version__, [mod for mod in MODS if mod.loaded])
     MODS.extend(new)
@@ -61,8 +60,6 @@ def load_all(folders: Iterable[str | Path]) -> None:
 
 def include(module: ModuleType, description: str) -> None:
     """Load a module of ours that is written as a mod is."""
-    from game import __version__
-
     mod = Mod(module.__name__.rpartition(".")[2], module.__name__, __version__, description)
     app = App(mod)
     module.plugin(app)

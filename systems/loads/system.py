@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,11 +39,13 @@ class VaryingLoads(Law):
         rows = self._rows(model)
         values: list[float] = []
         first: list[int] = []
+        begun: dict[int, int] = {}  # where the values of a history begin, which loads may share
         for row in rows:
-            first.append(len(values))
-            for name in self.kind.parameters:
-                parameter = model.loads.history[row][name]
-                values.extend(parameter if isinstance(parameter, tuple) else (parameter,))
+            history = model.loads.history[row]
+            if id(history) not in begun:
+                begun[id(history)] = len(values)
+                values += _flattened(history[name] for name in self.kind.parameters)
+            first.append(begun[id(history)])
         prefix = self.name.replace(".", "_")
         return {
             f"{prefix}_on": np.ascontiguousarray(model.loads.on[rows]),
@@ -51,6 +53,14 @@ class VaryingLoads(Law):
             f"{prefix}_values": np.array(values, dtype=np.float64),
             f"{prefix}_first": np.array(first, dtype=np.uint32),
         }
+
+
+def _flattened(parameters: Iterable[Any]) -> list[float]:
+    """Numbers in order, lists preceded by their length."""
+    values: list[float] = []
+    for parameter in parameters:
+        values += (len(parameter), *parameter) if isinstance(parameter, tuple) else (parameter,)
+    return values
 
 
 def varying_loads() -> list[VaryingLoads]:

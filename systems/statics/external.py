@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from components.load import HISTORIES
+from components.load import static_factor
 from components.model import Model
 from systems.statics.equations import Array
 
@@ -30,9 +30,9 @@ def external_forces(model: Model) -> External:
     scaled = particles.force + np.array(environment.force)
     notes = []
     for load in model.loads:
-        kind = HISTORIES[load.history["kind"]]
-        np.add.at(scaled, load.on, kind.static * np.array(load.force))
-        if kind.static == 0.0:
-            notes.append(f"The {kind.name} load on {load.particle.name} counts as 0 in statics.")
+        factor = static_factor(load.history)
+        np.add.at(scaled, load.on, factor * np.array(load.force))
+        if factor == 0.0:
+            notes.append(f"The {load.history['kind']} load on {load.particle.name} counts as 0 in statics.")
     acceleration = particles.acceleration + np.array(environment.acceleration)
     return External(scaled, particles.mass[:, None] * acceleration / 1000.0, tuple(notes))

@@ -1,0 +1,6 @@
+"""What comes with Pinjoint but is written as mods are: only through what `plugin(app)` can register."""
+
+from game.included import histories
+from game.mods import include
+
+include(histories, "Loads that vary: sine, pulse, table, and base acceleration from a record")

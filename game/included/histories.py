@@ -1,0 +1,156 @@
+"""Histories of loads: sine, pulse, table and record; and shaking a model by a recorded base acceleration.
+
+In statics a sine, a pulse and a record count as 0 (with a note), a table with its last factor.
+"""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from components import FieldError, HistoryKind, Load, Model, Vector
+from components.load import History
+
+if TYPE_CHECKING:
+    from game.mods import App
+
+STANDARD_GRAVITY = 9.80665  # m/s²
+DIRECTIONS = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
+
+
+def check_sine(history: History, where: str) -> None:
+    """A sine has a frequency."""
+    if not history["frequency"] > 0.0:
+        raise FieldError(f"{where}: history frequency is {history['frequency']:g} Hz; it must be above 0 Hz.")
+
+
+def check_pulse(history: History, where: str) -> None:
+    """A pulse lasts."""
+    if not history["duration"] > 0.0:
+        raise FieldError(f"{where}: history duration is {history['duration']:g} s; it must be above 0 s.")
+
+
+def check_points(history: History, where: str) -> None:
+    """There is one value for each time, and times ascend."""
+    times, values = (history[name] for name in list(history)[1:])
+    if not times or len(times) != len(values):
+        raise FieldError(
+            f"{where}: the history has {len(times)} times and {len(values)} values; give as many of both."
+        )
+    if any(later <= earlier for earlier, later in itertools.pairwise(times)):
+        raise FieldError(f"{where}: history times must ascend; correct or leave out those that do not.")
+
+
+KERNELS = "systems.loads.kernels"
+SINE = HistoryKind(
+    "sine",
+    {"frequency": 1.0, "phase": 0.0},
+    f"{KERNELS}:sine",
+    static=0.0,
+    ends=lambda history: math.inf,
+    check=check_sine,
+)
+PULSE = HistoryKind(
+    "pulse",
+    {"start": 0.0, "duration": 1.0},
+    f"{KERNELS}:pulse",
+    static=0.0,
+    ends=lambda history: float(history["start"] + history["duration"]),
+    check=check_pulse,
+)
+TABLE = HistoryKind(
+    "table",
+    {"times": (0.0, 1.0), "factors": (0.0, 1.0)},
+    f"{KERNELS}:interpolated",
+    static=lambda history: float(history["factors"][-1]),
+    ends=lambda history: float(history["times"][-1]),
+    check=check_points,
+)
+RECORD = HistoryKind(
+    "record",
+    {"times": (0.0,), "accelerations": (0.0,)},
+    f"{KERNELS}:interpolated",
+    static=0.0,
+    ends=lambda history: float(history["times"][-1]),
+    check=check_points,
+)
+
+
+# --- base acceleration -------------------------------------------------------------------------------
+
+
+def read_record(path: Path, unit: float = 1.0) -> dict[str, list[float] | str]:
+    """The record in a CSV file of times (s) and accelerations (`unit` m/s² each), as a history.
+
+    A line that does not begin with a number is a heading. Raises ValueError, naming the line.
+    """
+    times: list[float] = []
+    values: list[float] = []
+    with path.open(newline="", encoding="utf-8-sig") as file:
+        for number, row in enumerate(csv.reader(file), start=1):
+            try:
+                time, value = float(row[0]), float(row[1])
+            except (ValueError, IndexError):
+                if times and "".join(row).strip():
+                    raise ValueError(
+                        f"{path}, line {number}: {row} is not a time and an acceleration."
+                    ) from None
+                continue
+            times.append(time)
+            values.append(value * unit)
+    if not times:
+        raise ValueError(f"{path}: there is no line with a time and an acceleration.")
+    return {"kind": "record", "times": times, "accelerations": values}
+
+
+def shake(model: Model, record: History | dict[str, list[float] | str], direction: Vector = (1.0, 0.0)) -> None:
+    """Shake the supports: a load −m a(t) on every particle that can move, displacements being relative to them.
+
+    One step of undo. The masses are those of now.
+    """
+    particles = model.particles
+    free = np.flatnonzero(~particles.fixed.all(axis=1))
+    force = -particles.mass[free, None] * np.array(direction) / 1000.0
+    with model.transaction("shake the supports"):
+        names = [f"base acceleration of {particles.names[row]}" for row in free.tolist()]
+        model.delete([model.loads[name] for name in names if name in model.loads])
+        model.create(Load, len(free), name=names, on=free, force=force, history=[record] * len(free))
+
+
+def run(words: list[str]) -> int:
+    """`pinjoint shake MODEL RECORD.csv --output FILE`."""
+    import argparse
+    import sys
+
+    from game import models
+
+    parser = argparse.ArgumentParser(
+        prog="pinjoint shake", description="Shake the supports of a model by a recorded acceleration."
+    )
+    parser.add_argument("model", help="a model file, or the name of a bundled model")
+    parser.add_argument("record", type=Path, metavar="RECORD.csv", help="lines of time (s), acceleration")
+    parser.add_argument("--unit", choices=("m/s2", "g"), default="m/s2", help="of the accelerations")
+    parser.add_argument("--direction", choices=tuple(DIRECTIONS), default="x")
+    parser.add_argument("--output", required=True, metavar="FILE", help="the model with the loads")
+    options = parser.parse_args(words)
+    model = models.load(options.model)
+    try:
+        record = read_record(options.record, STANDARD_GRAVITY if options.unit == "g" else 1.0)
+        shake(model, record, DIRECTIONS[options.direction])
+    except (OSError, ValueError) as error:
+        print(f"pinjoint: {error}", file=sys.stderr)
+        return 2
+    models.save(model, options.output)
+    return 0
+
+
+def plugin(app: App) -> None:
+    """Register them."""
+    for kind in (SINE, PULSE, TABLE, RECORD):
+        app.history(kind)
+    app.command("shake", run)
