@@ -35,7 +35,7 @@ def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list
     found = [mod for folder in folders for mod in finding.in_folder(Path(folder))]
     if installed:
         found += [*finding.in_folder(finding.mods_folder()), *finding.in_packages()]
-    known = {mod.folder: mod for mod in MODS if mod.loaded and mod.folder is not None}
+    known: dict[Path | None, Mod] = {mod.folder: mod for mod in MODS if mod.loaded and mod.folder is not None}
     new = [mod for mod in found if mod.folder not in known]
     ordered = in_order(new, __version__, [mod for mod in MODS if mod.loaded])
     MODS.extend(new)
