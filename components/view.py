@@ -77,6 +77,7 @@ class View:
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
+    theory, energy: show theory beside the run, and its energy account, among them.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -95,6 +96,8 @@ class View:
     toolbar: Toolbar = field(default_factory=Toolbar)
     theme: str = "light"
     readouts: tuple[Readout, ...] = ()
+    theory: bool = False
+    energy: bool = False
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model."""

@@ -47,14 +47,25 @@ class Beside:
         from systems.statics.settle import Start
         from systems.statics.verify import theories
 
-        revision = self._model.newest(Role.DOCUMENT)
+        begun = self._begun
+        revision = self._model.newest(Role.DOCUMENT, *(() if begun else (Role.STATE,)))
         if self._theories is None or self._theories[0] != revision:
-            start = None
-            if self._beginning is not None:
-                names = ("particles.displacement", "rods.plastic_strain")
-                start = Start(*(self._beginning.column(self._model, name).copy() for name in names))
+            names = ("particles.displacement", "rods.plastic_strain")
+            start = Start(*(begun.column(self._model, name).copy() for name in names)) if begun else None
             self._theories = revision, theories(self._model, start)
         return self._theories[1]
+
+    @property
+    def _begun(self) -> Snapshot | None:
+        """The state in which the run began; None if it has not begun."""
+        begun = self._beginning
+        passed = begun is not None and begun.columns["clock.steps"][0] != self._model.clock.steps
+        return begun if passed else None
+
+    @property
+    def is_small(self) -> bool:
+        """True if theory is found without a noticeable wait."""
+        return self._model.rods.count <= LARGEST
 
     def comparison(self) -> Comparison:
         """The run as it is now beside theory."""
@@ -78,7 +89,7 @@ class Beside:
     def _is_comparable(self) -> bool:
         """True if the run is that of a structure at rest under one load, at once or by one history."""
         beginning = self._beginning
-        if beginning is None or not (self.undisturbed and 0 < self._model.rods.count <= LARGEST):
+        if beginning is None or not (self.undisturbed and self._model.rods.count and self.is_small):
             return False
         moved = (beginning.columns[f"particles.{name}"].any() for name in ("displacement", "velocity"))
         return not any(moved) and len(_histories(self._model)) == 1

@@ -31,6 +31,7 @@ from game.document import missing_mods
 from game.gestures import TOOL_HINTS, Gesture
 from game.history import History
 from game.mods.mod import FAULTS
+from game.readouts import own_readouts
 from game.registry import PANELS, SYSTEMS
 from game.scenes import Scenes, Stage, all_scenes
 from game.schedule import Schedule
@@ -622,7 +623,8 @@ class Session:
         view.heading = scene.heading
         self._offer_tools()
         view.keys = help_lines(scene.name) if view.help else []
-        view.readouts = tuple(readout for panel in PANELS if (readout := panel(self)) is not None)
+        added = (panel(self) for panel in PANELS)
+        view.readouts = (*own_readouts(self), *(readout for readout in added if readout is not None))
         view.status = Status(
             time=self.time,
             speed=self.clock.shown_pace if self.busy else 0.0,

@@ -64,10 +64,10 @@ def verify(session: Session, name: str, limit: float, *, simulate: bool = True) 
             "integrator": session.simulation.integrator,
         }
         simulated = observed(model) if status == "at rest" else None
-    comparison = compare(model, theory, simulated) if model.rods.count else Comparison(())
-    found |= _by_element(comparison)
+    comparison = compare(model, theory, simulated)
+    found |= _by_element(comparison if model.rods.count else None)
     worst = {way: comparison.worst(way) for way in ("simulation", "linear")}
-    found["worst"] = {way: row and asdict(row) for way, row in worst.items()}
+    found["worst"] = {way: row and asdict(row) for way, row in worst.items() if model.rods.count}
     found["remarks"] = [event_record(model, event) for event in session.remarks]
     complete = theory.exact is not None and (simulated is not None or not simulate)
     found["status"] = VERIFIED if complete and model.rods.count else NOT_VERIFIED
@@ -75,10 +75,10 @@ def verify(session: Session, name: str, limit: float, *, simulate: bool = True) 
     return found
 
 
-def _by_element(comparison: Comparison) -> dict[str, dict[str, Any]]:
+def _by_element(comparison: Comparison | None) -> dict[str, dict[str, Any]]:
     """The rows as {"rods": {name: {quantity: values}}, "particles": {name: {quantity: {axis: values}}}}."""
     tables: dict[str, dict[str, Any]] = {"rods": {}, "particles": {}}
-    for row in comparison.rows:
+    for row in comparison.rows if comparison is not None else ():
         values = {key: value for key, value in asdict(row).items() if key in _VALUES}
         quantities = tables[f"{row.element}s"].setdefault(row.name, {})
         if row.component:

@@ -36,6 +36,16 @@ def _toggle_legend(session: Session, pixel: Vector) -> None:
     session.view.legend = not session.view.legend
 
 
+@action("toggle theory", while_drawing=True)
+def _toggle_theory(session: Session, pixel: Vector) -> None:
+    session.view.theory = not session.view.theory
+
+
+@action("toggle energy", while_drawing=True)
+def _toggle_energy(session: Session, pixel: Vector) -> None:
+    session.view.energy = not session.view.energy
+
+
 @action("next theme", while_drawing=True)
 def _next_theme(session: Session, pixel: Vector) -> None:
     """The one after the present one."""

@@ -83,6 +83,8 @@ BINDINGS: list[Binding] = [
     Binding("ctrl+x", "cut", LIVE, "cut the selection"),
     Binding("ctrl+v", "paste", LIVE, "paste at the pointer"),
     Binding("ctrl+d", "duplicate", LIVE, "duplicate the selection"),
+    Binding("m", "toggle theory", LIVE, "theory beside the run, of the selected elements, on / off"),
+    Binding("j", "toggle energy", LIVE, "energy account on / off"),
     Binding("home", "fit", (*LIVE, FORCE_METHOD), "fit the view"),
     Binding("tab", "toggle legend", LIVE, "legend and toolbar on / off"),
     Binding("t", "next theme", (*LIVE, FORCE_METHOD), "next theme: light, dark, colour-blind safe"),

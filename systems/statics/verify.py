@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from components.model import Model
-from systems.statics.equations import Array
+from systems.statics.equations import Array, Flags
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import rod_names
 from systems.statics.settle import Settlement, Start, settle
@@ -102,40 +102,32 @@ class Row:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Three answers side by side, element by element."""
+    """The "simulation", "linear" and "exact" answers side by side, None where there is none."""
 
-    rows: tuple[Row, ...]
+    model: Model
+    answers: Mapping[str, Answer | LinearState | None]
 
-    def worst(self, way: str, quantity: str = "") -> Row | None:
-        """The row with the largest error of the "simulation" or of "linear" theory (of one quantity, if given)."""
-        errors = {row: getattr(row, f"{way}_error") for row in self.rows if quantity in ("", row.quantity)}
-        return max(
-            (r for r, e in errors.items() if e is not None), key=lambda r: float(errors[r]), default=None
-        )
+    @property
+    def rows(self) -> Iterator[Row]:
+        """Every quantity of every element: displacements of free directions, reactions of constrained ones."""
+        for quantity in QUANTITIES:
+            for place in np.argwhere(self._concerned(quantity)).tolist():
+                yield self.row(quantity, tuple(place))
 
-
-def compare(model: Model, theory: Theories, simulated: Answer | None) -> Comparison:
-    """Put the three answers side by side; simulated: None if there is no simulation at rest."""
-    answers = {"simulation": simulated, "linear": theory.linear, "exact": theory.exact}
-    return Comparison(tuple(row for quantity in QUANTITIES for row in _rows(model, quantity, answers)))
-
-
-def _rows(model: Model, quantity: str, answers: Mapping[str, Answer | LinearState | None]) -> Iterator[Row]:
-    table, unit = QUANTITIES[quantity]
-    values: dict[str, Array] = {w: getattr(a, quantity) for w, a in answers.items() if a is not None}
-    exact = values.get("exact")
-    largest = float(np.abs(exact).max(initial=0.0)) if exact is not None else 0.0
-    names = model.tables[table].column("name")
-    for place in np.ndindex(model.particles.displacement.shape if table == "particles" else (len(names),)):
-        if table == "particles" and model.particles.fixed[place] == (quantity == "displacement"):
-            continue
-        found = {way: float(array[place]) for way, array in values.items()}
-        errors = {}
-        if "exact" in found:
-            errors = {way: abs(value - found["exact"]) / (largest or 1.0) for way, value in found.items()}
-        yield Row(
+    def row(self, quantity: str, place: tuple[int, ...]) -> Row:
+        """One quantity of one element: of a rod (row,), of a particle (row, axis)."""
+        table, unit = QUANTITIES[quantity]
+        found = {
+            way: float(values[place])
+            for way in self.answers
+            if (values := self._values(way, quantity)) is not None
+        }
+        errors = {
+            way: float(e[place]) for way in self.answers if (e := self._errors(way, quantity)) is not None
+        }
+        return Row(
             element=table.removesuffix("s"),
-            name=str(names[place[0]]),
+            name=str(self.model.tables[table].column("name")[place[0]]),
             quantity=quantity,
             component="" if len(place) == 1 else "xy"[place[1]],
             unit=unit,
@@ -145,6 +137,41 @@ def _rows(model: Model, quantity: str, answers: Mapping[str, Answer | LinearStat
             simulation_error=errors.get("simulation"),
             linear_error=errors.get("linear"),
         )
+
+    def worst(self, way: str, *quantities: str) -> Row | None:
+        """The row with the largest error of the "simulation" or of "linear" theory (of some quantities, if given)."""
+        largest, row = -1.0, None
+        for quantity in quantities or QUANTITIES:
+            errors, concerned = self._errors(way, quantity), self._concerned(quantity)
+            if errors is None or not concerned.any():
+                continue
+            errors = np.where(concerned, errors, -1.0)
+            if errors.max() > largest:
+                largest = float(errors.max())
+                row = self.row(quantity, tuple(int(i) for i in np.unravel_index(errors.argmax(), errors.shape)))
+        return row
+
+    def _concerned(self, quantity: str) -> Flags:
+        """Where a quantity says something, in the shape of its array."""
+        if quantity == "axial_force":
+            return np.ones(self.model.rods.count, dtype=bool)
+        fixed: Flags = self.model.particles.fixed
+        return fixed if quantity == "reaction" else ~fixed
+
+    def _values(self, way: str, quantity: str) -> Array | None:
+        return getattr(self.answers[way], quantity, None)
+
+    def _errors(self, way: str, quantity: str) -> Array | None:
+        values, exact = self._values(way, quantity), self._values("exact", quantity)
+        if values is None or exact is None:
+            return None
+        errors: Array = np.abs(values - exact) / (float(np.abs(exact).max(initial=0.0)) or 1.0)
+        return errors
+
+
+def compare(model: Model, theory: Theories, simulated: Answer | None) -> Comparison:
+    """Put the three answers side by side; simulated: None if there is no simulation at rest."""
+    return Comparison(model, {"simulation": simulated, "linear": theory.linear, "exact": theory.exact})
 
 
 # --- what a simulation did that a slowly growing load does not do ---------------------------------------------

@@ -1,0 +1,97 @@
+"""Readouts of a session: theory beside the run, and its energy account."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from components.particle import Particle
+from components.rod import Rod
+from components.view import Readout
+from game.beside import LARGEST
+
+if TYPE_CHECKING:
+    from components.world import Handle
+    from game.session import Session
+    from systems.statics.verify import Comparison, Row, Theories
+
+MOST_ELEMENTS = 3  # of the selected ones that have a readout of their own
+
+_SHOWN = {"axial_force": ("N", "kN", 1.0), "reaction": ("R", "kN", 1.0), "displacement": ("u", "mm", 1000.0)}
+_WAYS = {"simulation": "run", "linear": "linear theory", "exact": "exact theory"}
+
+
+def own_readouts(session: Session) -> Iterator[Readout]:
+    """Those that are switched on, for the view."""
+    if session.view.theory:
+        yield from _theory(session)
+    if session.view.energy:
+        yield _energy(session)
+
+
+def _energy(session: Session) -> Readout:
+    rows = [
+        (name.replace("_", " "), f"{value:.5g} J".replace("-", "−"))
+        for name, value in session.energy.as_dict().items()
+    ]
+    return Readout("Energy account", tuple(rows))
+
+
+# --- theory ----------------------------------------------------------------------------------------------
+
+
+def _theory(session: Session) -> Iterator[Readout]:
+    if session.model.rods.count == 0:
+        yield Readout("Theory beside the run", (("no rods", ""),))
+    elif not session.desk.beside.is_small:
+        yield Readout("Theory beside the run", ((f"more than {LARGEST} rods: use", "pinjoint verify"),))
+    else:
+        theory, comparison = session.desk.beside.theories, session.desk.beside.comparison()
+        yield Readout("Theory beside the run", tuple(_overview(session, theory, comparison)))
+        for handle in session.selected[:MOST_ELEMENTS]:
+            yield from _of_element(handle, comparison)
+
+
+def _overview(session: Session, theory: Theories, comparison: Comparison) -> Iterator[tuple[str, str]]:
+    settlement = theory.settlement
+    if theory.linear is None:
+        yield "linear theory", "a mechanism"
+    if theory.exact is None:
+        yield "exact theory", f"{settlement.status} at {settlement.final.load_factor:.4g} of the load"
+    for event in settlement.events:
+        if event.kind in ("snap-through", "bifurcation"):
+            yield event.kind, f"at {event.load_factor:.4g} of the load"
+    for way in ("simulation", "linear"):
+        worst = comparison.worst(way)
+        if worst is not None:
+            yield (
+                f"largest error, {_WAYS[way].split()[0]}",
+                f"{getattr(worst, f'{way}_error'):.1e} ({_symbol(worst)})",
+            )
+    if not session.desk.beside.undisturbed:
+        yield "edited during the run: theory", "without that history"
+
+
+def _symbol(row: Row) -> str:
+    """Such as "N of AB" or "u y of B"."""
+    return f"{_SHOWN[row.quantity][0]} {row.component}".rstrip() + f" of {row.name}"
+
+
+def _of_element(handle: Handle, comparison: Comparison) -> Iterator[Readout]:
+    """A readout for every quantity of an element that theory knows."""
+    if isinstance(handle, Rod):
+        yield _beside(comparison.row("axial_force", (handle.row,)))
+    elif isinstance(handle, Particle):
+        for axis, fixed in enumerate(handle.fixed):
+            yield _beside(comparison.row("reaction" if fixed else "displacement", (handle.row, axis)))
+
+
+def _beside(row: Row) -> Readout:
+    """One quantity by the three ways, with errors."""
+    _, unit, factor = _SHOWN[row.quantity]
+    rows = []
+    for way, title in _WAYS.items():
+        value, error = getattr(row, way), getattr(row, f"{way}_error", None)
+        shown = "—" if value is None else f"{factor * value + 0.0:.7g} {unit}".replace("-", "−")
+        rows.append((title if error is None else f"{title}, error {error:.1e}", shown))
+    return Readout(row.title[:1].upper() + row.title[1:], tuple(rows))

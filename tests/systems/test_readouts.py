@@ -1,0 +1,84 @@
+"""Readouts beside the model: theory of the selected elements and the worst of all, and the energy account."""
+
+from __future__ import annotations
+
+import pytest
+
+from game import Session
+from tests.benchmarks.models import lattice
+
+
+def shown(session: Session) -> dict[str, dict[str, str]]:
+    session.update_view()
+    return {readout.title: dict(readout.rows) for readout in session.view.readouts}
+
+
+def test_theory_stands_beside_the_selected_rod() -> None:
+    session = Session.open("hyperstatic_yield")
+    session.run(until="rest")
+    session.select(session.rods["AB"])
+    assert shown(session) == {}
+    session.press("m")
+    rows = shown(session)["Axial force of rod AB"]
+    assert rows["exact theory"] == "45.22449 kN"
+    (run,) = [value for title, value in rows.items() if title.startswith("run, error")]
+    (linear,) = [value for title, value in rows.items() if title.startswith("linear theory, error 8.5e")]
+    assert (run, linear) == ("45.22449 kN", "26.92388 kN")
+    session.press("m")
+    assert shown(session) == {}
+
+
+def test_displacements_and_reactions_of_a_particle_and_the_worst_of_all() -> None:
+    session = Session.open("isostatic")
+    session.run(until="rest")
+    session.select(session.particles["A"])
+    session.press("m")
+    readouts = shown(session)
+    assert readouts["Displacement x of particle A"]["exact theory"] == "−0.2437792 mm"
+    assert readouts["Reaction y of particle A"]["exact theory"] == "20.01479 kN"
+    assert readouts["Theory beside the run"]["largest error, linear"] == "1.3e-03 (u y of B)"
+
+
+@pytest.mark.parametrize(
+    ("name", "title", "said"),
+    [
+        ("isostatic_collapse", "exact theory", "collapse at 0.8686 of the load"),
+        ("pendulum", "linear theory", "a mechanism"),
+        ("snap_through", "snap-through", "at 0.02541 of the load"),
+    ],
+)
+def test_what_theory_cannot_answer_is_said(name: str, title: str, said: str) -> None:
+    session = Session.open(name)
+    session.press("m")
+    assert shown(session)["Theory beside the run"][title] == said
+
+
+def test_theory_follows_edits_and_says_when_it_does_not_know_the_history() -> None:
+    session = Session.open("isostatic")
+    session.press("m")
+    session.select(session.rods["CA"])
+    before = shown(session)["Axial force of rod CA"]["exact theory"]
+    session.particles["B"].force = (0, -160)
+    assert shown(session)["Axial force of rod CA"]["exact theory"] != before
+    session.run(steps=10)
+    session.particles["B"].force = (0, -100)
+    assert shown(session)["Theory beside the run"]["edited during the run: theory"] == "without that history"
+
+
+def test_without_rods_or_with_very_many_it_says_so() -> None:
+    session = Session.open("collision_i")
+    session.press("m")
+    assert shown(session)["Theory beside the run"] == {"no rods": ""}
+    large = Session(lattice(3000))
+    large.press("m")
+    assert shown(large)["Theory beside the run"] == {"more than 2000 rods: use": "pinjoint verify"}
+
+
+def test_the_energy_account_on_demand() -> None:
+    session = Session.open("overshoot_yield")
+    session.run(until="rest")
+    session.press("j")
+    rows = shown(session)["Energy account"]
+    assert rows["work"] == f"{session.energy.work:.5g} J"
+    assert float(rows["dissipated plastic"].removesuffix(" J")) > 0.0
+    assert "imbalance" in rows
