@@ -1,4 +1,19 @@
-"""The contract that our systems and a modder's share."""
+"""The contract that our systems and a modder's share.
+
+A law is a declaration and a compiled function of one row:
+
+>>> from numba import njit
+>>> @njit
+... def weight(particles_mass):
+...     return 0.0, -0.00981 * particles_mass
+>>> class Weight(Law):
+...     name = "example.weight"
+...     each = "particles"
+...     kernel = weight
+...     reads = ("particles.mass",)
+>>> Weight().phase.value
+'step'
+"""
 
 from __future__ import annotations
 

@@ -1,0 +1,70 @@
+"""The modders' guide, followed literally in an empty folder; and the examples in docstrings."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from game import mods
+from game.cli import main
+
+GUIDE = Path(__file__).parents[2] / "assets" / "mods" / "README.md"
+BLOCK = re.compile(r"(?:^`([\w./]+)`:\n\n)?^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def run_command(line: str) -> None:
+    words = shlex.split(line)
+    if words[0] == "pytest":
+        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *words[1:]]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout
+    else:
+        assert words[0] == "pinjoint"
+        main(words[1:])
+
+
+def test_the_guide_works_at_the_first_try(
+    tmp_path: Path, unloaded: None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    blocks = BLOCK.findall(GUIDE.read_text(encoding="utf-8"))
+    assert len(blocks) > 10
+    for path, language, text in blocks:
+        if path:
+            Path(path).parent.mkdir(exist_ok=True)
+            Path(path).write_text(text, encoding="utf-8")
+        elif language == "sh":
+            for line in text.splitlines():
+                run_command(line)
+        elif language == "python":
+            exec(compile(text, "a snippet of the guide", "exec"), {"__name__": "guide"})
+        else:
+            assert language == "text"
+    output = capsys.readouterr()
+    assert output.err == ""
+    assert "breeze 0.1: all is well" in output.out
+    assert not mods.FAULTS
+
+
+@pytest.mark.parametrize("module", ["components", "systems.base", "game", "game.mods"])
+def test_what_is_public_exists_and_is_documented(module: str) -> None:
+    public = importlib.import_module(module)
+    for name in public.__all__:
+        thing = getattr(public, name)
+        assert not callable(thing) or thing.__doc__ or not hasattr(thing, "__module__"), name
+
+
+@pytest.mark.parametrize(
+    "module", ["components", "systems.base", "game.mods", "game.session", "game.checks", "game.mods.app"]
+)
+def test_the_examples_in_docstrings_are_true(module: str) -> None:
+    found = doctest.testmod(importlib.import_module(module))
+    assert found.failed == 0
+    assert found.attempted > 0 or module == "game.mods.app"
