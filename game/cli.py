@@ -18,6 +18,7 @@ from game.curve import as_csv as as_curve
 from game.desk import ModelFile, file_of
 from game.mods import ModError, command
 from game.mods.command import load_as_asked
+from game.mods.safety import in_use
 from game.overrides import OverrideError, apply_override
 from game.registry import COMMANDS
 from game.report import FOUND, Analysis
@@ -95,7 +96,8 @@ def _open(words: Sequence[str]) -> int:
     except ImportError as error:
         raise Refusal(f"The window needs pygame-ce, which cannot be imported: {error}.", NO_DISPLAY) from None
     try:
-        open_window(model, file, (options.record, source), options.theme)
+        with in_use():
+            open_window(model, file, (options.record, source), options.theme)
     except OSError as error:
         raise Refusal(
             f"{options.record} cannot be written: {error.strerror}. Choose another --record."

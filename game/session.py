@@ -38,7 +38,7 @@ from game.schedule import Schedule
 from game.simulation import Energy, Simulation
 from game.timeline import Timeline
 from game.toolbar import toolbar_of
-from systems.base import Phase, StopReason, System
+from systems.base import Law, Phase, StopReason, System
 from systems.edit.pull import Pull
 from systems.edit.refusal import Refusal
 from systems.input.bindings import LIVE, TEXT, action_for, help_lines
@@ -324,6 +324,11 @@ class Session:
             self.model.give("clock.origin", np.array([time]))
             self.model.give("clock.origin_steps", np.array([self.model.clock.steps]))
         self.notice = found.message or f"Settled: {found.status}."
+        laws = [
+            system for system in self.schedule.step_plan(self.model) if isinstance(system, Law) and system.mod
+        ]
+        if left_out := ", ".join(law.name for law in laws if law.each != "loads"):
+            self.notice += f" Settling does not know the laws of mods: without {left_out}."
         return found.status
 
     def load_path(self, factor: float = 1.0, *, until: str | None = None, points: int = 500) -> Curve:

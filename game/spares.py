@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-import sys
 import threading
 import time
 import uuid
 from collections.abc import Iterable
 from pathlib import Path
-from typing import IO, Any, cast
+from typing import Any, cast
 
 import msgspec
 
@@ -21,6 +20,7 @@ from components.world import Handle
 from game import library, models
 from game.desk import Desk
 from game.document import document
+from game.locks import lock_file
 from systems.base import Phase, System
 
 INTERVAL = 2.0  # s between spares of the same model, at least
@@ -52,7 +52,7 @@ class SpareKeeper(System):
         self._due = 0.0
         self._thread: threading.Thread | None = None
         self._folder.mkdir(parents=True, exist_ok=True)
-        lock = _lock(self._folder / f"{self._id}.lock")
+        lock = lock_file(self._folder / f"{self._id}.lock")
         self._locks = [lock] if lock is not None else []
         self._left = self._orphans()
 
@@ -63,7 +63,7 @@ class SpareKeeper(System):
         for path in self._folder.glob("*.lock"):
             if path.stem == self._id:
                 continue
-            lock = _lock(path)
+            lock = lock_file(path)
             if lock is not None:
                 self._locks.append(lock)
         ours = {Path(lock.name).stem for lock in self._locks}
@@ -162,21 +162,3 @@ class _StillTable:
 
     def column(self, name: str) -> Column:
         return self._columns[name]
-
-
-def _lock(path: Path) -> IO[bytes] | None:
-    """The open file, if no running program holds it; it is held until it is closed or the program ends."""
-    file = path.open("ab")
-    try:
-        if sys.platform == "win32":
-            import msvcrt
-
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-        else:
-            import fcntl
-
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        file.close()
-        return None
-    return file

@@ -9,14 +9,17 @@ from pathlib import Path
 
 from game.mods.finding import mods_folder
 from game.mods.loading import MODS, load
-from game.mods.mod import INCLUDED, Mod, ModError
+from game.mods.mod import FAULTS, INCLUDED, Mod, ModError
+from game.mods.safety import LEFT_OUT, crashed
 from game.mods.skeleton import write_skeleton
+from game.registry import COMMANDS
 
 
 def load_as_asked(words: Sequence[str]) -> list[str]:
     """Load the mods that the options --mods DIR and --no-mods ask for; returns the other words.
 
-    What was left out is told on standard error. Raises ModError.
+    What was left out is told on standard error. After a crash with mods, a window is opened without those
+    that were not asked for. Raises ModError.
     """
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--mods", action="append", default=[], metavar="DIR")
@@ -25,7 +28,10 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
     for folder in options.mods:
         if not Path(folder).is_dir():
             raise ModError(f"--mods {folder}: there is no such folder.")
-    for mod in load(options.mods, installed=not options.no_mods):
+    unsafe = not options.no_mods and others[:1] not in [[name] for name in COMMANDS] and crashed()
+    if unsafe:
+        FAULTS.append(LEFT_OUT)
+    for mod in load(options.mods, installed=not (options.no_mods or unsafe)):
         if mod.off and others[:1] != ["mods"]:
             print(f"pinjoint: the mod '{mod.name}' was left out: {mod.problem}", file=sys.stderr)
     return others

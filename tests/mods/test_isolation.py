@@ -243,11 +243,13 @@ def test_a_history_that_fails(session: Any, body: str, ends: str, said: str) -> 
 
 
 def test_an_action_that_fails_changes_nothing(session: Any) -> None:
-    code = OTHER.format("app.action('apple.a', key='j')(bad)\n\ndef bad(session, pixel):\n    {}\n    1 / 0")
+    code = OTHER.format(
+        "app.action('apple.a', key='ctrl+shift+j')(bad)\n\ndef bad(session, pixel):\n    {}\n    1 / 0"
+    )
     made, before = session(code.replace("{}", DELETE_ALL))
-    made.press("j")
+    made.press("ctrl+shift+j")
     check_switched_off(made, before, "the action 'apple.a' failed: ZeroDivisionError: division by zero (apple/")
-    made.press("j")
+    made.press("ctrl+shift+j")
     assert "is switched off" in made.notice
 
 
@@ -279,10 +281,10 @@ class Bad(Scene):
 
 def plugin(app):
     app.scene(Bad)
-    app.action("apple.go", key="j")(lambda session, pixel: session.scenes.request("bad"))
+    app.action("apple.go", key="ctrl+shift+j")(lambda session, pixel: session.scenes.request("bad"))
 """
     made, before = session(code)
-    made.press("j")
+    made.press("ctrl+shift+j")
     for _ in range(3):
         made.frame(0.01)
     assert made.scene == "pause"

@@ -209,16 +209,17 @@ def test_of_a_plugin_that_raises_nothing_stays(tmp_path: Path, write_mod: Write)
 
 # --- keys ------------------------------------------------------------------------------------------------------
 
+FREE = "ctrl+shift+j"
 KEY = "def plugin(app): app.action('{0}.a', key='{1}', scenes=('pause',))(lambda s, p: None)"
 
 
 def test_a_key_that_is_taken_stays_and_that_is_reported(tmp_path: Path, write_mod: Write) -> None:
     write_mod("apple", KEY.format("apple", "s"))
-    write_mod("pear", KEY.format("pear", "j"))
-    write_mod("plum", KEY.format("plum", "j"))
+    write_mod("pear", KEY.format("pear", FREE))
+    write_mod("plum", KEY.format("plum", FREE))
     found = load(tmp_path)
     assert action_for("pause", "s") == "save"
-    assert action_for("pause", "j") == "pear.a"
+    assert action_for("pause", FREE) == "pear.a"
     assert "does 'save' already in pause" in found["apple"].notes[0]
     assert "does 'pear.a' already" in found["plum"].notes[0]
     assert not any(mod.off for mod in found.values())
@@ -226,13 +227,13 @@ def test_a_key_that_is_taken_stays_and_that_is_reported(tmp_path: Path, write_mo
 
 def test_the_key_that_a_person_chose_is_kept(tmp_path: Path, write_mod: Write) -> None:
     (tmp_path / "config").mkdir()
-    choice = '{"keys": {"pause": {"j": "plum.a"}}}'
+    choice = '{"keys": {"pause": {"ctrl+shift+j": "plum.a"}}}'
     (tmp_path / "config" / "settings.json").write_text(choice, encoding="utf-8")
-    write_mod("pear", KEY.format("pear", "j"))
-    write_mod("plum", KEY.format("plum", "j"))
+    write_mod("pear", KEY.format("pear", FREE))
+    write_mod("plum", KEY.format("plum", FREE))
     load(tmp_path)
-    assert action_for("pause", "j") == "plum.a"
-    assert action_for("simulation", "j") is None
+    assert action_for("pause", FREE) == "plum.a"
+    assert action_for("simulation", FREE) is None
 
 
 # --- components ----------------------------------------------------------------------------------------------------
