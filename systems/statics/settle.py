@@ -26,6 +26,8 @@ from systems.statics.loading import Loading
 
 TOLD = ("free body", "mechanism", "snap-through", "bifurcation", "note")  # kinds of events that messages repeat
 NEARLY_SOFT = 1e-9  # of the rods' stiffness: a motion that is resisted less is worth a note
+ROUGH = 1e-9  # of the largest force, unbalanced: worth a note
+UNBALANCED = 1e-6  # of the largest force: more is no equilibrium
 UNCHANGED = 1e-12  # of the load: a change of it that is round-off
 UNSTRESSED = 1e-9  # of the largest force: what holds the present state counts as nothing
 
@@ -167,6 +169,7 @@ class _Settling:
                 self._change(self._nothing, self.factor)
             self._change(target, factor)
             self._note_softness(factor)
+            self._check_balance(factor)
         except NoEquilibrium as end:
             status, message = end.status, str(end)
         return self._state(status, message)
@@ -211,6 +214,28 @@ class _Settling:
             largest = np.hypot(*motion.T).max()
             self.events.append(Event("note", factor, message, motion=motion / largest))
 
+    def _check_balance(self, factor: float) -> None:
+        """Report forces that rounding leaves unbalanced. Raises NoEquilibrium if they are many."""
+        residual = self._residual()
+        if residual <= ROUGH:
+            return
+        springs = self.structure.stiffness / self.structure.rest_length
+        message = (
+            f"Rounding leaves {residual:.1g} of the largest force unbalanced, because stiffnesses EA/L₀ from"
+            f" {springs.min():.3g} to {springs.max():.3g} kN/m act together. Make them less unequal."
+        )
+        if residual > UNBALANCED:
+            raise NoEquilibrium("limit reached", f"Beyond double precision: {message}")
+        self.events.append(Event("note", factor, message))
+
+    def _residual(self) -> float:
+        """The largest unbalanced force over the largest force so far."""
+        response = self.point.response
+        for values in (self.load, response.axial_force):
+            self.largest = max(self.largest, float(np.abs(values).max(initial=0.0)))
+        unbalanced = np.where(self.structure.fixed, 0.0, self.structure.internal(response) - self.load)
+        return float(np.abs(unbalanced).max(initial=0.0)) / self.largest if self.largest > 0.0 else 0.0
+
     def _check_bodies(self, target: Array, factor: float) -> None:
         """Report bodies that nothing holds along an axis. Raises NoEquilibrium if one is pulled along it."""
         for body in loose_bodies(self.structure, target):
@@ -224,9 +249,6 @@ class _Settling:
     def _state(self, status: str, message: str) -> StaticState:
         structure, response = self.structure, self.point.response
         unbalanced = structure.internal(response) - self.load
-        for values in (self.load, response.axial_force):
-            self.largest = max(self.largest, float(np.abs(values).max(initial=0.0)))
-        free = np.abs(np.where(structure.fixed, 0.0, unbalanced)).max(initial=0.0)
         told = [message] if message else [e.message for e in self.events if e.kind in TOLD]
         elastic = response.axial_force**2 * structure.rest_length / structure.stiffness
         state = StaticState(
@@ -238,7 +260,7 @@ class _Settling:
             length=response.length,
             yielding=structure.at_limit(response),
             reaction=np.where(structure.fixed, unbalanced, 0.0),
-            residual=float(free) / self.largest if self.largest > 0.0 else 0.0,
+            residual=self._residual(),
             elastic_energy=500.0 * float(elastic.sum()),
             dissipated_plastic=self.point.dissipated,
             status=status,

@@ -68,7 +68,10 @@ def _deflection(model: Model, structure: Structure, load: Array) -> Array:
         solution = solution + factor.solve(right - matrix @ solution)
     if float(right @ solution) < SOFT * float(solution @ (structure.weight * solution)):
         what = describe_motion(model, structure.spread(solution)[None])
-        message = f"Mechanism: the load moves {what}, which nothing resists. Add rods or supports there."
+        message = (
+            f"Mechanism: the load moves {what}, which nothing resists by more than {SOFT:g} of the rods'"
+            " stiffness there. Add rods or supports, or make stiffnesses less unequal."
+        )
         raise NoEquilibrium("mechanism", message)
     modes = soft_modes(matrix, structure.weight, factor, most=soft_count(matrix, structure.weight))
     return structure.spread(solution - modes @ (modes.T @ (structure.weight * solution)))
