@@ -42,6 +42,7 @@ class Tile(Handle):
     picture: Field[Any] = Field(
         title="picture", doc="The model to draw; None: not read yet.", default=None, dtype=object
     )
+    symbol: Field[str] = Field(title="symbol", doc="A sign in place of a picture.", default="", dtype=str)
     hidden: Field[bool] = Field(title="hidden", doc="Filtered out.", default=False, dtype=bool)
 
 

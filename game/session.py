@@ -92,6 +92,9 @@ class Spares(Protocol):
     def take_over(self, path: Path, desk: Desk) -> None:
         """What was left behind is unsaved work of this desk from now on."""
 
+    def discard(self) -> None:
+        """What a crash left behind is not wanted any more."""
+
 
 class Session:
     """A model with its run, its scenes and its undo log.

@@ -81,6 +81,12 @@ class SpareKeeper(System):
         desk.saved = -1
         self._written[desk] = -1
 
+    def discard(self) -> None:
+        """What a crash left behind is not wanted any more."""
+        for path in self._left:
+            path.unlink(missing_ok=True)
+        self._left = []
+
     # --- writing -------------------------------------------------------------------------------------
 
     def process(self, frame: Any) -> None:

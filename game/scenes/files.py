@@ -109,7 +109,14 @@ class FileScene(FormScene):
 
 
 def tile(
-    section: str, title: str, caption: str, file: str, source: Any, explanation: str = "", picture: Any = None
+    section: str,
+    title: str,
+    caption: str,
+    file: str,
+    source: Any,
+    explanation: str = "",
+    picture: Any = None,
+    symbol: str = "",
 ) -> dict[str, Any]:
     """The Fields of a tile."""
     return {
@@ -120,6 +127,7 @@ def tile(
         "source": source,
         "explanation": explanation,
         "picture": picture,
+        "symbol": symbol,
     }
 
 

@@ -17,6 +17,7 @@ WELCOME = "Welcome to Pinjoint. What would you like to begin with?"
 NEW = "New, empty model"
 EXAMPLES = "Examples"
 LEFT_BEHIND = "Unsaved work, recovered"
+DISCARD = "discard what was recovered"  # what a tile stands for that opens nothing
 # Of the examples, those to look at first; the others follow in alphabetical order.
 FIRST = ("isostatic", "hyperstatic", "pendulum", "collision_iii", "warren_bridge", "hyperstatic_yield", "tower")
 
@@ -33,11 +34,13 @@ class Load(FileScene):
     def __init__(self) -> None:
         super().__init__()
         self.welcome = False
+        self._asked = False  # whether what was recovered is to be discarded
 
     def make_form(self, session: Session) -> Form:
+        self._asked = False
         saved, examples = saved_tiles(), _examples()
         beside = saved[0] if saved else examples[0]
-        new = tile(beside["section"], NEW, "draw your own", "", None, "An empty plane to draw on.")
+        new = tile(beside["section"], NEW, "draw your own", "", None, "An empty plane to draw on.", symbol="+")
         tiles = [*_left_behind(session), new, *saved, *examples]
         form = self.new_form(WELCOME if self.welcome else "Load", "", tiles)
         form.boxes[0].note = "type to search, or click a picture"
@@ -49,13 +52,27 @@ class Load(FileScene):
 
     def choose(self, session: Session, tile: Tile) -> None:
         """Open what was clicked."""
-        self._open(session, tile.source)
+        self._take(session, tile)
+
+    def _take(self, session: Session, tile: Tile) -> None:
+        """Open what a tile stands for, or, asked twice, discard what was recovered."""
+        if tile.source is not DISCARD:
+            self._open(session, tile.source)
+        elif self._asked and session.spares is not None:
+            session.spares.discard()
+            self.form = self.make_form(session)
+        else:
+            self._asked = True
+            self.form.choose(tile)
+            self.say(
+                "What was recovered will be gone for ever. Choose this once more to discard it; Esc does not."
+            )
 
     def accept(self, session: Session) -> None:
         """Return: open the chosen tile, or the model whose name was typed."""
         name, chosen = self.box.text.strip(), self.form.chosen
         if chosen is not None:
-            self._open(session, chosen.source)
+            self._take(session, chosen)
         elif not name:
             self.say("Type a name, or choose a picture with the arrow keys.")
         elif (source := library.find(name)) is not None:
@@ -80,6 +97,7 @@ class Load(FileScene):
     def changed(self, session: Session) -> None:
         """Show the tiles whose titles or names contain every word that was typed."""
         super().changed(session)
+        self._asked = False
         words = self.box.text.lower().split()
         tiles = list(self.form.tiles)
         hidden = [not all(word in f"{tile.title} {tile.file}".lower() for word in words) for tile in tiles]
@@ -93,9 +111,11 @@ class Load(FileScene):
 def _left_behind(session: Session) -> list[dict[str, Any]]:
     """Unsaved work that a crash left behind."""
     files = session.spares.left() if session.spares is not None else []
-    return [
+    tiles = [
         tile(LEFT_BEHIND, spare_name(path) or "Untitled", library.written_age(path), "", path) for path in files
     ]
+    discard = tile(LEFT_BEHIND, "Discard", "what was recovered", "", DISCARD, symbol="×")
+    return [*tiles, discard] if tiles else []
 
 
 def _examples() -> list[dict[str, Any]]:

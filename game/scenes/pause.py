@@ -19,7 +19,10 @@ class Pause(Scene):
 
     def hint(self, session: Session) -> str:
         if session.model.particles.count == 0:
-            return "P new particle     L rod from one to another     D open a model     F1 all keys"
+            return (
+                "P new particle under the pointer     L rod from one to another     C support     F force"
+                "     D open a model     F1 all keys"
+            )
         if session.selected:
             return "Return properties     I its forces     Esc deselect     F1 keys"
         return "Space run     click select     I forces     wheel zoom     F1 keys"

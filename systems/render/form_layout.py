@@ -23,6 +23,7 @@ COLUMN_GAP = 14.0
 HEADING = 104.0  # points, where a low viewport has the box beside the heading
 NARROW = 150.0  # points, a box less wide does not share its row
 TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
+LOWEST = 0.65  # share of a picture's height that it keeps where one more row fits then
 
 Row = str | list[Box] | list[Tile]
 
@@ -198,8 +199,13 @@ def _height(row: Row, width: float, room: float, u: float) -> float:
         return SECTION * u
     if isinstance(row[0], Box):
         return (TITLE + BOX + BELOW) * u
-    most = room - (CAPTION + TILE_GAP + SECTION) * u
-    return min(_tile_width(width, u) * PROPORTION, max(most, 40.0 * u)) + (CAPTION + TILE_GAP) * u
+    below = (CAPTION + TILE_GAP) * u
+    high = _tile_width(width, u) * PROPORTION
+    room -= SECTION * u
+    if room < LOWEST * high + below:
+        return max(room - below, 40.0 * u) + below
+    two = room / 2.0 - below  # rather two lower rows than one
+    return (min(high, room - below) if two < LOWEST * high else min(high, two)) + below
 
 
 def _tile_width(width: float, u: float) -> float:

@@ -47,43 +47,60 @@ def draw_help(sheet: Drawn) -> list[Mark]:
 
 
 class _Card:
-    """The help at one size of type."""
+    """The help at one size of type: columns that are as wide as what stands in them."""
 
     def __init__(self, sheet: Drawn, keys: list[tuple[str, str]], points: float) -> None:
-        self.sheet, self.keys, self.u = sheet, [(written_key(key), title) for key, title in keys], sheet.unit
+        self.sheet, self.u, v = sheet, sheet.unit, sheet.viewport
         self.size = sheet.font(points)
-        self.step = 1.15 * line_height(self.size)
-        self.key_width = max(text_width(key, self.size, "semibold") for key, _ in self.keys) + 14.0 * self.u
-        self.title_width = max(text_width(title, self.size) for _, title in self.keys)
-        v, pad, gap = sheet.viewport, _PAD * self.u, _GAP * self.u
-        self.room = v.height - 2 * pad - 2.2 * self.step - 20.0 * self.u
-        self.rows = max(int(self.room / self.step), 1)
-        self.columns = math.ceil(len(self.keys) / self.rows)
-        self.rows = math.ceil(len(self.keys) / self.columns)
-        column = self.key_width + self.title_width
-        self.width = self.columns * column + (self.columns - 1) * gap + 2 * pad
-        self.height = self.rows * self.step + 1.9 * self.step + 2 * pad - 0.5 * self.step
-        self.fits = self.width <= v.width - 16.0 * self.u and self.height <= v.height
+        self.step = 1.1 * line_height(self.size)
+        self.pad = min(_PAD * self.u, 0.03 * v.width)
+        self.gap = min(_GAP * self.u, 0.03 * v.width)
+        self.head = 16.0 * self.u + 0.8 * self.step
+        lines = _joined(keys)
+        room = v.height - 2 * self.pad - self.head - 8.0 * self.u
+        columns = math.ceil(len(lines) / max(int(room / self.step), 1))
+        self.rows = math.ceil(len(lines) / columns)
+        self.columns = [lines[first : first + self.rows] for first in range(0, len(lines), self.rows)]
+        self.key_widths = [
+            max(text_width(key, self.size, "semibold") for key, _ in column) + 12.0 * self.u
+            for column in self.columns
+        ]
+        self.widths = [
+            keys_wide + max(text_width(title, self.size) for _, title in column)
+            for keys_wide, column in zip(self.key_widths, self.columns, strict=True)
+        ]
+        self.width = sum(self.widths) + (columns - 1) * self.gap + 2 * self.pad
+        self.height = self.rows * self.step + self.head + 2 * self.pad
+        self.fits = self.width <= v.width - 4.0 * self.u and self.height <= v.height
 
     def marks(self) -> list[Mark]:
         """The card, its heading and its lines."""
-        v, u, theme, pad = self.sheet.viewport, self.u, self.sheet.theme, _PAD * self.u
+        v, u, theme, pad = self.sheet.viewport, self.u, self.sheet.theme, self.pad
         width = min(self.width, v.width - 4.0 * u)
         left, top = v.left + (v.width - width) / 2, v.top + max((v.height - self.height) / 2, 2.0 * u)
         marks: list[Mark] = [
             Panel(left, top, width, self.height, 10.0 * u, theme.panel, theme.line),
-            Text("Keys", left + pad, top + pad + 4.0 * u, self.sheet.font(16.0), theme.text, "semibold"),
-            Text("F1 closes", left + width - pad, top + pad + 4.0 * u, self.size, theme.muted, anchor="right"),
+            Text("Keys", left + pad, top + pad + 6.0 * u, self.sheet.font(16.0), theme.text, "semibold"),
+            Text("F1 closes", left + width - pad, top + pad + 6.0 * u, self.size, theme.muted, anchor="right"),
         ]
-        pitch = (width - 2 * pad + _GAP * u) / self.columns
-        for index, (key, title) in enumerate(self.keys):
-            column, row = divmod(index, self.rows)
-            x = left + pad + column * pitch
-            y = top + pad + (row + 2.0) * self.step
-            title = shortened(title, pitch - _GAP * u - self.key_width, self.size)
-            marks.append(Text(key, x, y, self.size, theme.text, "semibold"))
-            marks.append(Text(title, x + self.key_width, y, self.size, theme.muted))
+        missing = (self.width - width) / len(self.columns)  # of room in every column, if it does not fit
+        x = left + pad
+        for column, keys_wide, wide in zip(self.columns, self.key_widths, self.widths, strict=True):
+            for row, (key, title) in enumerate(column):
+                y = top + pad + self.head + (row + 0.5) * self.step
+                shown = shortened(title, wide - keys_wide - missing, self.size)
+                marks.append(Text(key, x, y, self.size, theme.text, "semibold"))
+                marks.append(Text(shown, x + keys_wide, y, self.size, theme.muted))
+            x += wide - missing + self.gap
         return marks
+
+
+def _joined(keys: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Keys that do the same, in one line: ("Ctrl+Y, Ctrl+Shift+Z", "redo")."""
+    by_title: dict[str, list[str]] = {}
+    for key, title in keys:
+        by_title.setdefault(title, []).append(written_key(key))
+    return [(", ".join(names), title) for title, names in by_title.items()]
 
 
 def written_key(key: str) -> str:

@@ -344,20 +344,23 @@ def _empty(sheet: Sheet, bottom: float) -> list[Mark]:
     """A card in the middle that says how to begin."""
     v, u, theme = sheet.viewport, sheet.unit, sheet.theme
     title, size = sheet.font(20.0), sheet.font(13.0)
-    width = min(v.width - 2 * _EDGE * u, 400.0 * u)
-    lines = wrapped(sheet.view.status.hint, width - 48.0 * u, size) if sheet.view.status.hint else []
+    steps = [step.split(" ", 1) for step in sheet.view.status.hint.split("     ") if " " in step]
+    keys = max((text_width(key, size, "semibold") for key, _ in steps), default=0) + 12.0 * u
+    written = keys + max((text_width(rest, size) for _, rest in steps), default=0)
+    width = min(v.width - 2 * _EDGE * u, max(written + 64.0 * u, 280.0 * u))
     emblem = 68.0 * u if v.height >= _SMALL * u else 0.0
-    height = emblem + 56.0 * u + len(lines) * 1.1 * line_height(size)
+    height = emblem + 62.0 * u + len(steps) * 1.1 * line_height(size)
     middle, top = v.left + v.width / 2, v.top + (bottom - v.top - height) / 2
     marks: list[Mark] = [
         Panel(middle - width / 2, top, width, height, 12.0 * u, theme.background, theme.line),
         *(_emblem(sheet, middle, top + 24.0 * u) if emblem else []),
         Text("An empty model", middle, top + emblem + 26.0 * u, title, theme.text, "semibold", "centre"),
     ]
-    y = top + emblem + 56.0 * u
-    for number, line in enumerate(lines):
+    left, y = middle - written / 2, top + emblem + 58.0 * u
+    for number, (key, rest) in enumerate(steps):
         at = y + number * 1.1 * line_height(size)
-        marks.append(Text(line, middle, at, size, theme.muted, anchor="centre"))
+        marks.append(Text(key, left, at, size, theme.text, "semibold"))
+        marks.append(Text(rest, left + keys, at, size, theme.muted))
     return marks
 
 

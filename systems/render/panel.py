@@ -177,9 +177,9 @@ class _Writer:
         if tile.picture is not None:
             viewport = Viewport(round(card.left), round(card.top), round(card.width), round(card.height))
             marks += thumbnail(tile.picture, viewport, u, theme)
-        elif tile.source is None:
+        elif tile.symbol:
             middle = card.left + card.width / 2, card.top + card.height / 2
-            marks.append(Text("+", *middle, self.font(44.0), theme.muted, anchor="centre"))
+            marks.append(Text(tile.symbol, *middle, self.font(44.0), theme.muted, anchor="centre"))
         return [*marks, *self._legend(tile, place.left, card.top + height, place.width)]
 
     def _legend(self, tile: Tile, left: float, top: float, width: float) -> list[Mark]:

@@ -278,6 +278,26 @@ def test_what_was_left_behind_is_offered_first_and_opened(data: Path) -> None:
     assert list((data / "autosave").iterdir()) == []
 
 
+def test_what_was_left_behind_is_discarded_when_asked_twice(data: Path) -> None:
+    left = left_behind(data, 5.0)
+    keeper = SpareKeeper()
+    session = with_spares(keeper)
+    session.press("d")
+    scene = session.scenes.active
+    assert isinstance(scene, FileScene)
+    assert scene.form.tiles[1].title == "Discard"
+    for _ in range(2):
+        session.press("down" if scene.form.chosen is None else "right")
+    session.press("return")
+    assert "gone for ever" in scene.form.heading.message
+    assert left.exists()
+    session.press("return")
+    assert not left.exists()
+    assert scene.form.tiles[0].title == "New, empty model"
+    keeper.close(session.desks)
+    assert SpareKeeper().left() == []
+
+
 def test_what_was_not_opened_is_offered_again(data: Path) -> None:
     left = left_behind(data, 5.0)
     keeper = SpareKeeper()

@@ -488,8 +488,8 @@ def test_scale_bar_is_as_long_as_it_says() -> None:
 
 
 def test_an_empty_model_says_how_to_begin() -> None:
-    picture = picture_of(Model(), status=Status(state="paused", hint="Press P to place a particle."))
-    assert {"An empty model", "Press P to place a particle."} <= set(picture.texts)
+    picture = picture_of(Model(), status=Status(state="paused", hint="P new particle     L rod"))
+    assert {"An empty model", "P", "new particle", "L", "rod"} <= set(picture.texts)
 
 
 # --- parts -----------------------------------------------------------------------------------------
