@@ -8,7 +8,8 @@ from components.field import Role
 from components.load import CONSTANT, static_factor
 from components.model import Model
 from components.snapshot import Snapshot
-from systems.base import StopReason
+from game.catalogue import step_systems
+from systems.base import Law, StopReason
 
 if TYPE_CHECKING:
     from game.simulation import Simulation
@@ -87,12 +88,20 @@ class Beside:
         return self._remarks[1]
 
     def _is_comparable(self) -> bool:
-        """True if the run is that of a structure at rest under one load, at once or by one history."""
+        """True if the run is that of a structure under one load, at once or by one history, and nothing else."""
         beginning = self._beginning
         if beginning is None or not (self.undisturbed and self._model.rods.count and self.is_small):
             return False
+        if self._model.clock.collisions or not self._laws_are_known():
+            return False
         moved = (beginning.columns[f"particles.{name}"].any() for name in ("displacement", "velocity"))
         return not any(moved) and len(_histories(self._model)) == 1
+
+    def _laws_are_known(self) -> bool:
+        """True if statics knows all forces that act on the model."""
+        known = {system.name for system in step_systems()}
+        plan = self._simulation.schedule.step_plan(self._model)
+        return all(law.name in known or law.each == "loads" for law in plan if isinstance(law, Law))
 
 
 def _histories(model: Model) -> set[str]:

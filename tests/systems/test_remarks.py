@@ -6,9 +6,11 @@ import json
 from typing import Any
 
 import pytest
+from numba import njit
 
 from game import Session, models
 from game.cli import main
+from systems.base import Law
 from tests.reference.models import von_mises_truss
 
 
@@ -96,3 +98,20 @@ def test_restarting_forgets_that_the_model_was_edited_during_the_run() -> None:
     session.restart()
     assert session.run(until="rest") == "at rest"
     assert "static force 8.5 kN < strength 10 kN" in session.message
+
+
+def test_nothing_is_said_where_a_law_acts_that_statics_does_not_know() -> None:
+    @njit  # type: ignore[untyped-decorator,unused-ignore]
+    def more(particles_mass):  # type: ignore[no-untyped-def]
+        return 0.0, -0.3 * particles_mass
+
+    class More(Law):
+        name = "test.more"
+        each = "particles"
+        kernel = more
+        reads = ("particles.mass",)
+
+    session = Session.open("overshoot_yield", systems=[More()])
+    assert session.run(until="rest") == "at rest"
+    assert session.rods["AB"].plastic_strain != 0.0
+    assert session.remarks == ()
