@@ -9,9 +9,9 @@ from components.field import Vector
 
 BUTTON = 30.0, 26.0  # points, width and height
 EDGE = 4.0  # points around all buttons
-GAP = 8.0  # points between groups
+GAP = 6.0  # points between groups
 LEAST_WIDTH = 420.0  # points: a window less wide does without
-MOST_COLUMNS = 2
+MOST_COLUMNS = 3
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Toolbar:
     def strip(self, window: Viewport, unit: float) -> Viewport:
         """The part of a window that it takes, with so many pixels per point; of no width where it is hidden.
 
-        It has a second column where one is too high, and is hidden where two are.
+        It has more columns where fewer are too high, and is hidden where MOST_COLUMNS are.
         """
         columns = self._columns(window, unit)
         width = round((columns * BUTTON[0] + 2 * EDGE) * unit) if columns else 0

@@ -430,6 +430,11 @@ class Session:
         """The selected elements, in order of creation."""
         return self.model.tagged(Selected)
 
+    @property
+    def has_selected(self) -> bool:
+        """True if anything is selected; quicker than to ask for all of it."""
+        return any(len(self.model.tagged_rows(Selected, table)) for table in self.model.tables)
+
     def select(self, *handles: Handle) -> None:
         """Select exactly these elements; none: deselect."""
         self.model.tag_only(handles, Selected)

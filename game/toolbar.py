@@ -47,6 +47,10 @@ def _shows_diagrams(session: Session) -> bool:
     return session.view.all_diagrams or bool(session.model.tagged(DiagramShown))
 
 
+def _has_selected(session: Session) -> bool:
+    return session.has_selected
+
+
 def _has_particles(session: Session) -> bool:
     return session.model.particles.count > 0
 
@@ -61,12 +65,17 @@ _PRESSED: dict[str, Condition] = {
     "toggle run": lambda session: session.scene == "simulation",
     "toggle diagrams": _shows_diagrams,
     "toggle diagrams of sets": _shows_diagrams,
+    "toggle theory": lambda session: session.view.theory,
+    "toggle energy": lambda session: session.view.energy,
     "toggle help": lambda session: session.view.help,
 }
 # What must be there for an action to do something.
 _NEEDS: dict[str, Condition] = {
     "undo": lambda session: session.can_undo,
     "redo": lambda session: session.can_redo,
+    "copy": _has_selected,
+    "duplicate": _has_selected,
+    "delete": _has_selected,
     "step back": lambda session: session.timeline.first < session.model.clock.steps,
     "restart": lambda session: not session.at_beginning,
     "settle": _has_particles,

@@ -135,10 +135,10 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("toggle run", "restart", "step back", "step", "slower", "faster", "settle"),
     ("next part", "release x", "release y", "release another"),
     ("toggle diagrams of sets", "back"),
-    ("undo", "redo"),
+    ("undo", "redo", "copy", "paste", "duplicate", "delete"),
     ("place", "rod", "support", "force", "velocity"),
-    ("toggle diagrams", "fit", "new grid", "next grid"),
-    ("properties", "force method", "load", "save again"),
+    ("toggle diagrams", "toggle theory", "toggle energy", "fit", "new grid", "next grid"),
+    ("properties", "force method", "new", "load", "save again"),
     ("next theme", "toggle help"),
 )
 
