@@ -9,12 +9,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pygame
+from numpy.typing import NDArray
 
 from components.camera import Camera, Viewport
 from components.model import Model
 from components.toolbar import Toolbar
-from components.view import View
+from components.view import MARGIN, View, drawn_positions
 from game.desk import Desk, ModelFile
 from game.preferences import DEFAULT_THEME, preferred_theme, remember_theme
 from game.raster_program import load_raster
@@ -33,6 +35,9 @@ from systems.render.theme import load_theme
 FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points
 SMALLEST_SIZE = (320, 240)
+
+Points = NDArray[np.float64]
+Colours = NDArray[np.uint8]
 
 
 class NoDisplay(RuntimeError):
@@ -200,10 +205,23 @@ def _unused(path: Path) -> Path:
 
 def render_png(session: Session, path: str, size: tuple[int, int], theme: str = "light") -> None:
     """Draw a session to a PNG file, without a display. Raises OSError if it cannot be written."""
-    surface = pygame.Surface(size, depth=32)
-    session.update_view()
-    view = replace(session.view, camera=Camera(viewport=Viewport(0, 0, *size)), toolbar=Toolbar())
-    view.fit(session.model)
-    Canvas(load_raster).draw(surface, compose(session.model, view, load_theme(theme)))
+    surface = _drawn(session, size, theme, drawn_positions(session.model))
     with open(path, "wb") as file:
         pygame.image.save(surface, file, path if path.lower().endswith((".png", ".jpg", ".bmp")) else ".png")
+
+
+def picture(session: Session, size: tuple[int, int], theme: str, around: Points) -> Colours:
+    """A session as colours, shape (height, width, 3), showing all these points (n, 2) of the model."""
+    surface = _drawn(session, size, theme, around)
+    return np.ascontiguousarray(pygame.surfarray.array3d(surface).transpose(1, 0, 2))
+
+
+def _drawn(session: Session, size: tuple[int, int], theme: str, around: Points) -> pygame.Surface:
+    surface = pygame.Surface(size, depth=32)
+    session.update_view()
+    status = replace(session.view.status, hint="")  # nobody presses keys in a picture
+    camera = Camera(viewport=Viewport(0, 0, *size))
+    view = replace(session.view, camera=camera, toolbar=Toolbar(), heading="", status=status)
+    view.camera.fit(around, MARGIN * view.pixel_ratio, view.canvas)
+    Canvas(load_raster).draw(surface, compose(session.model, view, load_theme(theme)))
+    return surface

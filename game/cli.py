@@ -408,11 +408,14 @@ def _shown(loaded: script.Script) -> Session:
 
 
 def _render(words: Sequence[str]) -> int:
-    parser = Parser(prog="pinjoint render", description="Draw a model to a PNG file, without a display.")
+    parser = Parser(
+        prog="pinjoint render",
+        description="Draw a model, or its run as a GIF, without a display.",
+    )
     _add_model(parser)
-    parser.add_argument("--output", required=True, metavar="FILE.png")
+    parser.add_argument("--output", required=True, metavar="FILE", help="a .png, or a .gif that shows the run")
     parser.add_argument("--size", default="1280x800", metavar="WIDTHxHEIGHT", help="pixels")
-    parser.add_argument("--until-rest", action="store_true", help="run until at rest first")
+    parser.add_argument("--until-rest", action="store_true", help="run until at rest first (a GIF's default)")
     parser.add_argument("--at", type=_positive, metavar="T", help="run to this time (s) first")
     parser.add_argument("--diagrams", action="store_true", help="show all force diagrams")
     parser.add_argument("--theme", choices=theme_names(), default="light", help="colours")
@@ -420,19 +423,34 @@ def _render(words: Sequence[str]) -> int:
     options = parser.parse_args(words)
     width, height = _size(options.size)
     session = _session(options)
+    session.view.all_diagrams = options.diagrams
+    try:
+        if options.output.lower().endswith(".gif"):
+            status = _animate(session, options, (width, height))
+        else:
+            status = _draw(session, options, (width, height))
+    except OSError as error:
+        raise Refusal(f"{options.output} cannot be written: {error}. Choose another --output.") from None
+    return ANSWERED if status in FOUND else NOT_ANSWERED
+
+
+def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:
+    from game.app import render_png
+
     status = "time reached"
     if options.until_rest:
         status = session.run(until="rest", limit=options.limit)
     elif options.at is not None:
         status = session.run(time=options.at)
-    session.view.all_diagrams = options.diagrams
-    from game.app import render_png
+    render_png(session, options.output, size, options.theme)
+    return status
 
-    try:
-        render_png(session, options.output, (width, height), options.theme)
-    except OSError as error:
-        raise Refusal(f"{options.output} cannot be written: {error}. Choose another --output.") from None
-    return ANSWERED if status in FOUND else NOT_ANSWERED
+
+def _animate(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:
+    from game.animation import render_gif
+
+    until = None if options.until_rest or options.at is None else session.time + options.at
+    return render_gif(session, options.output, size, options.theme, until=until, limit=options.limit)
 
 
 def _size(text: str) -> tuple[int, int]:

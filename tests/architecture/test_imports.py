@@ -18,7 +18,7 @@ LAYERS = ("components", "systems", "game", "tests")  # each may import itself an
 RESOURCES = "assets"
 WINDOW = ("systems/render/pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
 COMPILED = ("systems/kernels.py", "systems/*/kernels.py", "systems/collision/*.py", "game/program*.py")
-MODULES_OF = {"pygame-ce": "pygame"}  # distributions whose module has another name
+MODULES_OF = {"pygame-ce": "pygame", "pillow": "PIL"}  # distributions whose module has another name
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
