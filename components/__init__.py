@@ -25,7 +25,7 @@ from components.settings import Settings
 from components.snapshot import Snapshot
 from components.table import Table
 from components.tags import Selected
-from components.view import Readout
+from components.view import Plot, Readout
 from components.world import Derivation, Handle, World
 
 __all__ = [
@@ -46,6 +46,7 @@ __all__ = [
     "Load",
     "Model",
     "Particle",
+    "Plot",
     "Readout",
     "Rod",
     "Role",

@@ -59,11 +59,25 @@ class Page:
 
 
 @dataclass(frozen=True)
+class Plot:
+    """Curves over common axes, whose titles name quantity and unit.
+
+    curves: (name, x (n,), y (n,)) of each; what is not finite parts a curve. revision: grows when they change.
+    """
+
+    x_title: str
+    y_title: str
+    curves: tuple[tuple[str, NDArray[np.float64], NDArray[np.float64]], ...] = field(compare=False, repr=False)
+    revision: int = 0
+
+
+@dataclass(frozen=True)
 class Readout:
-    """A small panel beside the model: a title and rows of (what, value)."""
+    """A small panel beside the model: a title, rows of (what, value), and perhaps a plot."""
 
     title: str
     rows: tuple[tuple[str, str], ...] = ()
+    plot: Plot | None = None
 
 
 @dataclass

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from components.camera import Camera, Viewport
 from components.model import Model
 from components.toolbar import Toolbar
-from components.view import MARGIN, View, drawn_positions
+from components.view import MARGIN, Plot, View, drawn_positions
 from game.desk import Desk, ModelFile
 from game.preferences import DEFAULT_THEME, preferred_theme, remember_theme
 from game.raster_program import load_raster
@@ -27,7 +27,9 @@ from game.spares import SpareKeeper
 from systems.base import System
 from systems.edit.hover import Hover
 from systems.input.pygame_input import PygameInput
+from systems.render.marks import Picture
 from systems.render.picture import compose
+from systems.render.plots import draw_plot
 from systems.render.pygame_canvas import Canvas
 from systems.render.pygame_render import PygameRender
 from systems.render.theme import load_theme
@@ -225,3 +227,13 @@ def _drawn(session: Session, size: tuple[int, int], theme: str, around: Points) 
     view.camera.fit(around, MARGIN * view.pixel_ratio, view.canvas)
     Canvas(load_raster).draw(surface, compose(session.model, view, load_theme(theme)))
     return surface
+
+
+def plot_png(plot: Plot, path: Path, theme: str = "light", size: tuple[int, int] = (900, 560)) -> None:
+    """Draw a plot to a PNG file, without a display. Raises OSError if it cannot be written."""
+    surface, colours, unit = pygame.Surface(size, depth=32), load_theme(theme), 1.5
+    box = 16.0 * unit, 8.0 * unit, size[0] - 32.0 * unit, size[1] - 16.0 * unit
+    marks = draw_plot(plot, box, colours, unit, None)
+    Canvas(load_raster).draw(surface, Picture(Viewport(0, 0, *size), colours.background, marks))
+    with open(path, "wb") as file:
+        pygame.image.save(surface, file, ".png")

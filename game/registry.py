@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -13,6 +13,5 @@ if TYPE_CHECKING:
 
 SYSTEMS: list[Callable[[], System]] = []  # frame systems, laws and commits; made anew for every session
 SCENES: list[Callable[[], Scene]] = []  # made anew for every session
-PANELS: list[Callable[[Session], Readout | None]] = []  # what stands beside the model, if anything now
-
+PANELS: list[Callable[[Session], Sequence[Readout]]] = []  # what stands beside the model now
 COMMANDS: dict[str, Callable[[list[str]], int]] = {}  # of the command line, Pinjoint's own (game/cli.py) too

@@ -636,8 +636,7 @@ class Session:
         view.heading = scene.heading
         self._offer_tools()
         view.keys = help_lines(scene.name) if view.help else []
-        added = (panel(self) for panel in PANELS)
-        view.readouts = (*own_readouts(self), *(readout for readout in added if readout is not None))
+        view.readouts = (*own_readouts(self), *(readout for panel in PANELS for readout in panel(self)))
         view.status = Status(
             time=self.time,
             speed=self.clock.shown_pace if self.busy else 0.0,

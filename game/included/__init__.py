@@ -1,6 +1,7 @@
 """What comes with Pinjoint but is written as mods are: only through what `plugin(app)` can register."""
 
-from game.included import histories
+from game.included import histories, probes
 from game.mods import include
 
 include(histories, "Loads that vary: sine, pulse, table, and base acceleration from a record")
+include(probes, "Plots of any quantity while time passes (key O), CSV and PNG")

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from game.session import Session
 
 T = TypeVar("T")
-Panel = Callable[["Session"], Readout | None]
+Panel = Callable[["Session"], Readout | Sequence[Readout] | None]
 
 
 class App:
@@ -161,8 +161,9 @@ class App:
         self._add(BELOW if below else ABOVE, drawn)
 
     def panel(self, read: Panel) -> None:
-        """Show a small panel beside the model: `read(session)` returns its Readout, or None for none now."""
-        self._add(registry.PANELS, lambda session: self._mod.call("its panel", _checked(read), session))
+        """Show small panels beside the model: `read(session)` returns a Readout, several, or None for none now."""
+        checked = _readouts(read)
+        self._add(registry.PANELS, lambda session: self._mod.call("its panel", checked, session, otherwise=()))
 
     # --- all or nothing ------------------------------------------------------------------------------------
 
@@ -200,14 +201,15 @@ def _as_list(draw: Layer) -> Callable[[Any], list[Any]]:
     return lambda sheet: list(draw(sheet))
 
 
-def _checked(read: Panel) -> Panel:
-    def checked(session: Session) -> Readout | None:
+def _readouts(read: Panel) -> Callable[[Session], Sequence[Readout]]:
+    def readouts(session: Session) -> Sequence[Readout]:
         made = read(session)
-        if made is not None and not isinstance(made, Readout):
+        several = () if made is None else [made] if isinstance(made, Readout) else made
+        if isinstance(several, str) or not all(isinstance(readout, Readout) for readout in several):
             raise TypeError(f"{getattr(read, '__name__', 'a panel')} returned {made!r}, not a Readout or None")
-        return made
+        return several
 
-    return checked
+    return readouts
 
 
 def check_plugin(plugin: object) -> Callable[[App], object]:

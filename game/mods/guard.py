@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from components.field import FieldError
 from components.load import History, HistoryKind
 from components.snapshot import Snapshot
-from game.mods.mod import Mod
+from game.mods.mod import INCLUDED, Mod
 from game.mods.watchdog import interrupted_after
 from game.scenes import Scene
 from systems.base import StepSystem, System
@@ -39,11 +39,10 @@ def guarded_system(mod: Mod, system: System) -> System:
         before = Snapshot.take(model, *tables & model.tables.keys()) if tables else None
         try:
             with model.transaction(system.name):
-                try:
-                    with interrupted_after(PATIENCE, lambda: not model.changing):
-                        process(frame)
-                finally:
-                    model.check_entities()
+                if mod.source == INCLUDED:
+                    process(frame)
+                else:
+                    _watched(process, frame, model)
         except Exception as error:  # whatever a stranger's code raises
             if before is not None:
                 before.restore(model)
@@ -57,6 +56,15 @@ def guarded_system(mod: Mod, system: System) -> System:
         asked = f"the question for the arrays of '{system.name}'"
         vars(system)["arrays"] = lambda model: mod.call(asked, arrays, model, otherwise={})
     return system
+
+
+def _watched(process: Callable[[Any], None], frame: Any, model: Model) -> None:
+    """Interrupt it if it takes long, and put back what it deleted past the tables."""
+    try:
+        with interrupted_after(PATIENCE, lambda: not model.changing):
+            process(frame)
+    finally:
+        model.check_entities()
 
 
 def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:

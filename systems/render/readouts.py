@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from components.view import Readout
 from systems.render.marks import Mark, Panel, Text
+from systems.render.plots import draw_plot
 from systems.render.sheet import Sheet
 from systems.render.theme import faded
 from systems.render.typography import line_height, shortened, text_width
 
 _EDGE, _PAD, _GAP = 10.0, 9.0, 16.0  # points: to the edge, inside the panel, between name and value
 _WIDEST = 260.0  # points
+_PLOT = (280.0, 150.0)  # points, width and height of a plot with its axes
 
 
 def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
@@ -20,6 +22,7 @@ def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     top, bottom = room[0] + _EDGE * sheet.unit, room[1] - _EDGE * sheet.unit
     for readout in sheet.view.readouts:
         height = (len(readout.rows) + 1) * line_height(sheet.font(12.0)) + 2 * _PAD * sheet.unit
+        height += _PLOT[1] * sheet.unit if readout.plot is not None else 0.0
         if top + height > bottom:
             break
         marks += _panel(sheet, readout, top, height)
@@ -33,6 +36,8 @@ def _panel(sheet: Sheet, readout: Readout, top: float, height: float) -> list[Ma
     values = max((text_width(value, size, "semibold") for _, value in readout.rows), default=0.0)
     title = text_width(readout.title, size, "semibold")
     width = min(max(names + _GAP * u + values, title), _WIDEST * u) + 2 * _PAD * u
+    if readout.plot is not None:
+        width = max(width, _PLOT[0] * u + 2 * _PAD * u)
     right = sheet.viewport.left + sheet.viewport.width - _EDGE * u
     left, y = right - width, top + _PAD * u + line_height(size) / 2
     sheet.occupancy.block(left, top, width, height)
@@ -47,4 +52,7 @@ def _panel(sheet: Sheet, readout: Readout, top: float, height: float) -> list[Ma
         taken = text_width(value, size, "semibold") + _GAP * u
         marks.append(Text(shortened(name, inner[1] - inner[0] - taken, size), inner[0], y, size, theme.muted))
         marks.append(Text(value, inner[1], y, size, theme.text, "semibold", "right"))
+    if readout.plot is not None:
+        box = (inner[0], top + height - (_PLOT[1] + _PAD) * u, inner[1] - inner[0], _PLOT[1] * u)
+        marks += draw_plot(readout.plot, box, theme, u, sheet.view.pointer)
     return marks

@@ -1,0 +1,260 @@
+"""Probes: what is read while time passes, drawn live as plots and written as CSV and PNG."""
+
+from __future__ import annotations
+
+import csv
+import weakref
+from array import array
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from components import Model, Particle, Plot, Readout, Rod, Vector
+from game.quantities import TIME, Quantity, quantity
+from systems.base import Phase, System
+
+if TYPE_CHECKING:
+    from game.mods import App
+    from game.session import Session
+
+MOST = 20_000  # samples; beyond, every second one is dropped
+FEW = 3  # plots at a time
+ENERGIES = ("energy.kinetic", "energy.elastic", "energy.dissipated_damping", "energy.dissipated_plastic")
+OF_ROD = (("axial_force", TIME), ("axial_force", "strain"))
+OF_PARTICLE = (
+    ("displacement.x", TIME),
+    ("displacement.y", TIME),
+    ("velocity.x", "displacement.x"),
+    ("velocity.y", "displacement.y"),
+)
+
+
+@dataclass
+class Probe:
+    """Quantities read against another; `samples` holds time, that one and each of them, in turn."""
+
+    against: Quantity
+    read: tuple[Quantity, ...]
+    samples: array[float] = field(default_factory=lambda: array("d"))
+    revision: int = 0
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What it reads."""
+        return (self.against.path, *(quantity.path for quantity in self.read))
+
+    @property
+    def table(self) -> np.ndarray[Any, np.dtype[np.float64]]:
+        """The samples, shape (k, 2 + quantities): time (s), what they are read against, and each of them."""
+        return np.array(self.samples).reshape(-1, 2 + len(self.read))
+
+    @property
+    def time(self) -> float | None:
+        """When it was read last (s)."""
+        return self.samples[-2 - len(self.read)] if self.samples else None
+
+    def sample(self, session: Session) -> None:
+        """Read once; what lies at this time or later (time was taken back) is dropped."""
+        width, time = 2 + len(self.read), session.time
+        while self.samples and self.samples[-width] >= time:
+            del self.samples[-width:]
+        self.samples.extend([time, self.against.read(session), *(q.read(session) for q in self.read)])
+        if len(self.samples) > MOST * width:
+            self.samples = array("d", self.table[::2].ravel())
+        self.revision += 1
+
+    def plot(self, span: float) -> Plot:
+        """As a plot of the last part of the time, `span` of all."""
+        table = self.table
+        if len(table):
+            begin = table[-1, 0] - span * (table[-1, 0] - table[0, 0])
+            table = table[table[:, 0] >= begin]
+        curves = tuple((_short(q), table[:, 1], table[:, 2 + index]) for index, q in enumerate(self.read))
+        units = ", ".join(dict.fromkeys(q.unit for q in self.read))
+        title = self.read[0].title if len(self.read) == 1 else units
+        return Plot(self.against.title, title, curves, hash((self.revision, span)))
+
+
+def _short(read: Quantity) -> str:
+    """A name for the legend of a plot."""
+    return read.path.partition(".")[2].replace("dissipated_", "").replace(".", " ").replace("_", " ")
+
+
+class Probes:
+    """The probes of one session. span: the share of the time that is shown."""
+
+    def __init__(self) -> None:
+        self.all: list[Probe] = []
+        self.span = 1.0
+        self._model: weakref.ref[Model] | None = None
+
+    def add(self, session: Session, paths: Iterable[str], against: str = TIME) -> Probe:
+        """Read these quantities from now on. Raises QuantityError. Of too many, the oldest goes."""
+        model = session.model
+        probe = Probe(quantity(model, against), tuple(quantity(model, path) for path in paths))
+        self._model = weakref.ref(model)
+        self.all = [*self.all, probe][-FEW:]
+        return probe
+
+    def sample(self, session: Session) -> None:
+        """Read all of them, if time has passed since."""
+        if self._model is None or self._model() is not session.model:
+            self.all = []
+        behind = [probe for probe in self.all if probe.time != session.time]
+        if behind and session.simulation.ready:
+            session.simulation.observe()
+            for probe in behind:
+                probe.sample(session)
+
+
+_probes: weakref.WeakKeyDictionary[Session, Probes] = weakref.WeakKeyDictionary()
+
+
+def probes_of(session: Session) -> Probes:
+    """The probes of a session."""
+    return _probes.setdefault(session, Probes())
+
+
+class Sampling(System):
+    """Reads the probes once a frame."""
+
+    name = "probes.sampling"
+    phase = Phase.EVENTS
+    scenes = ("simulation", "pause")
+
+    def process(self, frame: Any) -> None:
+        probes_of(frame.session).sample(frame.session)
+
+
+def choices(session: Session) -> list[tuple[tuple[str, ...], str]]:
+    """(what is read, against what) of the plots that suit what is selected; the energies if nothing is."""
+    found: list[tuple[tuple[str, ...], str]] = []
+    for handle in session.selected[-1:]:
+        pairs = OF_ROD if isinstance(handle, Rod) else OF_PARTICLE if isinstance(handle, Particle) else ()
+        start = f"{handle.table}.{getattr(handle, 'name', '')}."
+        found = [((start + y,), x if x == TIME else start + x) for y, x in pairs]
+    return found or [(ENERGIES, TIME)]
+
+
+def plot_next(session: Session, pixel: Vector) -> None:
+    """Plot the first quantity of what is selected, or the next; after the last, none of it."""
+    probes = probes_of(session)
+    offered = choices(session)
+    keys = [(against, *paths) for paths, against in offered]
+    shown = [keys.index(probe.key) for probe in probes.all if probe.key in keys]
+    probes.all = [probe for probe in probes.all if probe.key not in keys]
+    following = shown[-1] + 1 if shown else 0
+    if following == len(offered):
+        session.notice = "No plot of it any more."
+        return
+    paths, against = offered[following]
+    probe = probes.add(session, paths, against)
+    probes.sample(session)
+    title = probe.read[0].title if len(paths) == 1 else "energies"
+    session.notice = f"Plot: {title} against {probe.against.title}; O: the next."
+
+
+def zoom(factor: float, session: Session) -> None:
+    """Show a shorter or longer part of the time."""
+    probes = probes_of(session)
+    probes.span = min(max(probes.span * factor, 1.0 / 1024.0), 1.0)
+    session.notice = f"Plots: the last {100.0 * probes.span:.3g} % of the time."
+
+
+def save(session: Session, pixel: Vector) -> None:
+    """Write every plot as CSV and PNG into the working folder."""
+    paths = [Path.cwd() / f"pinjoint-plot-{number}.csv" for number, _ in enumerate(probes_of(session).all, 1)]
+    for probe, path in zip(probes_of(session).all, paths, strict=True):
+        write_csv(probe, path)
+        write_png(probe, path.with_suffix(".png"), session.view.theme)
+    names = ", ".join(path.stem for path in paths)
+    session.notice = f"Saved as CSV and PNG: {names}" if paths else "There is no plot to save; O makes one."
+
+
+def write_csv(probe: Probe, path: Path) -> None:
+    """One sample a line: the time and what was read, in the units of the headings."""
+    against = [] if probe.against.path == TIME else [1]
+    heads = ["time (s)", *([probe.against.title] if against else []), *(read.title for read in probe.read)]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(heads)
+        writer.writerows(probe.table[:, [0, *against, *range(2, 2 + len(probe.read))]].tolist())
+
+
+def write_png(probe: Probe, path: Path, theme: str = "light") -> None:
+    """The whole plot as a picture."""
+    from game.app import plot_png  # pygame is there when it is needed
+
+    plot_png(probe.plot(1.0), path, theme)
+
+
+def panels(session: Session) -> Sequence[Readout]:
+    """Each probe as a panel with its plot."""
+    probes = probes_of(session)
+    return [Readout(_heading(probe), (), probe.plot(probes.span)) for probe in probes.all]
+
+
+def _heading(probe: Probe) -> str:
+    energies = all(read.path.startswith("energy.") for read in probe.read)
+    return "Energies" if energies else ", ".join(map(_short, probe.read))
+
+
+def run(words: list[str]) -> int:
+    """`pinjoint plot MODEL --of QUANTITY --until T --output FILE`."""
+    import argparse
+    import sys
+
+    from game.quantities import QuantityError
+    from game.session import Session
+
+    parser = argparse.ArgumentParser(
+        prog="pinjoint plot", description="Run a model and write quantities against time or another."
+    )
+    parser.add_argument("model", help="a model file, or the name of a bundled model")
+    parser.add_argument(
+        "--of", action="append", required=True, metavar="PATH", help="such as rods.AB.axial_force"
+    )
+    parser.add_argument("--against", default=TIME, metavar="PATH", help="default: time")
+    parser.add_argument("--until", type=float, required=True, metavar="T", help="simulated time (s)")
+    parser.add_argument("--samples", type=int, default=500, metavar="N", help="at least; default 500")
+    parser.add_argument("--output", type=Path, required=True, metavar="FILE", help=".csv or .png")
+    options = parser.parse_args(words)
+    session = Session.open(options.model)
+    try:
+        probe = probes_of(session).add(session, options.of, options.against)
+        record(session, probe, options.until, max(options.samples, 2))
+        (write_png if options.output.suffix == ".png" else write_csv)(probe, options.output)
+    except (QuantityError, OSError) as error:
+        print(f"pinjoint: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def record(session: Session, probe: Probe, until: float, samples: int) -> None:
+    """Run to a time (s), reading after the last full step before evenly spaced times. Ends early at rest."""
+    simulation = session.simulation
+    simulation.advance(0)
+    for number in range(samples):
+        simulation.advance(simulation.full_steps_to(until * number / (samples - 1)))
+        simulation.observe()
+        probe.sample(session)
+        if simulation.halted:
+            return
+
+
+def plugin(app: App) -> None:
+    """Register the system, its keys, the panels and the command."""
+    app.system(Sampling)
+    app.panel(panels)
+    app.command("plot", run)
+    live = ("simulation", "pause")
+    app.action("probes.plot", key="o", scenes=live, title="plot the selected element: next quantity")(plot_next)
+    app.action("probes.save", key="ctrl+e", scenes=live, title="save the plots as CSV and PNG")(save)
+    for name, key, factor in (("longer", "[", 2.0), ("shorter", "]", 0.5)):
+        title = f"plots: a {name} part of the time"
+        app.action(f"probes.{name}", key=key, scenes=live, title=title, while_drawing=True)(
+            lambda session, pixel, factor=factor: zoom(factor, session)  # type: ignore[misc]
+        )
