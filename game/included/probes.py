@@ -251,10 +251,10 @@ def plugin(app: App) -> None:
     app.panel(panels)
     app.command("plot", run)
     live = ("simulation", "pause")
-    app.action("probes.plot", key="o", scenes=live, title="plot the selected element: next quantity")(plot_next)
-    app.action("probes.save", key="ctrl+e", scenes=live, title="save the plots as CSV and PNG")(save)
+    app.action("probes.plot", key="o", scenes=live, title="plot of the selection")(plot_next)
+    app.action("probes.save", key="ctrl+e", scenes=live, title="plots as CSV and PNG")(save)
     for name, key, factor in (("longer", "[", 2.0), ("shorter", "]", 0.5)):
-        title = f"plots: a {name} part of the time"
+        title = f"{name} plots"
         app.action(f"probes.{name}", key=key, scenes=live, title=title, while_drawing=True)(
             lambda session, pixel, factor=factor: zoom(factor, session)  # type: ignore[misc]
         )
