@@ -24,6 +24,8 @@ class Live:
         if simulation.halted:
             return
         simulation.advance(0)
+        if simulation.halted:  # it cannot be computed
+            return
         self._find_pace()
         due = self.clock.steps(elapsed, simulation.model.clock.step_size)
         before = simulation.compute_seconds

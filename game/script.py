@@ -212,7 +212,10 @@ def read(session: Session, path: str) -> Any:
 
 
 def _of_force_method(session: Session, quantity: str) -> Any:
-    """A quantity of the force method's guide: part, unknown, delta_real, force, … of the last unknown."""
+    """A quantity of the force method: part, unknown, force, delta_real, … of the last unknown; real.AC, base.AC.
+
+    superposed.AC is set 2 + set 3, which is to equal real.AC, set 1.
+    """
     from game import force_method_words  # which scipy comes with
 
     guide = getattr(session.scenes.active, "guide", None)
@@ -224,6 +227,9 @@ def _of_force_method(session: Session, quantity: str) -> Any:
         return guide.part
     if quantity == "message":
         return force_method_words.message(guide)
+    what, _, rod = quantity.partition(".")
+    if guide.solution is not None and rod:  # a row of the final table
+        return float(getattr(guide.solution, what).axial_force[guide.model.rods[rod].row])
     if guide.solution is None:
         raise LookupError("nothing is released yet; pick an unknown in part 2 first.")
     if quantity == "exact_force":

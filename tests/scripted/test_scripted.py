@@ -12,13 +12,15 @@ import pytest
 from components.field import Role
 from game import Session
 from game.cli import main
+from game.library import DATA_VARIABLE
 from game.script import Recorder, Script, ScriptError
 
 SCRIPTS = sorted(Path(__file__).parent.glob("*.jsonl"))
 
 
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.stem)
-def test_session(path: Path) -> None:
+def test_session(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(DATA_VARIABLE, str(tmp_path))
     script = Script(path)
     assert [str(failure) for failure in script.play(script.open())] == []
 

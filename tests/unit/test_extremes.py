@@ -31,6 +31,16 @@ def test_a_number_beyond_computing_is_named_and_the_model_can_still_be_saved(tmp
     assert session.run(steps=5) == "time reached"
 
 
+def test_a_window_says_so_too() -> None:
+    session = Session.open("isostatic")
+    session.environment.acceleration = (1e200, 0.0)
+    session.press("space")
+    for _ in range(3):
+        session.frame(1 / 60)
+    assert session.time == 0.0
+    assert "too large to compute with" in session.view.status.problem
+
+
 def test_masses_and_distances_can_be_too_small() -> None:
     session = Session.open("isostatic")
     session.particles["B"].mass = 1e-300
