@@ -25,23 +25,18 @@ does one thing:
 from __future__ import annotations
 
 import json
-import math
-import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
 from components.field import Vector
+from game.expectation import check
 from game.overrides import apply_override
 from game.session import Session
 
 HEADER = {"format": "pinjoint session", "version": 1}
 EMPTY = {"format": "pinjoint model", "version": 1}
-
-_EXPECTATION = re.compile(
-    r"^(?P<path>.+?)\s*(?P<relation>≈|~|=|<|>)\s*(?P<value>.+?)(?:\s*(?:±|\+-)\s*(?P<slack>\S+))?$"
-)
 
 
 class ScriptError(ValueError):
@@ -127,7 +122,7 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
         raise ValueError(f"a line does one thing, this one says {', '.join(rest)}; split it.")
     for verb, value in rest.items():
         if verb == "expect":
-            yield from _check(session, value)
+            yield from check(session, value)
         elif verb == "input":
             session.press(value, tuple(pixel) if pixel else None)
         elif verb in ("click", "drag"):
@@ -163,78 +158,6 @@ def _advance_to(session: Session, steps: int) -> None:
     left = steps - session.model.clock.steps
     if left > 0:
         session.run(steps=left)
-
-
-# --- expectations ----------------------------------------------------------------------------------------
-
-
-def _check(session: Session, text: str) -> Iterator[tuple[str, Any]]:
-    match = _EXPECTATION.match(text)
-    if match is None:
-        raise ValueError(f"'{text}' is no expectation; write it like rods.AB.axial_force ≈ -28.34 ± 0.01.")
-    got = read(session, match["path"])
-    if not _holds(got, match["relation"], match["value"], match["slack"]):
-        yield text, got
-
-
-def _holds(got: Any, relation: str, value: str, slack: str | None) -> bool:
-    if isinstance(got, bool | str) or got is None:
-        return relation == "=" and str(got).lower() == value.strip("\"'").lower()
-    wanted = float(value)
-    if relation in "<>":
-        return bool(got < wanted if relation == "<" else got > wanted)
-    tolerance = float(slack) if slack is not None else (0.0 if relation == "=" else 1e-9 * abs(wanted))
-    return math.isfinite(got) and abs(got - wanted) <= tolerance
-
-
-def read(session: Session, path: str) -> Any:
-    """A quantity by its path: rods.AB.axial_force, particles.B.displacement.y, energy.imbalance, scene."""
-    head, _, rest = path.strip().partition(".")
-    if head in ("scene", "time", "message"):
-        return getattr(session, head)
-    if head == "energy":
-        return session.energy.as_dict()[rest]
-    if head == "force_method":
-        return _of_force_method(session, rest)
-    if head == "count":
-        return len(session.model.tables[rest])
-    if head not in session.model.tables:
-        raise LookupError(session.model.missing("quantities", head, session.model.tables))
-    table = session.model.tables[head]
-    component = None
-    if rest.endswith((".x", ".y")):
-        rest, component = rest[:-2], "xy".index(rest[-1])
-    name, _, field = rest.rpartition(".")
-    if field not in table.fields:
-        raise LookupError(session.model.missing(f"quantities of {head}", field, table.fields))
-    value = getattr(table[name] if name else table[0], field)
-    return value if component is None else value[component]
-
-
-def _of_force_method(session: Session, quantity: str) -> Any:
-    """A quantity of the force method: part, unknown, force, delta_real, … of the last unknown; real.AC, base.AC.
-
-    superposed.AC is set 2 + set 3, which is to equal real.AC, set 1.
-    """
-    from game import force_method_words  # which scipy comes with
-
-    guide = getattr(session.scenes.active, "guide", None)
-    if guide is None:
-        raise LookupError("the force method is not going on; press K in pause first.")
-    if quantity == "unknown":
-        return guide.unknown.name if guide.unknown else None
-    if quantity == "part":
-        return guide.part
-    if quantity == "message":
-        return force_method_words.message(guide)
-    what, _, rod = quantity.partition(".")
-    if guide.solution is not None and rod:  # a row of the final table
-        return float(getattr(guide.solution, what).axial_force[guide.model.rods[rod].row])
-    if guide.solution is None:
-        raise LookupError("nothing is released yet; pick an unknown in part 2 first.")
-    if quantity == "exact_force":
-        return guide.exact[-1] if guide.exact is not None else None
-    return float(getattr(guide.solution, quantity).ravel()[-1])
 
 
 # --- recording -------------------------------------------------------------------------------------------

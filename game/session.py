@@ -530,6 +530,15 @@ class Session:
         self.scenes.active.type(self, text)
         self.scenes.apply(self)
 
+    def expect(self, text: str) -> None:
+        """Raise ExpectationError, an AssertionError, unless a text such as "scene = pause" is true.
+
+        Also "rods.AB.axial_force ≈ -28.34 ± 0.01", "energy.imbalance < 1"; see game/script.py.
+        """
+        from game.expectation import expect
+
+        expect(self, text)
+
     def click_box(self, title: str) -> None:
         """Select the box with that title. Raises LookupError if there is none."""
         self.scenes.active.click_box(self, title)

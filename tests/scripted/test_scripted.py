@@ -40,6 +40,17 @@ def test_an_expectation_that_fails_says_what_where_expected_and_got(
     assert "1 expectations failed" in said.out
 
 
+def test_a_session_expects_the_same_in_python() -> None:
+    session = Session.open("isostatic")
+    session.run(until="rest")
+    session.expect("rods.AB.axial_force ≈ -28.34 ± 0.01")
+    session.expect("scene = pause")
+    with pytest.raises(AssertionError, match=r"expected time < 0, got 0\.0"):
+        session.expect("time < 0")
+    with pytest.raises(LookupError, match="did you mean 'AB'"):
+        session.expect("rods.ABX.strain = 0")
+
+
 @pytest.mark.parametrize(
     ("line", "words"),
     [
@@ -47,6 +58,8 @@ def test_an_expectation_that_fails_says_what_where_expected_and_got(
         ('{"press": "k", "run": 1}', "line 2: a line does one thing"),
         ('{"expect": "rods.AB"}', "is no expectation"),
         ('{"expect": "rods.AX.strain = 0"}', "did you mean"),
+        ('{"expect": "particles.B.position = 1"}', "ask for .x or .y"),
+        ('{"expect": "rods.AB.axial_force = high"}', "cannot be compared with 'high'; write a number"),
         ("[1]", "line 2: write an object"),
         ("{", "line 2: this is not JSON"),
     ],
