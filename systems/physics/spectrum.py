@@ -67,9 +67,10 @@ def largest_eigenvalue(operator: Callable[[Array], Array], rows: int, bound: flo
     """An upper bound of the largest eigenvalue of a symmetric operator by Lanczos' method.
 
     The Ritz value plus its residual, at most `bound`. The start vector is fixed, sums are in a fixed
-    order, so that the result (and with it the step size) is the same on every run.
+    order, so that the result (and with it the step size) is the same on every run. Its entries, k²φ mod 1,
+    differ differently from row to row: it must not be blind to a direction, as kφ is to that of (1, −1).
     """
-    start = np.modf(np.arange(1, 2 * rows + 1) * 0.6180339887498949)[0] - 0.5
+    start = np.modf(np.arange(1, 2 * rows + 1) ** 2 * 0.6180339887498949)[0] - 0.5
     vector = start.reshape(rows, 2) / math.sqrt(float((start * start).sum()))
     basis: list[Array] = []
     diagonal: list[float] = []
