@@ -26,6 +26,24 @@ class Clock(Handle):
     step_size: Field[float] = Field(
         "s", role=Role.STATE, title="step size", doc="Present fixed step; 0: not yet chosen."
     )
+    step_limit: Field[float] = Field(
+        "s", role=Role.STATE, title="step limit", doc="Largest step when the steps were last reviewed."
+    )
+    step_error: Field[float] = Field(
+        role=Role.STATE, title="step error", doc="Estimated error of the last step; 1 is the tolerance."
+    )
+    largest_displacement: Field[float] = Field(
+        "m",
+        role=Role.STATE,
+        title="largest displacement",
+        doc="Largest Euclidean norm of all displacements, the scale of their error.",
+    )
+    largest_speed: Field[float] = Field(
+        "m/s",
+        role=Role.STATE,
+        title="largest speed",
+        doc="Largest Euclidean norm of all velocities, the scale of their error.",
+    )
     initial_energy: Field[float] = Field(
         "J",
         role=Role.STATE,

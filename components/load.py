@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -28,6 +28,7 @@ class HistoryKind:
     static: the factor that stands for it in statics, or what computes it from the parameters.
     ends: the time after which the factor no longer changes (infinite: never), from the parameters.
     check: raises FieldError for parameters that make no sense. mod: the mod that brought it, if one did.
+    breaks: the times at which the factor jumps or has a kink; integrators do not step over them.
     """
 
     name: str
@@ -37,6 +38,7 @@ class HistoryKind:
     ends: Callable[[History], float]
     check: Callable[[History, str], None] = lambda history, where: None
     mod: Any = None
+    breaks: Callable[[History], Iterable[float]] = lambda history: ()
 
 
 HISTORIES: dict[str, HistoryKind] = {}
@@ -96,6 +98,7 @@ register_history(
         "systems.loads.kernels:ramp",
         static=1.0,
         ends=lambda history: float(history["start"] + history["duration"]),
+        breaks=lambda history: (history["start"], history["start"] + history["duration"]),
         check=_check_ramp,
     )
 )
@@ -139,3 +142,10 @@ def loads_end(world: World) -> float:
     """The time (s) after which no load changes any more; −∞ without varying loads."""
     ends = [HISTORIES[history["kind"]].ends(history) for history in world.tables["loads"].history]
     return max(ends, default=-math.inf)
+
+
+def load_breaks(world: World) -> list[float]:
+    """Times (s), ascending, that no step may pass: just before and at every jump or kink of a load."""
+    histories = world.tables["loads"].history
+    times = sorted({float(t) for history in histories for t in HISTORIES[history["kind"]].breaks(history)})
+    return [side for time in times for side in (math.nextafter(time, -math.inf), time)]

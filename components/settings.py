@@ -30,6 +30,13 @@ class Settings(Handle):
         title="time step",
         doc="Fixed; automatic: as small as stability and accuracy ask for.",
     )
+    tolerance: Field[float] = Field(
+        default=1e-9,
+        minimum=1e-13,
+        maximum=0.1,
+        title="tolerance",
+        doc="Error of one step, relative to the largest displacement and speed; for integrators that control it.",
+    )
     integrator: Field[str] = Field(
         default=AUTOMATIC, dtype=str, title="integrator", doc="How time advances.", choices=INTEGRATORS
     )

@@ -5,14 +5,15 @@ from __future__ import annotations
 from components.settings import INTEGRATORS
 from systems.base import Driver, StepSystem
 from systems.loads.system import varying_loads
-from systems.physics.system import (
-    AxialDamping,
-    Drag,
-    Elasticity,
-    ElasticityAfterYielding,
+from systems.physics.drivers import (
+    DormandPrince853,
+    ImplicitRungeKutta4,
+    RungeKutta4,
+    SemiImplicitEuler,
     ThesisTaylor,
     VelocityVerlet,
 )
+from systems.physics.system import AxialDamping, Drag, Elasticity, ElasticityAfterYielding
 from systems.plasticity.system import Strength, Yielding
 
 DRIVERS: dict[str, Driver] = {}
@@ -25,7 +26,14 @@ def register_driver(driver: Driver) -> None:
     INTEGRATORS[key] = (driver.__doc__ or "").strip().partition("\n")[0]
 
 
-for _driver in (VelocityVerlet(), ThesisTaylor()):
+for _driver in (
+    VelocityVerlet(),
+    DormandPrince853(),
+    ImplicitRungeKutta4(),
+    RungeKutta4(),
+    SemiImplicitEuler(),
+    ThesisTaylor(),
+):
     register_driver(_driver)
 
 

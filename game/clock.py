@@ -1,17 +1,19 @@
-"""Frame clock: how many fixed steps a frame takes, at a pace that a person chose and the machine can keep."""
+"""Frame clock: how far a frame lets time pass, at a pace that a person chose and the machine can keep."""
 
 from __future__ import annotations
 
 LONGEST_FRAME = 0.1  # s of real time that one frame may catch up
 BUDGET = 0.012  # s of a frame that steps may take
+FIRST_STEPS = 1000  # that the first frame may take, when their cost is not known yet
 FASTEST, SLOWEST = 1e3, 1e-5  # simulated seconds per second shown, times the natural pace at 1
 
 
 class FrameClock:
-    """Turns elapsed real time into whole steps.
+    """Turns elapsed real time into simulated time, and remembers what whole steps leave of it.
 
     natural: simulated seconds per second shown that suit the model; factor: a person's choice on top.
     lagging: True while the machine cannot keep the pace; the picture then shows less time per second.
+    ahead: simulated time (s) that has passed for the person since the end of the last step.
     """
 
     def __init__(self) -> None:
@@ -19,7 +21,7 @@ class FrameClock:
         self.factor = 1.0
         self.lagging = False
         self.shown_pace = 1.0
-        self._carry = 0.0
+        self.ahead = 0.0
         self._seconds_per_step = 0.0
 
     @property
@@ -31,19 +33,22 @@ class FrameClock:
         """Multiply the pace, within limits."""
         self.factor = min(max(self.factor * times, SLOWEST), FASTEST)
 
-    def steps(self, elapsed: float, step_size: float) -> int:
-        """Whole steps for a frame that took `elapsed` seconds, at most what the budget allows."""
-        wanted = min(elapsed, LONGEST_FRAME) * self.pace / step_size + self._carry
-        affordable = BUDGET / self._seconds_per_step if self._seconds_per_step > 0.0 else 1000.0
-        due = min(int(wanted), max(int(affordable), 1))
-        self.lagging = due < int(wanted)
-        self._carry = 0.0 if self.lagging else wanted - due
-        self.shown_pace = self.pace if not self.lagging else self.pace * due / wanted
-        return due
+    def due(self, elapsed: float) -> float:
+        """Simulated time (s) to let pass in a frame that took `elapsed` seconds."""
+        return min(elapsed, LONGEST_FRAME) * self.pace
 
-    def took(self, steps: int, seconds: float) -> None:
-        """Learn what a step costs."""
+    @property
+    def affordable(self) -> int:
+        """Steps that the machine can take in a frame."""
+        known = self._seconds_per_step
+        return max(int(BUDGET / known), 1) if known > 0.0 else FIRST_STEPS
+
+    def took(self, due: float, passed: float, steps: int, seconds: float) -> None:
+        """Learn from a frame: time that was due and that passed in whole steps (s), and what these cost (s)."""
+        self.lagging = steps >= self.affordable
+        wanted = self.ahead + due
+        self.ahead = 0.0 if self.lagging else max(wanted - passed, 0.0)
+        self.shown_pace = self.pace * passed / wanted if self.lagging else self.pace
         if steps > 0:
-            cost = seconds / steps
-            known = self._seconds_per_step
+            cost, known = seconds / steps, self._seconds_per_step
             self._seconds_per_step = cost if known == 0.0 else 0.8 * known + 0.2 * cost

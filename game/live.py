@@ -20,17 +20,17 @@ class Live:
 
     def frame(self, elapsed: float) -> None:
         """Take the steps of one frame that comes `elapsed` seconds after the last."""
-        simulation = self.simulation
+        simulation, clock = self.simulation, self.clock
         if simulation.halted:
             return
         simulation.advance(0)
         if simulation.halted:  # it cannot be computed
             return
         self._find_pace()
-        due = self.clock.steps(elapsed, simulation.model.clock.step_size)
-        before = simulation.compute_seconds
-        taken = simulation.advance(due)
-        self.clock.took(taken, simulation.compute_seconds - before)
+        start, before = simulation.model.clock.time, simulation.compute_seconds
+        due = clock.due(elapsed)
+        taken = simulation.advance(clock.affordable, start + clock.ahead + due)
+        clock.took(due, simulation.model.clock.time - start, taken, simulation.compute_seconds - before)
 
     def _find_pace(self) -> None:
         """Let the clock follow the pace that suits the model, found after every edit.
@@ -40,7 +40,9 @@ class Live:
         revision, model = self.simulation.armed_revision, self.simulation.model
         size = model.particles.count + model.rods.count
         hardly_changed = size > MANY and abs(size - self._pace_size) < SHARE * size
-        if revision != self._pace_revision and not hardly_changed:
-            self._pace_size = size
-            self.clock.natural = natural_pace(model)
+        if revision != self._pace_revision:
+            self.clock.ahead = 0.0
+            if not hardly_changed:
+                self._pace_size = size
+                self.clock.natural = natural_pace(model)
         self._pace_revision = revision

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 from typing import Any
@@ -9,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from components.field import Column, Role
-from components.load import loads_end
+from components.load import load_breaks, loads_end
 from components.model import Model
 from game.program_binding import bind, explain
 from game.program_cache import compile_module
+from game.program_controlled import MARKS, ControlledWriter
 from game.program_writer import Writer
 from systems.base import ACCOUNTS, Driver, StepSystem, StopReason
 
@@ -25,6 +27,7 @@ _ACCOUNT = (
     "energy_scale",
     "guard_energy",
 )
+_CONTROL = ("time", "step_size", "step_error", "largest_displacement", "largest_speed")
 
 
 class Program:
@@ -40,7 +43,7 @@ class Program:
         self.model = model
         self.systems = tuple(systems)
         self.driver = driver
-        self._writer = Writer(model, systems, driver)
+        self._writer = (ControlledWriter if driver.controlled else Writer)(model, systems, driver)
         self._module = compile_module(self._writer.source(), self._writer.kernels)
         self.measures = np.zeros(7)
         self._state_revision = -1
@@ -78,15 +81,28 @@ class Program:
         self._direction = np.zeros((rods, 2))
         self._power, self._gained = np.zeros(len(ACCOUNTS)), np.zeros(len(ACCOUNTS))
         self._loads_end = loads_end(self.model)
+        self._breaks = load_breaks(self.model)
+        self._work = np.zeros((self.driver.particle_rows, particles, 2))
+        self._rod_work = np.zeros((self.driver.rod_rows, rods))
+        self._marks = np.zeros((rods, MARKS * len(self._writer.commits)))
+        self._stage_power = np.zeros(len(ACCOUNTS))
         self._state_revision = -1
 
     def _column(self, name: str, written: bool) -> Any:
         table, _, column = name.partition("_")
         return self.model.writable(f"{table}.{column}") if written else self.model.column(f"{table}.{column}")
 
-    def advance(self, steps: int) -> tuple[int, StopReason]:
-        """Take up to `steps` fixed steps of clock.step_size; returns how many, and why it stopped."""
+    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
+        """Take up to `steps` steps; returns how many, and why it stopped.
+
+        A driver that controls its steps takes none that would end after `until` (s), and one that would
+        pass `landing` (s) is cut to end there; for others the steps are clock.step_size long.
+        """
+        if self.driver.controlled:
+            return self._advance_controlled(steps, until, landing)
         clock = self.model.clock
+        if until < math.inf:
+            steps = min(steps, max(int((until - clock.time) / clock.step_size * (1.0 + 1e-12)), 0))
         fresh = self._state_revision == self.model.newest(Role.STATE)
         total, first = clock.steps, clock.steps - clock.origin_steps
         account = self._accounts()
@@ -98,6 +114,7 @@ class Program:
             first,
             clock.origin,
             clock.step_size,
+            np.append(self._breaks, math.inf),
             self._loads_end,
             *self._state(),
             self._predicted,
@@ -112,6 +129,50 @@ class Program:
             self.model.writable("clock.steps")[0] = total + taken
             self.model.writable("clock.time")[0] = clock.origin + (first + taken) * clock.step_size
         self._state_revision = self.model.newest(Role.STATE)
+        return taken, StopReason(reason)
+
+    def _advance_controlled(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
+        clock, model = self.model.clock, self.model
+        fresh = self._state_revision == model.newest(Role.STATE)
+        total = clock.steps
+        account = self._accounts()
+        control = np.array([getattr(clock, name) for name in _CONTROL] + [0.0, 0.0])
+        controls_error = self.driver.estimates_error and model.settings.time_step is None
+        breaks = np.sort(np.append(self._breaks, [landing, math.inf]))
+        taken, reason = self._call(
+            "advance",
+            steps,
+            fresh,
+            total,
+            total - clock.origin_steps,
+            clock.origin,
+            model.settings.tolerance if controls_error else 0.0,
+            clock.step_limit or math.inf,
+            breaks,
+            float(until),
+            self._loads_end,
+            control,
+            np.zeros(7),
+            *self._state(),
+            self._work,
+            self._rod_work,
+            self._marks,
+            self._power,
+            self._gained,
+            self._stage_power,
+            account,
+            self.measures,
+        )
+        if control[0] > clock.time:
+            if control[0] == landing and not controls_error:
+                taken += 1  # the piece that it takes to land
+            for name, value in zip((*_ACCOUNT, *_CONTROL), (*account, *control), strict=False):
+                model.writable(f"clock.{name}")[0] = value
+            model.writable("clock.steps")[0] = total + taken
+            if controls_error or control[0] == landing:
+                model.writable("clock.origin")[0] = control[0]
+                model.writable("clock.origin_steps")[0] = total + taken
+        self._state_revision = model.newest(Role.STATE)
         return taken, StopReason(reason)
 
     def commit(self) -> None:

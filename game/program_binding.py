@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from components.field import Role
 from components.model import Model
-from systems.base import ACCOUNTS, Commit, Driver, Law, StepSystem
+from systems.base import ACCOUNTS, Commit, Law, StepSystem
 
-PROVIDED = ("elongation", "rate", "axial_force", "time", "dt")
+PROVIDED = ("elongation", "rate", "axial_force", "time", "dt", "branch")
 TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
 
 _KINDS = ("rods", "particles", "loads")
@@ -40,11 +40,12 @@ class Bound:
     function: Callable[..., Any]
     parameters: tuple[str, ...]
     arrays: Mapping[str, NDArray[Any]]
+    kernel: str = "kernel"
 
     @property
     def call(self) -> str:
         """The name of the kernel in the program."""
-        return "kernel_" + self.prefix
+        return f"{self.kernel}_{self.prefix}"
 
     @property
     def prefix(self) -> str:
@@ -72,27 +73,26 @@ class Bound:
         return "axial_force" in self.parameters and "rate" not in self.parameters
 
 
-def bind(system: StepSystem, model: Model) -> Bound:
-    """Find a step system's kernel and its parameters. Raises ProgramError."""
+def bind(system: StepSystem, model: Model, kernel: str = "kernel") -> Bound:
+    """Find a step system's kernel (or its `branch` or `margin`) and its parameters. Raises ProgramError."""
     try:
-        return _bound(system, model)
+        return _bound(system, model, kernel)
     except ProgramError as error:
         error.system = system
         raise
 
 
-def _bound(system: StepSystem, model: Model) -> Bound:
+def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     _check_role(system, model)
-    function = _kernel(system)
-    if isinstance(system, Driver):
-        return Bound(system, function, (), {})
+    function = find(getattr(system, kernel), system.name)
     plain = getattr(function, "py_func", None)
     if plain is None:
         raise ProgramError(
             f"The kernel of {system.name} is not compiled; put `@compiled` of systems.kernels above it."
         )
+    parameters = tuple(inspect.signature(plain).parameters)
     arrays = {name: _read_only(array) for name, array in system.arrays(model).items()}
-    bound = Bound(system, function, tuple(inspect.signature(plain).parameters), arrays)
+    bound = Bound(system, function, parameters, arrays, kernel)
     for name in bound.arrays:
         if _is_column(name, model):
             raise ProgramError(f"The array '{name}' of {system.name} has the name of a column; rename it.")
@@ -141,16 +141,17 @@ def _check_role(system: StepSystem, model: Model) -> None:
             )
 
 
-def _kernel(system: StepSystem) -> Callable[..., Any]:
-    if not isinstance(system.kernel, str):
-        found: Callable[..., Any] = getattr(system.kernel, "__func__", system.kernel)  # of a class: a method
+def find(kernel: str | Callable[..., Any], owner: str) -> Callable[..., Any]:
+    """The function that "module:function" names, or itself. Raises ProgramError naming its owner."""
+    if not isinstance(kernel, str):
+        found: Callable[..., Any] = getattr(kernel, "__func__", kernel)  # of a class: a method
         return found
-    module, _, attribute = system.kernel.partition(":")
+    module, _, attribute = kernel.partition(":")
     try:
         found = getattr(importlib.import_module(module), attribute)
     except (ImportError, AttributeError, ValueError) as error:
         raise ProgramError(
-            f"The kernel '{system.kernel}' of {system.name} cannot be found: {error}; write it like"
+            f"The kernel '{kernel}' of {owner} cannot be found: {error}; write it like"
             " 'package.module:function'."
         ) from None
     return found
@@ -159,7 +160,7 @@ def _kernel(system: StepSystem) -> Callable[..., Any]:
 def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
     """A kernel is given what its role provides, its own arrays and the columns that its system declares."""
     rows, name = b.each or "rods", b.system.name
-    if parameter in PROVIDED:
+    if parameter in PROVIDED and (parameter != "branch" or b.kernel == "margin"):
         return
     if parameter in b.arrays:
         if len(b.arrays[parameter]) != model.tables[rows].count:

@@ -7,12 +7,12 @@ import textwrap
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from components.model import Model
-from game.program_binding import PROVIDED, TRIAL, Bound, bind, check_names
-from systems.base import ACCOUNTS, Commit, Driver, Law, StepSystem
-from systems.physics.integrators import advance
+import numpy as np
 
-CHECK_INTERVAL = 128  # steps between checks for rest and divergence; larger: notices later
+from components.model import Model
+from game.program_binding import PROVIDED, TRIAL, Bound, bind, check_names, find
+from systems.base import ACCOUNTS, Commit, Driver, Law, StepSystem
+
 REVIEW_INTERVAL = 8192  # steps between reviews of the step size, and between safe states
 
 _ALWAYS = (
@@ -44,23 +44,23 @@ class Writer:
         self.particle_laws = [b for b in of_particles if "particles_velocity" not in b.parameters]
         self.particle_rates = [b for b in of_particles if "particles_velocity" in b.parameters]
         self.loads = [b for b in laws if b.each == "loads"]
-        self.driver = bind(driver, model)
+        self.driver = driver
         self.kernels = {b.call: b.function for b in bound} | _of_energy()
         self.rates = bool(self.rod_rates or self.particle_rates)
         self.working = [b for b in of_rods if b in self.rod_laws and not (b.replaces or _is_elastic(b))]
         self.powers = self.rates or bool(self.particle_laws or self.working)
-        self.columns = self._columns()
+        self.columns = list(_ALWAYS)  # all arrays that the stages read or write besides the driver's own
+        self._add_columns(bound)
 
-    def _columns(self) -> list[str]:
-        """Names of all arrays that the stages read or write besides the driver's own."""
-        names = dict.fromkeys(_ALWAYS)
-        for b in self.bound:
+    def _add_columns(self, bound: Iterable[Bound]) -> None:
+        names = dict.fromkeys(self.columns)
+        for b in bound:
             for parameter in b.parameters:
                 if parameter not in PROVIDED and parameter not in TRIAL and b.each != "loads":
                     names[parameter] = None
             if b.each == "loads":
                 names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in ("on", "force", "values", "first")))
-        return list(names)
+        self.columns = list(names)
 
     # --- expressions ------------------------------------------------------------------------------
 
@@ -87,17 +87,24 @@ class Writer:
         parts = [
             self._constants(),
             self._external(),
+            *self._for_driver(),
+            self._measure(),
+            self._observe(),
+            *(self._pasted(part, "compiled") for part in self.driver.parts),
+            self._pasted(f"{self.driver.kernel}=integrate", "compiled"),
+            self._pasted(f"{self.driver.entry}=advance", "entry"),
+            *([self._commit()] if self.commits else []),
+        ]
+        return "\n\n".join(parts) + "\n"
+
+    def _for_driver(self) -> list[str]:
+        """Functions that the driver's source may call."""
+        return [
             self._forces("forces", accepted=False),
             self._forces("accept", accepted=True),
             self._resist(),
             self._load_power(),
-            self._measure(),
-            self._observe(),
-            self._pasted(self.driver.function, "integrate", "compiled"),
-            self._pasted(advance, "advance", "entry"),
-            *([self._commit()] if self.commits else []),
         ]
-        return "\n\n".join(parts) + "\n"
 
     def _constants(self) -> str:
         return textwrap.dedent(
@@ -106,18 +113,19 @@ class Writer:
 
             import math
 
+            import numpy as np
             from numba import njit
 
-            compiled = njit(error_model="numpy")
+            compiled = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
             entry = njit(error_model="numpy", cache=True)
             RATES = {self.rates}
             POWERS = {self.powers}
             LOADS = {bool(self.loads)}
-            SHADOW = {int(getattr(self.driver.system, "conserved_energy", "") != "")}
-            CHECK_INTERVAL = {CHECK_INTERVAL}
+            SHADOW = {float(self.driver.guard)}
+            CHECK_INTERVAL = {self.driver.check_interval}
             REVIEW_INTERVAL = {REVIEW_INTERVAL}
             '''
-        )
+        ) + "".join(f"{name} = {_literal(value)}\n" for name, value in self.driver.constants.items())
 
     def _columns_text(self) -> str:
         return ", ".join(self.columns)
@@ -141,11 +149,12 @@ class Writer:
         head = f"def external(time, dt, displacement, velocity, force, resisting, {self._columns_text()}):"
         return "\n".join(["@compiled", head, *_indent(1, self._particle_forces())])
 
-    def _particle_forces(self) -> list[str]:
+    def _particle_forces(self, powers: bool = False) -> list[str]:
         body = ["force[i, 0] = particles_constant_force[i, 0]", "force[i, 1] = particles_constant_force[i, 1]"]
         for b in self.particle_laws:
             body += [f"fx, fy = {self._apply(b, 'i')}", "force[i, 0] += fx", "force[i, 1] += fy"]
-        body += self._particle_rate_forces()
+            body += [_particle_power(b)] if powers else []
+        body += self._particle_rate_forces(powers)
         lines = ["for i in range(displacement.shape[0]):", *_indent(1, body)]
         for b in self.loads:
             lines += [
@@ -155,6 +164,8 @@ class Writer:
                 f"    force[i, 0] += factor * {b.prefix}_force[k, 0]",
                 f"    force[i, 1] += factor * {b.prefix}_force[k, 1]",
             ]
+            if powers:
+                lines.append(f"    power_0 += {_load_power(b)}")
         return lines
 
     def _particle_rate_forces(self, powers: bool = False) -> list[str]:
@@ -204,15 +215,17 @@ class Writer:
             lines.append(f"axial_force {'=' if b.replaces else '+='} {self._apply(b, 'r')}")
         return lines
 
-    def _rod_forces(self, commits: Sequence[Bound]) -> list[str]:
+    def _rod_forces(self, commits: Sequence[Bound], powers: bool = False) -> list[str]:
         lines = self._geometry()
         for b in commits:
             column = b.system.writes[0].replace(".", "_", 1)
             lines += [f"{column}[r], gone = {self._apply(b, 'r')}", f"lost_{b.slot} += gone"]
+        if powers and self.working:
+            lines += [*self._axial_force(without=self.working), "stored_force = axial_force"]
         lines += self._axial_force()
         lines += _scatter("force", "axial_force")
-        if self.rod_rates:
-            lines += ["direction[r, 0] = nx", "direction[r, 1] = ny", *self._rate_forces()]
+        if self.rod_rates or (powers and self.working):
+            lines += ["direction[r, 0] = nx", "direction[r, 1] = ny", *self._rate_forces(powers)]
         return lines
 
     def _rate_forces(self, powers: bool = False) -> list[str]:
@@ -259,8 +272,7 @@ class Writer:
                 f"for k in range({b.prefix}_on.shape[0]):",
                 f"    i = {b.prefix}_on[k]",
                 f"    factor = {b.call}(time, {b.prefix}_values, {b.prefix}_first[k])",
-                f"    power += factor * ({b.prefix}_force[k, 0] * velocity[i, 0]"
-                f" + {b.prefix}_force[k, 1] * velocity[i, 1])",
+                f"    power += {_load_power(b)}",
             ]
         head = f"def load_power(time, velocity, {self._columns_text()}):"
         return "\n".join(["@compiled", head, *_indent(1, [*body, "return power"])])
@@ -307,12 +319,16 @@ class Writer:
         head = f"def measure(displacement, velocity, force, resisting, measures, {self._columns_text()}):"
         return "\n".join(["@compiled", head, *_indent(1, body)])
 
+    @property
+    def _observed_forces(self) -> str:
+        return f"forces(time, dt, displacement, velocity, force, resisting, direction, {self._columns_text()})"
+
     def _observe(self) -> str:
         """The derived columns of rods and particles, and the measures, at a state."""
         columns = self._columns_text()
         body = [
             f"external(time, dt, displacement, velocity, applied, resisting, {columns})",
-            f"forces(time, dt, displacement, velocity, force, resisting, direction, {columns})",
+            self._observed_forces,
             f"measure(displacement, velocity, force, resisting, measures, {columns})",
             *self._rod_loop(
                 [
@@ -337,15 +353,23 @@ class Writer:
         )
         return f"@entry\ndef commit({arguments}):\n    accept({arguments})"
 
-    def _pasted(self, function: Callable[..., Any], name: str, decorator: str) -> str:
-        """A driver's source with the model's columns in place of *columns."""
+    def _pasted(self, where: str, decorator: str) -> str:
+        """A driver's source, "module:function" or with "=new name", the model's columns for *columns."""
+        where, _, name = where.partition("=")
+        function = find(where, self.driver.name)
         source = textwrap.dedent(inspect.getsource(function)).replace("*columns", self._columns_text())
-        return f"@{decorator}\n" + source.replace(f"def {function.__name__}(", f"def {name}(", 1)
+        return f"@{decorator}\n" + source.replace(
+            f"def {function.__name__}(", f"def {name or function.__name__}(", 1
+        )
 
 
 def _particle_power(b: Bound) -> str:
     sign = "+" if b.account == "work" else "-"
     return f"power_{b.slot} {sign}= fx * velocity[i, 0] + fy * velocity[i, 1]"
+
+
+def _load_power(b: Bound) -> str:
+    return f"factor * ({b.prefix}_force[k, 0] * velocity[i, 0] + {b.prefix}_force[k, 1] * velocity[i, 1])"
 
 
 def _scatter(target: str, amount: str) -> list[str]:
@@ -355,6 +379,10 @@ def _scatter(target: str, amount: str) -> list[str]:
         f"{target}[b, 0] -= {amount} * nx",
         f"{target}[b, 1] -= {amount} * ny",
     ]
+
+
+def _literal(value: Any) -> str:
+    return f"np.array({value.tolist()!r})" if isinstance(value, np.ndarray) else repr(value)
 
 
 def _indent(levels: int, lines: Iterable[str]) -> list[str]:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from components.snapshot import Snapshot
 from game.results import ENERGIES, Run, State, state
 from game.session import DEFAULT_LIMIT, Session
 from systems.base import StopReason
@@ -44,6 +43,7 @@ class Analysis:
 
 def run_until_rest(session: Session, name: str, limit: float) -> Run:
     """Run until at rest, at most `limit` s of simulated time."""
+    session.simulation.smooth = False  # nobody watches
     status = session.run(until="rest", limit=limit)
     return _run(session, name, status, [_state(session)])
 
@@ -53,19 +53,19 @@ def run_at(session: Session, name: str, times: Sequence[float]) -> Run:
 
     The short last step to a reported time is taken on a copy, so that a report never changes the run.
     """
-    states: list[State] = []
-    status = "time reached"
+    simulation, states = session.simulation, list[State]()
+    simulation.smooth = False  # nobody watches
+    session.run(steps=0)
     for target in times:
-        status = _run_before(session, target)
-        before = Snapshot.take(session.model)
-        if status == "time reached":
-            session.simulation.run_to(target)
-        states.append(_state(session))
-        if target != times[-1]:
-            before.restore(session.model)
-        if status == "diverged":
-            break
-    return _run(session, name, status, states)
+        simulation.run_to(target, whole_steps=True)
+        if simulation.reason is StopReason.DIVERGED:
+            return _run(session, name, "diverged", [*states, _state(session)])
+        if simulation.reason is StopReason.REST:  # time passes without steps
+            session.model.writable("clock.time")[0] = max(target, session.time)
+        with simulation.at(target):
+            states.append(_state(session))
+            run = _run(session, name, "time reached", states)
+    return run
 
 
 def run_static(session: Session, name: str, factors: Sequence[float]) -> Run:
@@ -103,19 +103,6 @@ def _static_state(session: Session, found: StaticState) -> State:
         "rods.yielding": found.yielding,
     }
     return state(session.model, energy, found.load_factor, found.residual, columns)
-
-
-def _run_before(session: Session, target: float) -> str:
-    """Take all full steps that end at or before a time; at rest, time passes without steps."""
-    while not session.simulation.halted:
-        full = session.simulation.full_steps_to(target)
-        if full == 0:
-            return "time reached"
-        session.run(steps=min(full, 1 << 20))
-    if session.simulation.reason is StopReason.DIVERGED:
-        return "diverged"
-    session.model.writable("clock.time")[0] = max(target, session.time)
-    return "time reached"
 
 
 def _state(session: Session) -> State:

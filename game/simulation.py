@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 
 from components.extremes import incomputable
 from components.field import Column, Role
 from components.load import loads_end
 from components.model import Model
+from components.settings import AUTOMATIC
 from components.snapshot import Snapshot
 from components.world import Derivation
 from game.catalogue import DRIVERS
@@ -21,11 +23,14 @@ from game.program_binding import ProgramError
 from game.program_writer import REVIEW_INTERVAL
 from game.schedule import Schedule
 from systems.base import Driver, StepSystem, StopReason
+from systems.physics.automatic import SMALL, choose
+from systems.physics.pace import natural_pace
 from systems.physics.spectrum import Spectrum, spectrum
 
 SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
 ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square
-SMALL = 200  # rods up to which a model is small
+SHOWN = 1.0 / 120.0  # s shown, at the natural pace, that one step may last
+FIRST_SHARE = 0.1  # of 1/ω, the step at which error control begins
 FREE_STEP = 1e-3  # s, where nothing limits the step
 DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
 MOST_RETRIES = 6  # times that an automatic step is halved before a run is given up
@@ -77,6 +82,8 @@ class Simulation:
     reason: why the last advance ended; message: the same as a sentence, or "".
     warning: what a person should know though the run goes on, or "".
     compute_seconds, compile_seconds: spent so far in steps, and in compiling or loading programs.
+    smooth: steps are not longer than what is shown at once, even where accuracy would allow it; else they
+        are too long to be watched, and to be interrupted.
     watch: asked before steps are taken; returns after how many at most it wants to be asked again.
     """
 
@@ -90,7 +97,9 @@ class Simulation:
         self.compile_seconds = 0.0
         self.stable_step = math.inf
         self.watch: Callable[[], int] | None = None
+        self.smooth = True
         self._programs: dict[tuple[str, ...], Program] = {}
+        self._driver: Driver | None = None
         self._program: Program | None = None
         self._armed = False  # the energy account and the step size fit the present document
         self._armed_revision = -1
@@ -117,8 +126,11 @@ class Simulation:
 
     @property
     def driver(self) -> Driver:
-        """The integrator that the settings ask for."""
-        return DRIVERS.get(self.model.settings.integrator, DRIVERS[DEFAULT_DRIVER])
+        """The integrator that the settings ask for, or that suits the model."""
+        if self._driver is None:
+            name = self.model.settings.integrator
+            self._driver = DRIVERS[choose(self.model) if name == AUTOMATIC else name]
+        return self._driver
 
     @property
     def integrator(self) -> str:
@@ -200,7 +212,7 @@ class Simulation:
             self.observe()
             self._before_edit = self.program.measures.copy()
             self._armed = False
-        self._program = None
+        self._driver = self._program = None
 
     def _arm(self) -> Program:
         """Get ready to run after edits: account for them, choose the step size, note a safe state."""
@@ -299,14 +311,33 @@ class Simulation:
 
     def _choose_step(self, found: Spectrum) -> None:
         """Begin with a step size that suits a document."""
-        chosen = self.model.settings.time_step
-        self._begin_step_size(chosen if chosen is not None else self._automatic_step(found.frequency))
+        model, chosen = self.model, self.model.settings.time_step
+        for name in ("step_limit", "step_error", "largest_displacement", "largest_speed"):
+            model.writable(f"clock.{name}")[0] = 0.0
+        if chosen is None and self.driver.estimates_error:
+            fastest = max(found.frequency, 2.0 * found.decay)
+            self._limit_step()
+            first = FIRST_SHARE / fastest if fastest > 0.0 else FREE_STEP
+            self._begin_step_size(_rounded_down(min(first, model.clock.step_limit or math.inf)))
+        else:
+            self._begin_step_size(chosen if chosen is not None else self._automatic_step(found.frequency))
+
+    def _limit_step(self) -> None:
+        """Where the error is controlled, stability and the eye limit the step."""
+        limit = SAFETY * self.stable_step
+        if self.smooth:
+            limit = min(limit, SHOWN * natural_pace(self.model))
+        self.model.writable("clock.step_limit")[0] = _rounded_down(limit) if limit < math.inf else 0.0
 
     def _review_step(self) -> None:
         """Change an automatic step size if the stable step changed much."""
         if self.model.settings.time_step is not None:
             return
-        wanted = self._automatic_step(self._find_stable_step().frequency)
+        found = self._find_stable_step()
+        if self.driver.estimates_error:
+            self._limit_step()
+            return
+        wanted = self._automatic_step(found.frequency)
         if not 0.5 * wanted <= self.model.clock.step_size <= min(1.5 * wanted, 0.95 * self.stable_step):
             self._begin_step_size(wanted)
 
@@ -332,14 +363,20 @@ class Simulation:
         """True if the run ended by itself, at rest or diverged, and nothing was edited since."""
         return self._armed and self.reason in (StopReason.REST, StopReason.DIVERGED)
 
-    def advance(self, steps: int) -> int:
-        """Take up to `steps` fixed steps; returns how many. Stops at rest and before garbage."""
+    def advance(self, steps: int, until: float = math.inf) -> int:
+        """Take up to `steps` steps, none of which ends after `until` (s); returns how many.
+
+        Stops at rest and before garbage.
+        """
         self._arm()
         started, clock = time.perf_counter(), self.model.clock
         first = clock.steps
         while clock.steps - first < steps and not self.halted:
             ahead = steps - (clock.steps - first)
-            _, reason = self._arm().advance(ahead if self.watch is None else min(ahead, self.watch()))
+            ahead = ahead if self.watch is None else min(ahead, self.watch())
+            taken, reason = self._arm().advance(ahead, until)
+            if taken == 0 and reason is StopReason.DONE:
+                break
             self._heed(reason)
         self.compute_seconds += time.perf_counter() - started
         return clock.steps - first
@@ -349,8 +386,12 @@ class Simulation:
         self.reason = reason
         if reason is StopReason.REST:
             self.message = f"At rest since t = {self.model.clock.time:.6g} s."
+        elif reason is StopReason.UNRESOLVED:
+            self.reason = StopReason.DIVERGED
+            if not self._go_on_without_mod():
+                self._give_up("no time step, however small, leads on from there")
         elif reason is StopReason.DIVERGED and not (self._go_on_without_mod() or self._retry()):
-            self._explain_divergence()
+            self._give_up("energy appeared from nowhere")
         elif reason is StopReason.REVIEW:
             self._safe, self._retries = Snapshot.take(self.model), 0
             self._review_step()
@@ -368,7 +409,8 @@ class Simulation:
 
     def _retry(self) -> bool:
         """An automatic step that proved too long (the geometry changed) is halved from the last safe state."""
-        if self.model.settings.time_step is not None or self._retries == MOST_RETRIES:
+        chosen = self.model.settings.time_step is not None or self.driver.estimates_error
+        if chosen or self._retries == MOST_RETRIES:
             return False
         assert self._safe is not None
         size = self.model.clock.step_size
@@ -378,43 +420,50 @@ class Simulation:
         self.reason = StopReason.DONE
         return True
 
-    def run_to(self, target: float) -> None:
-        """Advance to exactly this time (s): full steps, then one short one."""
+    def run_to(self, target: float, *, whole_steps: bool = False) -> None:
+        """Advance to exactly this time (s) by a last, short step; or only by whole steps that end by then."""
         self._arm()
         clock = self.model.clock
-        while not self.halted:
-            full = self.full_steps_to(target)
-            if full > 0:
-                self.advance(min(full, REVIEW_INTERVAL))
-            elif target - clock.time > 4.0 * math.ulp(target):
-                self._short_step(target)
-            else:
-                return
+        while not self.halted and target - clock.time > 4.0 * math.ulp(target):
+            if self.advance(REVIEW_INTERVAL, target) == 0 and not self.halted:
+                if whole_steps:
+                    return
+                self._heed(self._land(target))
 
-    def full_steps_to(self, target: float) -> int:
-        """How many full steps end at or before a time (s), rounding apart."""
-        self._arm()
-        clock = self.model.clock
-        return max(int((target - clock.time) / clock.step_size * (1.0 + 1e-12)), 0)
-
-    def _short_step(self, target: float) -> None:
-        size, start = self.model.clock.step_size, self.model.clock.time
-        self._begin_step_size(target - start)
+    def _land(self, target: float) -> StopReason:
+        """Take the last, short step to a time (s)."""
+        clock, reason = self.model.clock, StopReason.DONE
+        if self.driver.controlled:
+            while clock.time < target and reason in (StopReason.DONE, StopReason.REVIEW):
+                _, reason = self.program.advance(REVIEW_INTERVAL, target, target)
+            return reason
+        size = clock.step_size
+        self._begin_step_size(target - clock.time)
         _, reason = self.program.advance(1)
         self.model.writable("clock.time")[0] = target
         self._begin_step_size(size)
-        self._heed(reason)
+        return reason
+
+    @contextmanager
+    def at(self, target: float) -> Iterator[None]:
+        """The model as it is at a time (s) within the next step, inside the `with`; then as it was before."""
+        self._arm()
+        before = Snapshot.take(self.model)
+        if target > self.model.clock.time:
+            self._land(target)
+        try:
+            yield
+        finally:
+            before.restore(self.model)
 
     def run_until_rest(self, limit: float) -> bool:
         """Advance until at rest, at most to the time `limit` (s); True if it came to rest."""
         self._arm()
         clock = self.model.clock
         while not self.halted and clock.time < limit:
-            left = self.full_steps_to(limit)
-            if left == 0:
+            if self.advance(REVIEW_INTERVAL, limit) == 0:
                 self.run_to(limit)
                 break
-            self.advance(min(left, REVIEW_INTERVAL))
         if not self.halted:
             self.message = self._why_not_at_rest(limit)
         return self.reason is StopReason.REST
@@ -427,13 +476,13 @@ class Simulation:
             return f"{message} A load still changes; raise the limit."
         return f"{message} Raise the limit, or the damping of the rods or the drag."
 
-    def _explain_divergence(self) -> None:
+    def _give_up(self, why: str) -> None:
         """Go back to the last good state and say what happened and what helps."""
         failed, size = self.model.clock.time, self.model.clock.step_size
         assert self._safe is not None
         self._safe.restore(self.model)
         self.message = (
-            f"The simulation diverged near t = {failed:.6g} s: energy appeared from nowhere. {self._remedy(size)}"
+            f"The simulation diverged near t = {failed:.6g} s: {why}. {self._remedy(size)}"
             f" The last good state, at t = {self.model.clock.time:.6g} s, was kept."
         )
 

@@ -47,6 +47,7 @@ class StopReason(IntEnum):
     REVIEW = 1  # a fixed number of steps since the step size was last reviewed
     REST = 2  # nothing moves any more
     DIVERGED = 3  # energy came from nowhere, or a number is not finite
+    UNRESOLVED = 4  # no step, however small, has a finite result
 
 
 ACCOUNTS = ("work", "dissipated_damping", "dissipated_plastic", "dissipated_impact")
@@ -126,9 +127,16 @@ class Commit(StepSystem):
 
     The kernel maps scalars of one rod (`elongation` provided) to (the new value of the one column in
     `writes`, the energy dissipated in kN·m).
+
+    branch, margin: kernels that tell drivers which locate events where the rod's law is not smooth; "": none.
+        branch(elongation, rate, …) is the number of the branch of the law that the rod is about to follow;
+        margin(branch, elongation, rate, dt, …) is positive while the rod stays on it, has no unit, and is 0
+        where it leaves it.
     """
 
     account: ClassVar[str] = "dissipated_plastic"
+    branch: ClassVar[str | Callable[..., Any]] = ""
+    margin: ClassVar[str | Callable[..., Any]] = ""
 
 
 class Driver(StepSystem):
@@ -136,9 +144,25 @@ class Driver(StepSystem):
 
     stable_step: the largest stable step (s) for the highest angular frequency ω (rad/s) and decay ζω
         (1/s) of a model, not both 0; infinite if unconditionally stable, 0 if stable at none.
+    order: of convergence. entry: source of the loop around the kernel. parts: sources that the kernel calls,
+        "module:function" or "module:function=name in the program". constants: numbers and arrays by name.
+    controlled: it owns time and step size, lands on the times at which loads change abruptly and locates
+        events (see runge_kutta.py); else its steps are all alike.
+    estimates_error: it chooses its steps so that settings.tolerance is met, unless the step is fixed.
+    particle_rows, rod_rows: arrays of shape (particles, 2) and (rods,) that it needs.
+    check_interval: steps between checks for rest and divergence; larger: notices later.
     """
 
     order: ClassVar[int] = 0
+    entry: ClassVar[str] = "systems.physics.integrators:advance"
+    parts: ClassVar[tuple[str, ...]] = ()
+    constants: ClassVar[Mapping[str, Any]] = {}
+    controlled: ClassVar[bool] = False
+    estimates_error: ClassVar[bool] = False
+    particle_rows: ClassVar[int] = 0
+    rod_rows: ClassVar[int] = 0
+    check_interval: ClassVar[int] = 128
+    guard: ClassVar[float] = 0.0
 
     @staticmethod
     def stable_step(frequency: float, decay: float) -> float:

@@ -132,6 +132,58 @@ def taylor2(
                 power[k] = gained[k]
 
 
+def semi_implicit_euler(
+    steps,
+    first,
+    origin,
+    dt,
+    displacement,
+    velocity,
+    force,
+    resisting,
+    direction,
+    predicted,
+    power,
+    gained,
+    account,
+    *columns,
+):
+    """v += h a(x, v); x += h v."""
+    for step in range(1, steps + 1):
+        time = origin + (first + step) * dt
+        for i in range(displacement.shape[0]):
+            ax = force[i, 0]
+            ay = force[i, 1]
+            if RATES:
+                ax += resisting[i, 0]
+                ay += resisting[i, 1]
+            ax *= particles_mobility[i, 0]
+            ay *= particles_mobility[i, 1]
+            velocity[i, 0] += dt * ax
+            velocity[i, 1] += dt * ay
+            displacement[i, 0] += dt * velocity[i, 0]
+            displacement[i, 1] += dt * velocity[i, 1]
+        if LOADS:
+            before = load_power(origin + (first + step - 1) * dt, velocity, *columns)
+            account[0] += 500.0 * dt * (before + load_power(time, velocity, *columns))
+        accept(time, dt, displacement, velocity, force, resisting, direction, account, *columns)
+        if POWERS:
+            resist(time, dt, displacement, velocity, resisting, direction, gained, *columns)
+            for k in range(power.shape[0]):
+                account[k] += 500.0 * dt * (power[k] + gained[k])
+                power[k] = gained[k]
+
+
+def steps_to_check(total, age):
+    """Steps to the next check, at most: to a multiple of CHECK_INTERVAL, or to the next power of 2."""
+    if age >= CHECK_INTERVAL:
+        return CHECK_INTERVAL - total % CHECK_INTERVAL
+    doubled = 1
+    while doubled <= age:
+        doubled *= 2
+    return min(CHECK_INTERVAL - total % CHECK_INTERVAL, doubled - age)
+
+
 def advance(
     steps,
     fresh,
@@ -139,6 +191,7 @@ def advance(
     first,
     origin,
     dt,
+    breaks,
     loads_end,
     displacement,
     velocity,
@@ -155,30 +208,37 @@ def advance(
     """Take up to `steps` steps; returns (steps taken, StopReason).
 
     fresh: the forces are still those of the present state. total: all steps so far. first: steps since
-    the time origin. Checks happen 1, 2, 4, … steps after it, for a step that is much too long makes
-    garbage at once, and whenever the total is a multiple of CHECK_INTERVAL: at counts that do not depend on
-    how the steps are divided into calls.
+    the time origin. breaks: times at which loads change abruptly, ascending, the last one infinite; a step
+    that would pass one is taken in pieces. Checks happen 1, 2, 4, … steps after the origin, for a step that
+    is much too long makes garbage at once, and whenever the total is a multiple of CHECK_INTERVAL: at counts
+    that do not depend on how the steps are divided into calls.
     """
+    time = origin + first * dt
     if not fresh:
-        time = origin + first * dt
         forces(time, dt, displacement, velocity, force, resisting, direction, *columns)
         if POWERS:
             resist(time, dt, displacement, velocity, resisting, direction, power, *columns)
     taken = 0
+    coming = 0
     while taken < steps:
-        now = CHECK_INTERVAL - (total + taken) % CHECK_INTERVAL
         age = first + taken
-        if age < CHECK_INTERVAL:
-            doubled = 1
-            while doubled <= age:
-                doubled *= 2
-            now = min(now, doubled - age)
-        now = min(now, steps - taken)
+        while breaks[coming] <= time:
+            coming += 1
+        end = origin + (age + 1) * dt
+        if breaks[coming] < end or time > origin + age * dt:  # a piece of a step, ending at `since`
+            now, after, since = 1, -1, min(end, breaks[coming])
+            size = since - time
+            done = 1 if since == end else 0
+        else:
+            now, after, since, size = min(steps - taken, steps_to_check(total + taken, age)), age, origin, dt
+            while now > 1 and origin + (age + now) * dt > breaks[coming]:
+                now //= 2
+            done = now
         integrate(
             now,
-            age,
-            origin,
-            dt,
+            after,
+            since,
+            size,
             displacement,
             velocity,
             force,
@@ -190,18 +250,13 @@ def advance(
             account,
             *columns,
         )
-        taken += now
-        age += now
+        time = since + (after + now) * size
+        if done == 0:
+            continue
+        taken += done
+        age += done
         if (total + taken) % CHECK_INTERVAL == 0 or (age < CHECK_INTERVAL and age & (age - 1) == 0):
-            measure(
-                displacement,
-                velocity,
-                force,
-                resisting,
-                measures,
-                *columns,
-            )
-            time = origin + age * dt
+            measure(displacement, velocity, force, resisting, measures, *columns)
             ahead = 0.0
             if LOADS:
                 ahead = 1000.0 * dt * abs(load_power(time, velocity, *columns))

@@ -1,8 +1,10 @@
 """Laws of rods and particles: scalars of one element in, its force out."""
 
+import math
+
 from systems.kernels import compiled
 
-REST_RESIDUAL = 1e-8  # of the largest force; larger: rests sooner, less exactly
+REST_RESIDUAL = 2e-9  # of the largest force, so that sums of residuals are within 1e-8; larger: rests sooner
 SMALL_SHARE = 1e-3  # of the largest force ever, taken as scale where all forces die out
 DIVERGENCE_SHARE = 0.2  # of all energy ever supplied; smaller: may stop good runs at large steps
 YIELDING_SHARE = 0.5  # of what yielding dissipated, which is of first order where a step passes the strength
@@ -44,7 +46,7 @@ def conserved(measures, account, dt, shadow):
     kinetic, power_norm, elastic, potential = measures[0], measures[1], measures[2], measures[3]
     supplied = account[0] + potential - account[5]
     lost = account[2] + account[3]
-    return kinetic + elastic - shadow * dt * dt / 8.0 * power_norm + lost - supplied
+    return kinetic + elastic - max(shadow, 0.0) * dt * dt / 8.0 * power_norm + lost - supplied
 
 
 @compiled
@@ -66,9 +68,11 @@ def judge(measures, account, dt, shadow, ahead, loads_are_over):
     kinetic, power_norm, elastic, potential = measures[0], measures[1], measures[2], measures[3]
     residual, largest, round_off = measures[4], measures[5], measures[6]
     supplied = account[0] + potential - account[5]
-    deficit = shadow * dt * dt / 8.0 * power_norm
-    wobble = (1 - shadow) * dt * dt * power_norm
+    deficit = max(shadow, 0.0) * dt * dt / 8.0 * power_norm
+    wobble = dt * dt * power_norm if shadow == 0.0 else 0.0
     created = conserved(measures, account, dt, shadow) - account[8]
+    if shadow < 0.0:
+        created = min(created, kinetic + elastic - supplied - account[4])
     account[6] = max(account[6], largest)
     account[7] = max(account[7], abs(account[4]), abs(account[0]), abs(supplied), ahead, wobble)
     bound = DIVERGENCE_SHARE * account[7] + YIELDING_SHARE * account[2] + SMALLEST_ENERGY
@@ -81,3 +85,14 @@ def judge(measures, account, dt, shadow, ahead, loads_are_over):
     if loads_are_over and residual <= still_force and kinetic <= still_energy:
         return 2
     return 0
+
+
+@compiled
+def lowest(before, slope_before, after, slope_after, dt):
+    """The least value of the cubic with these values and slopes, falling first and rising last, dt apart."""
+    first = slope_before * dt
+    rise = after - before
+    second = 3.0 * rise - (2.0 * slope_before + slope_after) * dt
+    third = (slope_before + slope_after) * dt - 2.0 * rise
+    at = -first / (second + math.sqrt(max(second * second - 3.0 * third * first, 0.0)))
+    return before + at * (first + at * (second + at * third))

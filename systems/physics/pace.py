@@ -10,6 +10,7 @@ from components.extremes import incomputable
 from components.load import loads_end
 from components.model import Model
 
+DENSE = 100  # particles up to which a full matrix is solved, without loading a library for others
 PERIOD_SHOWN = 2.0  # s in which one oscillation is shown
 CREEP_SHOWN = 0.7  # s in which an overdamped model creeps by 1 − 1/e of the way
 LOADING_SHOWN = 4.0  # s in which a load history is shown
@@ -59,9 +60,6 @@ def _response_time(model: Model) -> float | None:
 
 def _static_displacement(model: Model) -> np.ndarray | None:
     """Linear displacement under the present loads, or None where it is not small."""
-    from scipy.sparse import csc_matrix, identity
-    from scipy.sparse.linalg import splu
-
     particles, rods = model.particles, model.rods
     free = np.flatnonzero(particles.mobility.ravel() > 0.0)
     ends = rods.between.astype(np.intp)
@@ -71,22 +69,32 @@ def _static_displacement(model: Model) -> np.ndarray | None:
     )
     rows = np.repeat(np.arange(rods.count), 4)
     entries = np.concatenate([-axis, axis], axis=1)
-    compatibility = csc_matrix((entries.ravel(), (rows, columns.ravel())), (rods.count, 2 * particles.count))
-    compatibility = compatibility[:, free]
-    stiffness = rods.stiffness / rods.rest_length
-    matrix = compatibility.T @ compatibility.multiply(stiffness[:, None]).tocsc()
-    matrix = matrix + 1e-10 * float(stiffness.max()) * identity(len(free), format="csc")
     force = particles.constant_force.ravel().copy()
     for load in model.loads:
         force[2 * load.on : 2 * load.on + 2] += load.force
     if not force[free].any():
         force = np.ones_like(force) * np.where(np.arange(len(force)) % 2, -1.0, 0.3)
-    try:
-        moved = splu(csc_matrix(matrix)).solve(force[free])
-    except RuntimeError:  # exactly singular
-        return None
+    stiffness = rods.stiffness / rods.rest_length
+    slightly = 1e-10 * float(stiffness.max())  # so that a mechanism moves far, but not infinitely
     displacement = np.zeros(2 * particles.count)
-    displacement[free] = moved
+    try:
+        if particles.count <= DENSE:
+            dense = np.zeros((rods.count, 2 * particles.count))
+            dense[rows, columns.ravel()] = entries.ravel()
+            dense = dense[:, free]
+            matrix = dense.T @ (dense * stiffness[:, None]) + slightly * np.eye(len(free))
+            displacement[free] = np.linalg.solve(matrix, force[free])
+        else:
+            from scipy.sparse import csc_matrix, identity
+            from scipy.sparse.linalg import splu
+
+            sparse = csc_matrix((entries.ravel(), (rows, columns.ravel())), (rods.count, 2 * particles.count))
+            sparse = sparse[:, free]
+            matrix = sparse.T @ sparse.multiply(stiffness[:, None]).tocsc()
+            matrix = csc_matrix(matrix + slightly * identity(len(free), format="csc"))
+            displacement[free] = splu(matrix).solve(force[free])
+    except (RuntimeError, np.linalg.LinAlgError):  # exactly singular
+        return None
     size = float(np.ptp(particles.position, axis=0).max())
     if not np.isfinite(displacement).all() or np.abs(displacement).max() > 0.5 * size:
         return None

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from components.rod import has_plastic_strain
-from systems.base import Driver, Law
+from systems.base import Law
 
 if TYPE_CHECKING:
     from components.model import Model
@@ -63,48 +62,3 @@ class Drag(Law):
 
     def needs(self, model: Model) -> bool:
         return model.environment.drag > 0.0
-
-
-class VelocityVerlet(Driver):
-    """Second order, symplectic without dampers: energy is bounded for ever.
-
-    Dampers are evaluated at the corrected velocity, which keeps the order and most of the stable step.
-    """
-
-    name = "physics.velocity_verlet"
-    kernel = "systems.physics.integrators:velocity_verlet"
-    reads = ("particles.mobility",)
-    writes = ("particles.displacement", "particles.velocity", "clock.time")
-    order: ClassVar[int] = 2
-    conserved_energy = "kinetic − (h²/8) fᵀM⁻¹f + elastic"
-
-    @staticmethod
-    def stable_step(frequency: float, decay: float) -> float:
-        """(2/ω)(√(1+ζ²) − ζ), written so that no digits cancel and that ω may be 0."""
-        return 2.0 / (math.hypot(frequency, decay) + decay)
-
-
-class ThesisTaylor(Driver):
-    """The thesis' scheme x += v h + a h²/2, v += a h: first order, and energy grows by 1 + (ωh)²/2 a step.
-
-    For comparison only. Without damping it is unstable at any step.
-    """
-
-    name = "physics.taylor2"
-    kernel = "systems.physics.integrators:taylor2"
-    reads = ("particles.mobility",)
-    writes = ("particles.displacement", "particles.velocity", "clock.time")
-    order: ClassVar[int] = 1
-
-    @staticmethod
-    def stable_step(frequency: float, decay: float) -> float:
-        """The lesser of 4ζ/ω and 1/(ζω); 0 without damping.
-
-        For a = −ω²x − 2ζωv the amplification matrix has trace 2 − z²/2 − 2ζz and determinant
-        1 − 2ζz + z²/2 (z = ωh; the ζz³ terms cancel): by Jury's conditions z ≤ 4ζ and z ≤ 1/ζ. It holds
-        for one mode; in a model, a mode with less damping than its share may still grow.
-        """
-        if decay == 0.0:
-            return 0.0
-        limit = 1.0 / decay
-        return limit if frequency == 0.0 else min(limit, 4.0 * decay / frequency**2)

@@ -1,12 +1,60 @@
 """Linear elastic, perfectly plastic: both limits move with the plastic strain."""
 
+import math
+
 from systems.kernels import compiled
+
+AT_LIMIT = 1e-9  # relative distance from a limit within which a rod that moves on yields
 
 
 @compiled
 def limited(axial_force, rods_tension_limit, rods_compression_limit):
     """The axial force cannot pass a strength."""
     return min(max(axial_force, -rods_compression_limit), rods_tension_limit)
+
+
+@compiled
+def branch(
+    elongation,
+    rate,
+    rods_stiffness,
+    rods_rest_length,
+    rods_plastic_strain,
+    rods_tension_limit,
+    rods_compression_limit,
+):
+    """1: yields in tension, −1: in compression, 0: is elastic."""
+    trial = rods_stiffness * (elongation / rods_rest_length - rods_plastic_strain)
+    if rate > 0.0 and trial >= rods_tension_limit * (1.0 - AT_LIMIT):
+        return 1.0
+    if rate < 0.0 and trial <= -rods_compression_limit * (1.0 - AT_LIMIT):
+        return -1.0
+    return 0.0
+
+
+@compiled
+def margin(
+    branch,
+    elongation,
+    rate,
+    dt,
+    rods_stiffness,
+    rods_rest_length,
+    rods_plastic_strain,
+    rods_tension_limit,
+    rods_compression_limit,
+):
+    """Elastic: distance of the axial force from the nearer limit; yielding: what it grows by in a step.
+
+    Both relative to the strength.
+    """
+    strength = min(rods_tension_limit, rods_compression_limit)
+    if strength == math.inf:
+        return 1.0
+    if branch != 0.0:
+        return branch * rate * dt * rods_stiffness / (rods_rest_length * strength)
+    trial = rods_stiffness * (elongation / rods_rest_length - rods_plastic_strain)
+    return min(rods_tension_limit - trial, rods_compression_limit + trial) / strength
 
 
 @compiled

@@ -29,6 +29,8 @@ class Yielding(Commit):
 
     name = "plasticity.yielding"
     kernel = "systems.plasticity.kernels:yielded"
+    branch = "systems.plasticity.kernels:branch"
+    margin = "systems.plasticity.kernels:margin"
     reads = ("rods.stiffness", "rods.rest_length", "rods.tension_limit", "rods.compression_limit")
     writes = ("rods.plastic_strain",)
 

@@ -61,6 +61,13 @@ class Load:
             return 0.0
         return 1.0 if since >= self.history["duration"] else since / self.history["duration"]
 
+    def breaks(self) -> list[float]:
+        """Return the times of jumps and kinks, and those just before, where a step ends early."""
+        if self.history["kind"] == "constant":
+            return []
+        kinks = (self.history["start"], self.history["start"] + self.history["duration"])
+        return [side for kink in kinks for side in (math.nextafter(kink, -math.inf), kink)]
+
 
 @dataclass(frozen=True)
 class Elements:

@@ -40,7 +40,6 @@ class Simulation:
     def __init__(self, model: Model):
         self.elements = read(model)
         self.start = self.time = self.elements.time
-        self.steps = 0
         self.u = np.array([particle.displacement for particle in self.elements.particles])
         self.v = np.array([particle.velocity for particle in self.elements.particles])
         self.plastic_strain = [rod.plastic_strain for rod in self.elements.rods]
@@ -143,28 +142,28 @@ class Simulation:
             self.plastic_strain[index] += excess_strain
             self.dissipated_plastic += NEWTONS_PER_KN * abs(axial_force * excess_strain) * rod.rest_length
 
-    def advance(self, time_step: float, u: np.ndarray, v: np.ndarray) -> None:
-        """Accept (u, v) one step later; work and dissipation by the trapezoidal rule, error O(h²)."""
-        before, moved = self.forces, u - self.u
-        self._accept(time_step, u, v)
+    def advance(self, end: float, u: np.ndarray, v: np.ndarray) -> None:
+        """Accept (u, v) at the time `end`; work and dissipation by the trapezoidal rule, error O(h²)."""
+        before, moved, time_step = self.forces, u - self.u, end - self.time
+        self._accept(end, u, v)
         after = self.forces
         self.work += NEWTONS_PER_KN * float(np.sum((before.applied + after.applied) / 2 * moved))
         self.dissipated_damping += time_step * (before.damping_power + after.damping_power) / 2
         self.dissipated_drag += time_step * (before.drag_power + after.drag_power) / 2
 
     def advance_with_quadrature(
-        self, time_step: float, u: np.ndarray, v: np.ndarray, stages: list[tuple[float, Forces, np.ndarray]]
+        self, end: float, u: np.ndarray, v: np.ndarray, stages: list[tuple[float, Forces, np.ndarray]]
     ) -> None:
-        """Accept (u, v) one step later; book work and dissipation of (weight, forces, velocity) stages."""
+        """Accept (u, v) at the time `end`; book work and dissipation of (weight, forces, velocity) stages."""
+        time_step = end - self.time
         for weight, forces, velocity in stages:
             self.work += time_step * weight * NEWTONS_PER_KN * float(np.sum(forces.applied * velocity))
             self.dissipated_damping += time_step * weight * forces.damping_power
             self.dissipated_drag += time_step * weight * forces.drag_power
-        self._accept(time_step, u, v)
+        self._accept(end, u, v)
 
-    def _accept(self, time_step: float, u: np.ndarray, v: np.ndarray) -> None:
-        self.steps += 1
-        self.time = self.start + self.steps * time_step
+    def _accept(self, end: float, u: np.ndarray, v: np.ndarray) -> None:
+        self.time = end
         self.u, self.v = u, v
         self.forces = self.evaluate(self.time, u, v)
 
@@ -207,7 +206,7 @@ class Simulation:
             "acceleration": self.forces.acceleration,
             "reaction": self.forces.reaction,
         }
-        result: Document = {"time": self.time, "steps": self.steps, "energy": self.energy()}
+        result: Document = {"time": self.time, "energy": self.energy()}
         for title, rows in by_particle.items():
             result[title] = {name: (float(x), float(y)) for name, (x, y) in zip(particles, rows, strict=True)}
         for title, values in {
@@ -251,51 +250,55 @@ def rk4(model: Model, time_step: float, steps: int, observe: Observer | None = N
 
 
 def _run(
-    step: Callable[[Simulation, float], None],
+    step: Callable[[Simulation, float, float], None],
     model: Model,
     time_step: float,
     steps: int,
     observe: Observer | None,
 ) -> Document:
     simulation = Simulation(model)
-    for _ in range(steps):
-        step(simulation, time_step)
+    breaks = sorted({time for load in simulation.elements.loads for time in load.breaks()})
+    for number in range(1, steps + 1):
+        end = simulation.start + number * time_step
+        inside = [time for time in breaks if simulation.time < time < end]
+        for piece in (*inside, end):
+            step(simulation, piece - simulation.time if inside else time_step, piece)
         if observe is not None:
             observe(simulation)
     return simulation.result()
 
 
-def _verlet_step(s: Simulation, h: float) -> None:
+def _verlet_step(s: Simulation, h: float, end: float) -> None:
     a = s.forces.acceleration
     u = s.u + h * s.v + h**2 / 2 * a
     s.commit_plasticity(u)
-    predicted = s.evaluate(s.start + (s.steps + 1) * h, u, s.v + h * a)
-    s.advance(h, u, s.v + h / 2 * (a + predicted.acceleration))
+    predicted = s.evaluate(end, u, s.v + h * a)
+    s.advance(end, u, s.v + h / 2 * (a + predicted.acceleration))
 
 
-def _semi_implicit_step(s: Simulation, h: float) -> None:
+def _semi_implicit_step(s: Simulation, h: float, end: float) -> None:
     v = s.v + h * s.forces.acceleration
     u = s.u + h * v
     s.commit_plasticity(u)
-    s.advance(h, u, v)
+    s.advance(end, u, v)
 
 
-def _taylor_step(s: Simulation, h: float) -> None:
+def _taylor_step(s: Simulation, h: float, end: float) -> None:
     a = s.forces.acceleration
     u = s.u + h * s.v + h**2 / 2 * a
     s.commit_plasticity(u)
-    s.advance(h, u, s.v + h * a)
+    s.advance(end, u, s.v + h * a)
 
 
-def _rk4_step(s: Simulation, h: float) -> None:
+def _rk4_step(s: Simulation, h: float, end: float) -> None:
     v1, f1 = s.v, s.forces
     v2 = s.v + h / 2 * f1.acceleration
     f2 = s.evaluate(s.time + h / 2, s.u + h / 2 * v1, v2)
     v3 = s.v + h / 2 * f2.acceleration
     f3 = s.evaluate(s.time + h / 2, s.u + h / 2 * v2, v3)
     v4 = s.v + h * f3.acceleration
-    f4 = s.evaluate(s.time + h, s.u + h * v3, v4)
+    f4 = s.evaluate(end, s.u + h * v3, v4)
     u = s.u + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4)
     v = s.v + h / 6 * (f1.acceleration + 2 * f2.acceleration + 2 * f3.acceleration + f4.acceleration)
     s.commit_plasticity(u)
-    s.advance_with_quadrature(h, u, v, [(1 / 6, f1, v1), (1 / 3, f2, v2), (1 / 3, f3, v3), (1 / 6, f4, v4)])
+    s.advance_with_quadrature(end, u, v, [(1 / 6, f1, v1), (1 / 3, f2, v2), (1 / 3, f3, v3), (1 / 6, f4, v4)])

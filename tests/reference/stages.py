@@ -9,15 +9,17 @@ scattered once, in their order; dampers and drag in an array of their own.
 import importlib
 import inspect
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
+from components.load import load_breaks
 from components.model import Model
 from systems.base import ACCOUNTS, Commit, Law, StepSystem
 
 Pair = tuple[float, float]
+Step = tuple[float, float, float]
 
 
 class Kernel:
@@ -262,31 +264,45 @@ class Stages:
         return total, power
 
     def run(self, integrator: str, dt: float, steps: int) -> None:
-        """Take steps from time 0."""
-        half = 0.5 * dt
+        """Take steps from time 0, cut at the times at which loads change abruptly."""
         force, resisting = self.forces(self.u, self.v, 0.0, dt, accepted=False)
         power = self.resistance(self.u, self.v, 0.0, dt)[1]
-        for step in range(1, steps + 1):
-            time = step * dt
+        for size, start, time in self._pieces(dt, steps):
+            half = 0.5 * size
             a = self._accelerations(force, resisting)
             middle = [[v + half * a for v, a in zip(*row, strict=True)] for row in zip(self.v, a, strict=True)]
-            predicted = [[v + dt * a for v, a in zip(*row, strict=True)] for row in zip(self.v, a, strict=True)]
+            predicted = [
+                [v + size * a for v, a in zip(*row, strict=True)] for row in zip(self.v, a, strict=True)
+            ]
             self.u = [
-                [u + dt * m for u, m in zip(*row, strict=True)] for row in zip(self.u, middle, strict=True)
+                [u + size * m for u, m in zip(*row, strict=True)] for row in zip(self.u, middle, strict=True)
             ]
             if self.loading:
-                before = self.load_power((step - 1) * dt, middle)
-                self.account["work"] += 500.0 * dt * (before + self.load_power(time, middle))
+                before = self.load_power(start, middle)
+                self.account["work"] += 500.0 * size * (before + self.load_power(time, middle))
             if integrator == "velocity_verlet":
-                force, resisting = self.forces(self.u, predicted, time, dt, accepted=True)
+                force, resisting = self.forces(self.u, predicted, time, size, accepted=True)
                 a = self._accelerations(force, resisting)
             self.v = [[m + half * a for m, a in zip(*row, strict=True)] for row in zip(middle, a, strict=True)]
             if integrator == "taylor2":
-                force, resisting = self.forces(self.u, self.v, time, dt, accepted=True)
-            resisting, gained = self.resistance(self.u, self.v, time, dt)
+                force, resisting = self.forces(self.u, self.v, time, size, accepted=True)
+            resisting, gained = self.resistance(self.u, self.v, time, size)
             for name in ACCOUNTS:
-                self.account[name] += 500.0 * dt * (power[name] + gained[name])
+                self.account[name] += 500.0 * size * (power[name] + gained[name])
             power = gained
+
+    def _pieces(self, dt: float, steps: int) -> Iterator[Step]:
+        """(size, start, end) of every step, or of the pieces that breaks cut it into."""
+        time, breaks = 0.0, load_breaks(self.model)
+        for step in range(1, steps + 1):
+            end = step * dt
+            inside = [at for at in breaks if time < at < end]
+            if not inside:
+                yield dt, (step - 1) * dt, end
+            for piece in (*inside, end) if inside else ():
+                yield piece - time, piece - (piece - time), piece
+                time = piece
+            time = end
 
     def _accelerations(self, force: Any, resisting: Any) -> list[list[float]]:
         return [

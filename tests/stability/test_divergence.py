@@ -379,12 +379,12 @@ def test_a_rod_through_zero_length_in_motion_stays_finite(aside: float, damping:
     """A mass shot at the other end of its rod and past it."""
     nodes = [particle("A", 0, 0, fixed=[True, True]), particle("B", 1, aside, velocity=[-20, 0], mass=1)]
     session = Session.open(model(nodes, [rod("A", "B", stiffness=0.1, damping=damping)]))
-    least = math.inf
+    passed = False
     for _ in range(300):
-        session.run(steps=1)
+        session.run(steps=3)
         assert_finite(session)
-        least = min(least, session.rods["AB"].length)
-    assert least < 0.05
+        passed = passed or session.particles["B"].displacement[0] < -1.1
+    assert passed
 
 
 @pytest.mark.parametrize("apart", [0.0, 1e-320, 1e-200, 1e-12])

@@ -89,7 +89,9 @@ def test_tension_makes_rods_stiff_sideways() -> None:
 
 
 def test_without_rods_only_drag_limits_the_step() -> None:
-    session = Session.open(model([particle("p", 0, 0)], [], environment={"drag": 50.0}))
+    session = Session.open(
+        model([particle("p", 0, 0)], [], environment={"drag": 50.0}, settings={"integrator": "velocity_verlet"})
+    )
     session.simulation.advance(0)
     assert session.simulation.stable_step == pytest.approx(2.0 / 50.0, rel=1e-12)
     session = Session.open(model([particle("p", 0, 0)], []))
@@ -100,9 +102,18 @@ def test_without_rods_only_drag_limits_the_step() -> None:
 @pytest.mark.parametrize("zeta", [0.0, 0.1, 1.0, 10.0])
 def test_the_limit_of_verlet_is_the_formula(zeta: float) -> None:
     """(2/ω) (√(1+ζ²) − ζ)."""
-    session = Session.open(oscillator(100.0, zeta))
+    session = Session.open(oscillator(100.0, zeta) | {"settings": {"integrator": "velocity_verlet"}})
     session.simulation.advance(0)
     assert session.simulation.stable_step == pytest.approx(0.02 * (math.sqrt(1 + zeta**2) - zeta), rel=1e-9)
+
+
+def test_every_direction_of_a_rod_is_seen() -> None:
+    """ω = √(2 k/m) of a free rod, wherever it points."""
+    for angle in range(0, 180, 15):
+        x, y = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+        nodes = [particle("A", 0, 0, mass=1), particle("B", round(x, 15), round(y, 15), mass=1)]
+        made = models.load(model(nodes, [rod("A", "B", stiffness=5.0)]))
+        assert spectrum(made, np.zeros(1)).frequency == pytest.approx(100.0, rel=1e-12), angle
 
 
 @pytest.mark.parametrize("name", models.bundled())

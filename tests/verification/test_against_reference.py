@@ -229,7 +229,7 @@ def _step(document: Document, share: float) -> float:
     Without supports, whose directions would hide the stiffness of rods that turn during the run.
     """
     free = [body | {"fixed": [False, False]} for body in document["particles"]]
-    session = Session.open(document | {"particles": free})
+    session = Session.open(document | {"particles": free, "settings": {"integrator": "velocity_verlet"}})
     session.simulation.advance(0)
     limit = session.simulation.stable_step
     return share * limit if math.isfinite(limit) else 1e-3 * share

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from game import Session
-from game.program_writer import CHECK_INTERVAL, REVIEW_INTERVAL
+from game.program_writer import REVIEW_INTERVAL
+from systems.physics.drivers import VelocityVerlet
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import model, particle, rod, square
@@ -36,8 +37,19 @@ def stiffening() -> Model:
     )
 
 
-DOCUMENTS: dict[str, Callable[[], Model]] = {"yielding": yielding, "stiffening": stiffening}
+def with_verlet(document: Model) -> Model:
+    """The same with the integrator of large models."""
+    return document | {"settings": {"integrator": "velocity_verlet"}}
+
+
+DOCUMENTS: dict[str, Callable[[], Model]] = {
+    "yielding": yielding,
+    "stiffening": stiffening,
+    "yielding, Verlet": lambda: with_verlet(yielding()),
+    "stiffening, Verlet": lambda: with_verlet(stiffening()),
+}
 EACH = pytest.mark.parametrize("document", [make() for make in DOCUMENTS.values()], ids=list(DOCUMENTS))
+CHECK_INTERVAL = VelocityVerlet.check_interval
 FAR = REVIEW_INTERVAL + 3 * CHECK_INTERVAL + 77
 
 
@@ -127,13 +139,13 @@ def test_saved_and_reloaded_it_goes_on_with_the_same_bits(
 
 def test_reloading_keeps_the_step_size_until_the_next_review(tmp_path: Path) -> None:
     """A reloaded run must not heed its frequency earlier than one that was never saved."""
-    session = run(stiffening(), [200])
+    session = run(with_verlet(stiffening()), [200])
     size = session.model.clock.step_size
     session.save(tmp_path / "model.json")
     reloaded = Session.open(tmp_path / "model.json")
     reloaded.run(steps=1)
     assert reloaded.model.clock.step_size == size
-    fresh = Session.open(stiffening())
+    fresh = Session.open(with_verlet(stiffening()))
     fresh.run(steps=REVIEW_INTERVAL)
     assert fresh.model.clock.step_size != size  # else this test could not fail
 
@@ -167,7 +179,7 @@ def test_reading_changes_nothing(document: Model) -> None:
 
 def test_a_saved_time_is_kept(tmp_path: Path) -> None:
     """A document may say at which time it begins, without having run before."""
-    document = yielding() | {"state": {"time": 0.02}}
+    document = with_verlet(yielding()) | {"state": {"time": 0.02}}
     session = Session.open(document)
     applied = session.particles["C"].applied_force
     assert session.time == 0.02

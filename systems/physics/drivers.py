@@ -1,0 +1,187 @@
+"""Integrators: what each is, how accurate, up to which step it is stable, and when to choose it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+from systems.base import Driver
+from systems.physics.tableaus import CLASSICAL, DORMAND_PRINCE_8, KENNEDY_CARPENTER_4, Tableau
+
+_RUNGE_KUTTA = "systems.physics.runge_kutta"
+_FIXED = ("systems.physics.integrators:steps_to_check",)
+_IMPLICIT = "systems.physics.implicit"
+
+
+_CONTROL = ("TIME", "STEP", "ERROR", "LARGEST_X", "LARGEST_V", "TRIAL_X", "TRIAL_V")
+_SEARCH = ("NEAR", "FAR", "NEAR_GAP", "FAR_GAP", "MOVED", "ENDED", "LENGTH")
+_PLACES = {name: place for names in (_CONTROL, _SEARCH) for place, name in enumerate(names)}
+
+
+class Integrator(Driver):
+    """What all integrators read and write."""
+
+    reads = ("particles.mobility",)
+    writes = ("particles.displacement", "particles.velocity", "clock.time")
+
+
+class VelocityVerlet(Integrator):
+    """Second order, symplectic without dampers: energy is bounded for ever.
+
+    Dampers are evaluated at the corrected velocity, which keeps the order and most of the stable step.
+    """
+
+    name = "physics.velocity_verlet"
+    parts = _FIXED
+    kernel = "systems.physics.integrators:velocity_verlet"
+    order: ClassVar[int] = 2
+    guard = 1.0
+
+    @staticmethod
+    def stable_step(frequency: float, decay: float) -> float:
+        """(2/ω)(√(1+ζ²) − ζ), written so that no digits cancel and that ω may be 0."""
+        return 2.0 / (math.hypot(frequency, decay) + decay)
+
+
+class SemiImplicitEuler(Integrator):
+    """First order, symplectic without dampers."""
+
+    name = "physics.semi_implicit_euler"
+    parts = _FIXED
+    kernel = "systems.physics.integrators:semi_implicit_euler"
+    order: ClassVar[int] = 1
+
+    @staticmethod
+    def stable_step(frequency: float, decay: float) -> float:
+        """(2/ω)(√(1+ζ²) − ζ)."""
+        return 2.0 / (math.hypot(frequency, decay) + decay)
+
+
+class ThesisTaylor(Integrator):
+    """The thesis' scheme x += v h + a h²/2, v += a h: first order, and energy grows by 1 + (ωh)²/2 a step.
+
+    For comparison only. Without damping it is unstable at any step.
+    """
+
+    name = "physics.taylor2"
+    parts = _FIXED
+    kernel = "systems.physics.integrators:taylor2"
+    order: ClassVar[int] = 1
+
+    @staticmethod
+    def stable_step(frequency: float, decay: float) -> float:
+        """The lesser of 4ζ/ω and 1/(ζω); 0 without damping.
+
+        For a = −ω²x − 2ζωv the amplification matrix has trace 2 − z²/2 − 2ζz and determinant
+        1 − 2ζz + z²/2 (z = ωh; the ζz³ terms cancel): by Jury's conditions z ≤ 4ζ and z ≤ 1/ζ. It holds
+        for one mode; in a model, a mode with less damping than its share may still grow.
+        """
+        if decay == 0.0:
+            return 0.0
+        limit = 1.0 / decay
+        return limit if frequency == 0.0 else min(limit, 4.0 * decay / frequency**2)
+
+
+def runge_kutta_constants(tableau: Tableau, proportional: float = 0.0, lengthen: float = 6.0) -> dict[str, Any]:
+    """A tableau's constants and those of the loop around it.
+
+    proportional: how much the next step follows the change of the error (0: not at all).
+    """
+    return (
+        tableau.constants
+        | _PLACES
+        | {
+            "SHORTEN": 0.2,  # least and
+            "LENGTHEN": lengthen,  # most that a step is multiplied by to get the next
+            "LEAST_ERROR": 1e-4,  # smaller ones say nothing about the next
+            "BEYOND": 1e300,  # the error of a step that has no result
+            "PROPORTIONAL": proportional,
+            "ROUND_OFF_X": 1e-15,  # of the largest displacement: errors below it are not chased
+            "ROUND_OFF_V": 1e-13,  # the same per step, for velocities
+            "FIXED_TOLERANCE": 1e-10,  # of implicit stages where nothing else says how exact they must be
+            "SMALLEST_SHARE": 1e-12,  # of the step to try, below which the run is given up
+            "EVENT_FLOOR": 1e-11,  # share of a strength within which an event is located
+            "EVENT_WIDTH": 1e-10,  # share of a step within which it is
+        }
+    )
+
+
+class RungeKutta4(Integrator):
+    """Fourth order."""
+
+    name = "physics.rk4"
+    kernel = f"{_RUNGE_KUTTA}:controlled"
+    entry = f"{_RUNGE_KUTTA}:advance"
+    parts = (
+        f"{_RUNGE_KUTTA}:accelerate",
+        f"{_RUNGE_KUTTA}:combine",
+        f"{_RUNGE_KUTTA}:begin_search",
+        f"{_RUNGE_KUTTA}:narrow",
+        f"{_RUNGE_KUTTA}:follow",
+        f"{_RUNGE_KUTTA}:explicit_stages=stages",
+        f"{_RUNGE_KUTTA}:attempt",
+    )
+    order: ClassVar[int] = 4
+    controlled = True
+    guard = -1.0
+    constants = runge_kutta_constants(CLASSICAL)
+    particle_rows = 4 + 2
+    radius: ClassVar[float] = 2.61
+
+    @classmethod
+    def stable_step(cls, frequency: float, decay: float) -> float:
+        """radius / max(ω, 2ζω)."""
+        return cls.radius / max(frequency, 2.0 * decay)
+
+
+class DormandPrince853(RungeKutta4):
+    """Eighth order, error-controlled."""
+
+    name = "physics.dop853"
+    order: ClassVar[int] = 8
+    estimates_error = True
+    constants = runge_kutta_constants(DORMAND_PRINCE_8, proportional=0.04)
+    particle_rows = 12 + 2
+    radius: ClassVar[float] = 5.96
+    check_interval = 8
+
+
+class ImplicitRungeKutta4(Integrator):
+    """Fourth order, implicit, error-controlled, stable at every step."""
+
+    name = "physics.esdirk4"
+    kernel = f"{_RUNGE_KUTTA}:controlled"
+    entry = f"{_RUNGE_KUTTA}:advance"
+    parts = (
+        f"{_RUNGE_KUTTA}:accelerate",
+        f"{_RUNGE_KUTTA}:combine",
+        f"{_RUNGE_KUTTA}:begin_search",
+        f"{_RUNGE_KUTTA}:narrow",
+        f"{_RUNGE_KUTTA}:follow",
+        f"{_IMPLICIT}:relax",
+        f"{_IMPLICIT}:precondition",
+        f"{_IMPLICIT}:multiply",
+        f"{_IMPLICIT}:correct",
+        f"{_IMPLICIT}:before_size",
+        f"{_IMPLICIT}:implicit_stages=stages",
+        f"{_RUNGE_KUTTA}:attempt",
+    )
+    order: ClassVar[int] = 4
+    controlled = True
+    guard = -1.0
+    estimates_error = True
+    constants = runge_kutta_constants(KENNEDY_CARPENTER_4, proportional=0.08, lengthen=2.0) | {
+        "GAMMA": 0.25,
+        "MOST_CORRECTIONS": 10,
+        "NEWTON_SHARE": 1e-2,
+        "NEWTON_FLOOR": 1e-12,
+        "SOLVER_SHARE": 1e-9,
+    }
+    particle_rows = 6 + 13
+    rod_rows = 2
+    check_interval = 2
+
+    @staticmethod
+    def stable_step(frequency: float, decay: float) -> float:
+        """Infinite."""
+        return math.inf

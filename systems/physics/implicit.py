@@ -1,0 +1,226 @@
+"""Implicit stages as source, for the driver of runge_kutta.py.
+
+Each stage solves  M a = f(x̂ + (γh)² a, v̂ + γh a)  for its acceleration by Newton's method. The matrix
+M + γh C + (γh)² K is never formed: a product with it is one pass over the rods, and conjugate gradients,
+preconditioned by the 2 × 2 blocks of the particles, solve with it. The program provides
+
+    tangent(time, dt, by_x, by_v, displacement, velocity, direction, along, across, diagonal, beside, *columns)
+        direction ← unit vectors of the rods; along, across ← stiffness of each rod along and across its
+        axis (kN per m/s²), by_x and by_v being what an acceleration adds to displacement and velocity;
+        diagonal, beside ← the particles' own 2 × 2 blocks: mass, and what particle laws add
+
+Everything is summed in a fixed order and iterated to fixed tolerances, so that the same input gives the same
+bits.
+"""
+
+# ruff: noqa: F821
+# mypy: ignore-errors
+
+
+def implicit_stages(
+    time,
+    dt,
+    allowed,
+    displacement,
+    velocity,
+    force,
+    resisting,
+    direction,
+    work,
+    rod_work,
+    gained,
+    stage_power,
+    *columns,
+):
+    """Accelerations of the stages after the first; False if Newton's method does not converge."""
+    trial, speed = work[STAGES], work[STAGES + 1]
+    known_x, known_v = work[STAGES + 2], work[STAGES + 3]
+    correction = work[STAGES + 4]
+    by_v = GAMMA * dt
+    by_x = by_v * by_v
+    for s in range(1, STAGES):
+        acceleration = work[s]
+        for i in range(displacement.shape[0]):
+            for d in range(2):
+                p = 0.0
+                q = 0.0
+                for j in range(s):
+                    p += STAGE_V[s, j] * work[j, i, d]
+                    q += STAGE_X[s, j] * work[j, i, d]
+                v = velocity[i, d]
+                known_v[i, d] = v + dt * p
+                known_x[i, d] = displacement[i, d] + dt * (NODES[s] * v + dt * q)
+                acceleration[i, d] = work[s - 1, i, d]
+        before = math.inf
+        for iteration in range(MOST_CORRECTIONS + 1):
+            for i in range(displacement.shape[0]):
+                for d in range(2):
+                    speed[i, d] = known_v[i, d] + by_v * acceleration[i, d]
+                    trial[i, d] = known_x[i, d] + by_x * acceleration[i, d]
+            evaluate(time + NODES[s] * dt, dt, trial, speed, force, resisting, direction, stage_power, *columns)
+            if not correct(
+                time + NODES[s] * dt,
+                dt,
+                by_x,
+                by_v,
+                trial,
+                speed,
+                force,
+                resisting,
+                direction,
+                acceleration,
+                correction,
+                work,
+                rod_work,
+                *columns,
+            ):
+                return False
+            change = 0.0
+            for i in range(displacement.shape[0]):
+                for d in range(2):
+                    acceleration[i, d] += correction[i, d]
+                    change += correction[i, d] * correction[i, d]
+            change = by_v * math.sqrt(change)
+            if not change < math.inf or (iteration > 1 and change > 2.0 * before):
+                return False
+            if change <= NEWTON_SHARE * allowed or change <= NEWTON_FLOOR * before_size(by_v, acceleration):
+                break
+            if iteration == MOST_CORRECTIONS:
+                return False
+            before = change
+        if POWERS or LOADS:
+            for k in range(gained.shape[0]):
+                gained[k] += RESULT_V[0, s] * stage_power[k]
+    return True
+
+
+def before_size(by_v, acceleration):
+    """Change of velocity that an acceleration stands for (m/s), Euclidean."""
+    size = 0.0
+    for i in range(acceleration.shape[0]):
+        size += acceleration[i, 0] * acceleration[i, 0] + acceleration[i, 1] * acceleration[i, 1]
+    return by_v * math.sqrt(size)
+
+
+def correct(
+    time,
+    dt,
+    by_x,
+    by_v,
+    trial,
+    speed,
+    force,
+    resisting,
+    direction,
+    acceleration,
+    correction,
+    work,
+    rod_work,
+    *columns,
+):
+    """Newton's correction of the acceleration by conjugate gradients; False if the matrix is not positive."""
+    residual, search = work[STAGES + 5], work[STAGES + 6]
+    product, solved = work[STAGES + 7], work[STAGES + 8]
+    diagonal, beside = work[STAGES + 9], work[STAGES + 10]
+    straight, skew = work[STAGES + 11], work[STAGES + 12]
+    along, across = rod_work[0], rod_work[1]
+    tangent(time, dt, by_x, by_v, trial, speed, direction, along, across, diagonal, beside, *columns)
+    precondition(direction, along, across, diagonal, beside, straight, skew, *columns)
+    for i in range(trial.shape[0]):
+        for d in range(2):
+            correction[i, d] = 0.0
+            residual[i, d] = 0.0
+            if particles_mobility[i, d] > 0.0:
+                total = force[i, d] - acceleration[i, d] * (0.001 * particles_mass[i])
+                if RATES:
+                    total += resisting[i, d]
+                residual[i, d] = total
+    size = relax(residual, solved, straight, skew)
+    enough = SOLVER_SHARE * SOLVER_SHARE * size
+    for i in range(trial.shape[0]):
+        for d in range(2):
+            search[i, d] = solved[i, d]
+    for _ in range(8 * trial.shape[0] + 64):
+        if not size > enough:
+            break
+        multiply(search, product, direction, along, across, diagonal, beside, *columns)
+        curvature = 0.0
+        for i in range(trial.shape[0]):
+            curvature += search[i, 0] * product[i, 0] + search[i, 1] * product[i, 1]
+        if not curvature > 0.0:
+            return False
+        share = size / curvature
+        for i in range(trial.shape[0]):
+            for d in range(2):
+                correction[i, d] += share * search[i, d]
+                residual[i, d] -= share * product[i, d]
+        before = size
+        size = relax(residual, solved, straight, skew)
+        ratio = size / before
+        for i in range(trial.shape[0]):
+            for d in range(2):
+                search[i, d] = solved[i, d] + ratio * search[i, d]
+    return size < math.inf
+
+
+def multiply(vector, product, direction, along, across, diagonal, beside, *columns):
+    """product ← (M + γh C + (γh)² K) vector; constrained directions do not take part."""
+    for i in range(vector.shape[0]):
+        product[i, 0] = diagonal[i, 0] * vector[i, 0] + beside[i, 0] * vector[i, 1]
+        product[i, 1] = diagonal[i, 1] * vector[i, 1] + beside[i, 0] * vector[i, 0]
+    for r in range(rods_between.shape[0]):
+        a = rods_between[r, 0]
+        b = rods_between[r, 1]
+        nx = direction[r, 0]
+        ny = direction[r, 1]
+        sx = vector[b, 0] - vector[a, 0]
+        sy = vector[b, 1] - vector[a, 1]
+        pull = (along[r] - across[r]) * (nx * sx + ny * sy)
+        px = pull * nx + across[r] * sx
+        py = pull * ny + across[r] * sy
+        product[a, 0] -= px
+        product[a, 1] -= py
+        product[b, 0] += px
+        product[b, 1] += py
+    for i in range(vector.shape[0]):
+        for d in range(2):
+            if particles_mobility[i, d] == 0.0:
+                product[i, d] = 0.0
+
+
+def precondition(direction, along, across, diagonal, beside, straight, skew, *columns):
+    """straight, skew ← the inverses of the 2 × 2 blocks on the diagonal of the matrix."""
+    for i in range(diagonal.shape[0]):
+        straight[i, 0] = diagonal[i, 0]
+        straight[i, 1] = diagonal[i, 1]
+        skew[i, 0] = beside[i, 0]
+    for r in range(rods_between.shape[0]):
+        nx = direction[r, 0]
+        ny = direction[r, 1]
+        sideways = max(across[r], 0.0)
+        stiffer = max(along[r], 0.0) - sideways
+        for end in range(2):
+            i = rods_between[r, end]
+            straight[i, 0] += stiffer * nx * nx + sideways
+            straight[i, 1] += stiffer * ny * ny + sideways
+            skew[i, 0] += stiffer * nx * ny
+    for i in range(diagonal.shape[0]):
+        xx = straight[i, 0]
+        yy = straight[i, 1]
+        xy = skew[i, 0]
+        if particles_mobility[i, 0] == 0.0 or particles_mobility[i, 1] == 0.0:
+            xy = 0.0
+        determinant = xx * yy - xy * xy
+        straight[i, 0] = yy / determinant if particles_mobility[i, 0] > 0.0 else 0.0
+        straight[i, 1] = xx / determinant if particles_mobility[i, 1] > 0.0 else 0.0
+        skew[i, 0] = -xy / determinant
+
+
+def relax(residual, solved, straight, skew):
+    """solved ← preconditioned residual; returns their product, the square of its size."""
+    size = 0.0
+    for i in range(residual.shape[0]):
+        solved[i, 0] = straight[i, 0] * residual[i, 0] + skew[i, 0] * residual[i, 1]
+        solved[i, 1] = straight[i, 1] * residual[i, 1] + skew[i, 0] * residual[i, 0]
+        size += solved[i, 0] * residual[i, 0] + solved[i, 1] * residual[i, 1]
+    return size
