@@ -238,7 +238,7 @@ def record(session: Session, probe: Probe, until: float, samples: int) -> None:
     simulation = session.simulation
     simulation.advance(0)
     for number in range(samples):
-        simulation.advance(simulation.full_steps_to(until * number / (samples - 1)))
+        simulation.run_to(until * number / (samples - 1), whole_steps=True)
         simulation.observe()
         probe.sample(session)
         if simulation.halted:
