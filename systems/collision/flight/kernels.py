@@ -127,10 +127,10 @@ def _happen(discs, grid, ties, queue, group, report, numbers, counts):
     stop_sinking(count, touching, group)
     respond(count, touching, _restitution(touching, discs, group, numbers), group)
     _report(touching, discs, group, report, numbers, counts)
+    _note_noise(count, touching, discs, group)
     duration = support(count, touching, discs, group, numbers)
     _make_contacts_last(count, touching, discs, ties, group, counts)
     struck = 0 if i == j else 2
-    _note_noise(count, touching, discs, group)
     _redirect(count, struck, duration, discs, group, numbers)
     _enclose_anew(count, discs, grid, group, numbers, counts)
     reason = DONE
@@ -336,21 +336,24 @@ def _make_contacts_last(count, touching, discs, ties, group, counts):
             i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
             note_lasting(i, j, force, discs, ties, counts)
             note_lasting(j, i, force, discs, ties, counts)
+            for disc in (i, j):
+                pull = math.hypot(discs[disc, GX], discs[disc, GY])
+                discs[disc, NOISE] += SPEED_NOISE * math.sqrt(pull * discs[disc, RADIUS])
 
 
 @compiled
 def _note_noise(count, touching, discs, group):
-    """Round-off in the members' velocities: of what they are, and of what impulses and contact forces added."""
+    """Round-off in the members' velocities: of what they are and of the impulses that made them so.
+
+    Where impulses at several contacts were sought together, it is what was not worth seeking further.
+    """
     for m in range(count):
-        discs[group.members[m], NOISE] = SPEED_NOISE * (abs(group.other[m, 0]) + abs(group.other[m, 1]))
-    for c in range(touching):
-        for p in range(2):
-            m = group.links[c, p]
-            i = group.members[m]
-            change = group.contacts[c, IMPULSE] * max(group.mobility[m, 0], group.mobility[m, 1])
-            if group.contacts[c, FORCE] > 0.0:
-                change += math.sqrt(math.hypot(discs[i, GX], discs[i, GY]) * discs[i, RADIUS])
-            discs[i, NOISE] += SPEED_NOISE * change
+        speed = abs(group.motion[m, 0]) + abs(group.motion[m, 1])
+        discs[group.members[m], NOISE] = group.noise[0] if touching > 1 else SPEED_NOISE * speed
+    if touching == 1:
+        for m in range(count):
+            change = group.contacts[0, IMPULSE] * max(group.mobility[m, 0], group.mobility[m, 1])
+            discs[group.members[m], NOISE] += SPEED_NOISE * change
 
 
 @compiled
