@@ -1,0 +1,221 @@
+"""The table of keys is true: in every scene that it names, every key does something."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from components.tags import DiagramShown
+from game import Session
+from game.library import DATA_VARIABLE, models_folder
+from game.scenes.force_method import ForceMethod
+from game.scenes.form import FormScene
+from systems.input.bindings import BINDINGS, FORCE_METHOD, LOAD, PAUSE, PROPERTIES, SAVE, SIMULATION, Binding
+from tests.properties.soundness import contents
+
+CASES = [(scene, binding) for binding in BINDINGS for scene in binding.scenes]
+FOLLOWING = {"drag to", "drop"}  # are part of a drag
+
+
+@pytest.fixture(autouse=True)
+def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """More saved models than there is room for on the screen."""
+    monkeypatch.setenv(DATA_VARIABLE, str(tmp_path))
+    models_folder().mkdir()
+    text = (files("assets") / "models" / "isostatic.json").read_text(encoding="utf-8")
+    for number in range(20):
+        (models_folder() / f"model {number}.json").write_text(text, encoding="utf-8")
+
+
+class FakeWindow:
+    """Notes what a window is asked for."""
+
+    def __init__(self) -> None:
+        self.asked = 0
+
+    def toggle_full_screen(self) -> None:
+        self.asked += 1
+
+    def screenshot(self) -> str:
+        self.asked += 1
+        return "picture.png"
+
+    def copied(self) -> str:
+        return ""
+
+    def copy(self, text: str) -> None:
+        self.asked += 1
+
+
+def in_scene(scene: str) -> Session:
+    """A session there, in a small window, with a structure that has moved, edits and B selected."""
+    session = Session.open("hyperstatic")
+    session.resize(640, 480)
+    session.rods["AB"].stiffness = 1e5
+    session.run(steps=300)
+    session.select(session.particles["B"])
+    session.point(*session.particles["B"].position)
+    keys = {PAUSE: "", SIMULATION: "space", PROPERTIES: "return", SAVE: "s", LOAD: "d", FORCE_METHOD: "k"}[
+        scene
+    ]
+    if keys:
+        session.press(keys)
+    assert session.scene == scene
+    return session
+
+
+def _deselected(session: Session) -> None:
+    session.select()
+
+
+def _pasting(session: Session) -> None:
+    _typed(session)
+    session.clipboard = "7"
+
+
+def _undone(session: Session) -> None:
+    session.undo()
+
+
+def _typed(session: Session) -> None:
+    """Some text in a box, the caret in its middle."""
+    scene = session.scenes.active
+    assert isinstance(scene, FormScene)
+    session.click_box(scene.form.boxes[0].title)
+    session.type("12")
+    session.press("left")
+
+
+def _copied(session: Session) -> None:
+    session.act("copy")
+
+
+def _at_end(session: Session) -> None:
+    """Scrolled down as far as it goes."""
+    for _ in range(40):
+        session.press("wheel down")
+
+
+def _part(number: int, pick: str = "BD") -> Callable[[Session], None]:
+    def go(session: Session) -> None:
+        guide = session.scenes.active.guide  # type: ignore[attr-defined]
+        session.press("k")
+        if number > 2:
+            guide.pick(guide.sets[0].model.rods[pick])
+        for _ in range(number - 3):
+            session.press("k")
+
+    return go
+
+
+def _support_of_d(session: Session) -> None:
+    _part(2)(session)
+    guide = session.scenes.active.guide  # type: ignore[attr-defined]
+    guide.pick(guide.sets[0].model.particles["D"])
+
+
+def _over_a_rod(session: Session) -> None:
+    """Part 2, the pointer over BD."""
+    _part(2)(session)
+    session.point(0.5, 1.0)
+    session.view.pointer = session.focus[1].pointer
+
+
+def _window(session: Session) -> None:
+    session.window = FakeWindow()
+
+
+def _grids(session: Session) -> None:
+    session.press("g")
+
+
+def _named(session: Session) -> None:
+    session.press("ctrl+a")
+    session.type("a name")
+
+
+PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
+    ("redo", PAUSE): _undone,
+    ("redo", SIMULATION): _undone,
+    ("paste", PAUSE): _copied,
+    ("paste", SIMULATION): _copied,
+    ("fit", FORCE_METHOD): lambda session: session.press("drag middle", (30.0, 30.0)),
+    ("fit", PAUSE): lambda session: session.press("drag middle", (30.0, 30.0)),
+    ("fit", SIMULATION): lambda session: session.press("drag middle", (30.0, 30.0)),
+    ("natural pace", PAUSE): lambda session: session.press("+"),
+    ("natural pace", SIMULATION): lambda session: session.press("+"),
+    ("next grid", PAUSE): _grids,
+    ("pick unknown", FORCE_METHOD): _over_a_rod,
+    ("release x", FORCE_METHOD): _support_of_d,
+    ("release y", FORCE_METHOD): _support_of_d,
+    ("release another", FORCE_METHOD): _part(7),
+    ("toggle full screen", ""): _window,
+    ("screenshot", ""): _window,
+    ("scroll up", PROPERTIES): _at_end,
+    ("scroll up", SAVE): _at_end,
+    ("scroll up", LOAD): _at_end,
+    ("accept", PROPERTIES): _typed,
+    ("accept", SAVE): _named,
+    ("accept", LOAD): lambda session: session.type("tower"),
+    **{
+        (action, scene): _typed
+        for action in ("cancel", "erase", "erase after", "go left", "go right", "to the beginning", "to the end",
+                       "mark all", "copy text", "cut text", "paste text", "next box", "previous box")
+        for scene in (PROPERTIES, SAVE, LOAD)
+    },
+    **{("paste text", scene): _pasting for scene in (PROPERTIES, SAVE, LOAD)},
+    ("select", PAUSE): _deselected,
+    ("select", SIMULATION): _deselected,
+    ("click form", PROPERTIES): lambda session: setattr(session.view, "pointer", _place_of_a_box(session)),
+    ("click form", SAVE): lambda session: setattr(session.view, "pointer", _place_of_a_box(session)),
+    ("click form", LOAD): lambda session: setattr(session.view, "pointer", _place_of_a_box(session)),
+}  # fmt: skip
+
+
+def _place_of_a_box(session: Session) -> tuple[float, float]:
+    scene = session.scenes.active
+    assert isinstance(scene, FormScene)
+    place = scene.layout(session).place_of(scene.form.boxes[0])
+    assert place is not None
+    return place.left + 5.0, place.top + 5.0
+
+
+def seen(session: Session) -> Any:
+    """All that a person could see change."""
+    scene = session.scenes.active
+    shown: list[Any] = [session.scene, contents(session.model), session.selected, repr(session.view)]
+    shown += [
+        session.model.tagged(DiagramShown),
+        session.clock.factor,
+        session.view.tool,
+        repr(session.gesture),
+    ]
+    shown += [session.clipboard, getattr(session.window, "asked", 0), session.notice]
+    if isinstance(scene, FormScene):
+        form = scene.form
+        shown += [form.selected, form.chosen, form.heading.first, form.heading.message]
+        shown += [(box.text, box.caret, box.marked) for box in form.boxes]
+    if isinstance(scene, ForceMethod) and scene.guide is not None:
+        shown += [scene.guide.part, len(scene.guide.sets), scene.guide.refusal, scene.hint(session)]
+        shown += [repr(camera) for camera in scene.cameras(session)]
+    return shown
+
+
+@pytest.mark.parametrize(
+    ("scene", "binding"), CASES, ids=[f"{scene}-{binding.key}-{binding.action}" for scene, binding in CASES]
+)
+def test_every_key_does_something_in_every_scene_that_it_names(scene: str, binding: Binding) -> None:
+    if binding.key in FOLLOWING:
+        pytest.skip("part of a drag, which is tested by itself")
+    session = in_scene(scene)
+    prepare = PREPARED.get((binding.action, scene)) or PREPARED.get((binding.action, ""))
+    if prepare is not None:
+        prepare(session)
+    session.notice = ""
+    before = seen(session)
+    session.press(binding.key, (7.0, 9.0) if binding.key == "drag middle" else None)
+    assert seen(session) != before
