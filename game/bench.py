@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 CHECKOUT = Path(__file__).resolve().parent.parent
-NAMES = ("speed", "drawing", "editing", "mods")
+NAMES = ("speed", "drawing", "editing", "mods", "collisions")
 
 Row = Mapping[str, Any]
 

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from game import bench
-from tests.benchmarks import drawing, speed
+from tests.benchmarks import collisions, drawing, speed
 from tests.benchmarks.ceiling import bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, mesh
+from tests.reference.scenes_of_discs import gas, packed
 
 
 @pytest.mark.parametrize("rods", [100, 1_000, 10_000])
@@ -52,3 +53,17 @@ def test_tables_and_the_picture_are_written(tmp_path: Path) -> None:
         "speed_peers.csv",
         "speed.png",
     }
+
+
+def test_how_far_discs_sink_into_one_another_is_measured() -> None:
+    scene = packed(5, 4)
+    assert collisions._sunk(scene["position"], scene) <= 1e-12
+    lower = scene["position"].copy()
+    lower[0, 1] -= 0.01
+    assert 0.1 < collisions._sunk(lower, scene) < 0.2
+
+
+def test_pymunk_is_given_the_same_discs() -> None:
+    scene = gas(30, 0.1)
+    _, bodies = collisions._pymunk(scene, 0.1, 1.0, 0.0)
+    assert sum(body.velocity.length**2 for body in bodies) == pytest.approx(30)

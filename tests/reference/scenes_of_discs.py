@@ -89,6 +89,25 @@ def stacked(count: int, columns: int, seed: int = 0, spread: float = 0.2, radius
     return with_held(scene, frame(columns * pitch, (count // columns + 1) * pitch, radius), radius)
 
 
+def packed(columns: int, rows: int, radius: float = 0.05) -> Scene:
+    """Return a hexagonal pile at rest in a trough, everything touching: rows of `columns` and one less in turns."""
+    pitch = 2 * radius
+    places = [
+        ((c + 0.5 * (row % 2)) * pitch, (row + 1) * np.sqrt(3) * radius)
+        for row in range(rows)
+        for c in range(columns - row % 2)
+    ]
+    scene = {
+        "position": np.array(places),
+        "velocity": np.zeros((len(places), 2)),
+        "radius": np.full(len(places), radius),
+        "inverse_mass": np.ones((len(places), 2)),
+    }
+    floor = [((c - 0.5) * pitch, 0.0) for c in range(columns + 1)]
+    walls = [(x, row * np.sqrt(3) * radius) for row in range(1, rows + 2, 2) for x in (-pitch, columns * pitch)]
+    return with_held(scene, np.array(floor + walls))
+
+
 def deepest(place: np.ndarray, radius: np.ndarray, movable: np.ndarray) -> float:
     """Return by how much discs sink into each other at most (m); negative: nothing touches."""
     gap = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1)) - (radius[:, None] + radius[None])

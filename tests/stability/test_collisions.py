@@ -7,7 +7,17 @@ from hypothesis import strategies as st
 
 from systems.collision.arrays import Reason
 from systems.collision.discs import Discs
-from tests.reference.scenes_of_discs import GRAVITY, Scene, break_shot, deepest, gas, line, stacked, with_held
+from tests.reference.scenes_of_discs import (
+    GRAVITY,
+    Scene,
+    break_shot,
+    deepest,
+    gas,
+    line,
+    packed,
+    stacked,
+    with_held,
+)
 
 DOWN = np.array([0.0, -GRAVITY])
 MOST_EVENTS = 300_000  # in the scenes here; more is as good as a hang
@@ -28,25 +38,6 @@ def sinking(discs: Discs, scene: Scene, until: float) -> float:
     place = scene["position"] + discs.state_at(until)[0]
     movable = (scene["inverse_mass"] > 0).any(axis=1)
     return deepest(place, scene["radius"], movable) / scene["radius"].min()
-
-
-def packed(columns: int, rows: int) -> Scene:
-    """A hexagonal pile at rest in a trough, everything touching: rows of `columns` and one less in turns."""
-    pitch = 2 * RADIUS
-    places = [
-        ((c + 0.5 * (row % 2)) * pitch, (row + 1) * np.sqrt(3) * RADIUS)
-        for row in range(rows)
-        for c in range(columns - row % 2)
-    ]
-    scene = {
-        "position": np.array(places),
-        "velocity": np.zeros((len(places), 2)),
-        "radius": np.full(len(places), RADIUS),
-        "inverse_mass": np.ones((len(places), 2)),
-    }
-    floor = [((c - 0.5) * pitch, 0.0) for c in range(columns + 1)]
-    walls = [(x, row * np.sqrt(3) * RADIUS) for row in range(1, rows + 2, 2) for x in (-pitch, columns * pitch)]
-    return with_held(scene, np.array(floor + walls))
 
 
 # --- piles --------------------------------------------------------------------------------------------------

@@ -1,0 +1,169 @@
+"""Colliding discs against pymunk in the same run: gases, what an impact costs, piles, memory, energy kept."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from systems.collision.discs import Discs
+from tests.reference.scenes_of_discs import GRAVITY, Scene, gas, packed, stacked
+
+STEP = 1 / 240  # s; pymunk's
+DOWN = np.array([0.0, -GRAVITY])
+
+Row = dict[str, Any]
+
+
+def _ours(scene: Scene, seconds: float, **rest: Any) -> tuple[float, Discs]:
+    discs = Discs(**scene, **rest)
+    discs.advance(0.0)
+    started = time.process_time()
+    discs.advance(seconds)
+    return time.process_time() - started, discs
+
+
+def _pymunk_space(scene: Scene, restitution: float, gravity: float) -> tuple[Any, list[Any]]:
+    """The same discs in pymunk, without friction; held ones are static."""
+    import pymunk
+
+    space = pymunk.Space(threaded=False)
+    space.gravity = (0.0, -gravity)
+    bodies = []
+    columns = (scene[key].tolist() for key in ("position", "velocity", "radius", "inverse_mass"))
+    for place, velocity, radius, inverse in zip(*columns, strict=True):
+        body = pymunk.Body(1 / inverse[0], 1.0) if inverse[0] else pymunk.Body(body_type=pymunk.Body.STATIC)
+        body.position, body.velocity = tuple(place), tuple(velocity)
+        circle = pymunk.Circle(body, radius)
+        circle.elasticity, circle.friction = restitution, 0.0
+        space.add(body, circle)
+        bodies.append(body)
+    return space, bodies
+
+
+def _pymunk(scene: Scene, seconds: float, restitution: float, gravity: float) -> tuple[float, list[Any]]:
+    space, bodies = _pymunk_space(scene, restitution, gravity)
+    started = time.process_time()
+    for _ in range(round(seconds / STEP)):
+        space.step(STEP)
+    return time.process_time() - started, bodies
+
+
+def gases(*, quick: bool) -> list[Row]:
+    """CPU seconds per simulated second of gases at e = 1, and the share of the energy that is left."""
+    rows = []
+    for count in (5_000,) if quick else (1_000, 5_000):
+        for filled in (0.02, 0.1):
+            scene, seconds = gas(count, filled), 0.5 if quick else 2.0
+            ours, discs = _ours(scene, seconds)
+            theirs, bodies = _pymunk(scene, seconds, 1.0, 0.0)
+            kept = (discs.state_at(seconds)[1] ** 2).sum() / count
+            pymunk_kept = sum(body.velocity.length**2 for body in bodies[:count]) / count
+            rows.append(
+                {
+                    "discs": count,
+                    "area_filled": filled,
+                    "impacts_per_s": discs.impacts / seconds,
+                    "s_per_s": ours / seconds,
+                    "pymunk_s_per_s": theirs / seconds,
+                    "times_faster": theirs / ours,
+                    "energy_lost": float(1 - kept),
+                    "pymunk_energy_lost": 1 - pymunk_kept,
+                }
+            )
+    return rows
+
+
+def growth(*, quick: bool) -> list[Row]:
+    """CPU time of one impact by number of discs, in a gas that covers a tenth of its area."""
+    rows = []
+    for count in (500, 5_000, 50_000):
+        scene = gas(count, 0.1)
+        discs = Discs(**scene)
+        discs.advance(0.0)
+        best = np.inf
+        for turn in range(1, 3 if quick else 6):
+            before, started = discs.impacts, time.process_time()
+            discs.advance(turn * 20_000 / (1.9 * count))
+            best = min(best, (time.process_time() - started) / max(discs.impacts - before, 1))
+        rows.append({"discs": count, "impacts": discs.impacts, "us_per_impact": best * 1e6})
+    for row in rows:
+        row["relative_to_log_n"] = (row["us_per_impact"] / rows[0]["us_per_impact"]) / (
+            np.log(row["discs"]) / np.log(rows[0]["discs"])
+        )
+    return rows
+
+
+def memory() -> list[Row]:
+    """Resident memory (MB) that 50 000 discs add to a process that has compiled the engine, after 0.2 s."""
+    code = """
+import resource
+from tests.reference.scenes_of_discs import gas, line
+from systems.collision.discs import Discs
+def now():
+    for row in open("/proc/self/status"):
+        if row.startswith("VmRSS"):
+            return int(row.split()[1]) / 1024
+Discs(**line([0, 1], [1, 0], [1, 1])).advance(1.0)
+scene = gas({count}, 0.1)
+before = now()
+discs = Discs(**scene)
+discs.advance(0.2)
+print(before, now())
+"""
+    count = 50_000
+    answer = subprocess.run(
+        [sys.executable, "-c", code.format(count=count)], check=True, capture_output=True, text=True
+    )
+    before, after = map(float, answer.stdout.split())
+    return [{"discs": count, "process_MB": before, "discs_MB": after - before}]
+
+
+def piles(*, quick: bool) -> list[Row]:
+    """CPU seconds per simulated second: 2000 discs that lie packed, and discs dropped into a box."""
+    rows = []
+    for name, scene, seconds in (
+        ("2000 packed", packed(41, 50), 0.5 if quick else 2.0),
+        ("200 dropped", stacked(200, 14), 1.0 if quick else 4.0),
+    ):
+        movable = scene["inverse_mass"][:, 0] > 0
+        ours, discs = _ours(scene, seconds, acceleration=DOWN, restitution=0.3)
+        theirs, bodies = _pymunk(scene, seconds, 0.3, GRAVITY)
+        place = scene["position"] + discs.state_at(seconds)[0]
+        pymunk_place = np.array([tuple(body.position) for body in bodies])
+        rows.append(
+            {
+                "pile": name,
+                "discs": int(movable.sum()),
+                "s_per_s": ours / seconds,
+                "pymunk_s_per_s": theirs / seconds,
+                "times_faster": theirs / ours,
+                "sunk_in_radii": _sunk(place, scene),
+                "pymunk_sunk_in_radii": _sunk(pymunk_place, scene),
+                "fastest_m_s": float(np.abs(discs.state_at(seconds)[1]).max()),
+                "pymunk_fastest_m_s": max(body.velocity.length for body in bodies),
+            }
+        )
+    return rows
+
+
+def _sunk(place: np.ndarray, scene: Scene) -> float:
+    """The deepest overlap, in the smallest radius."""
+    from systems.collision.near import near_pairs
+
+    pairs = near_pairs(place, scene["radius"])
+    pairs = pairs[(scene["inverse_mass"][pairs] > 0).any(axis=(1, 2))]
+    line = place[pairs[:, 1]] - place[pairs[:, 0]]
+    gap = np.hypot(line[:, 0], line[:, 1]) - scene["radius"][pairs].sum(axis=1)
+    return float(max(-gap.min(initial=0.0), 0.0) / scene["radius"].min())
+
+
+def report(*, quick: bool) -> dict[str, list[Row]]:
+    """Everything this benchmark measures, by table."""
+    _ours(gas(20, 0.1), 0.1)  # compiles
+    tables: dict[str, Callable[..., list[Row]]] = {"gases": gases, "growth": growth, "piles": piles}
+    return {name: table(quick=quick) for name, table in tables.items()} | {"memory": memory()}
