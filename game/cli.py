@@ -122,7 +122,7 @@ def _run(words: Sequence[str]) -> int:
     parser.add_argument("--output", metavar="FILE", help="write to a file instead of standard output")
     options = parser.parse_args(words)
     session = _session(options)
-    run = _analysis(options).run(session, options.model)
+    run = _analysis(options).run_in(session, options.model)
     _write(_FORMATS[options.format](run), options.output)
     return ANSWERED if run["status"] in FOUND else NOT_ANSWERED
 

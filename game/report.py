@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from components.model import Model
 from game.results import ENERGIES, Run, State, state
-from game.session import DEFAULT_LIMIT, Session
+from game.session import DEFAULT_LIMIT
+from game.simulation import Simulation
 from systems.base import StopReason
 
 if TYPE_CHECKING:
+    from game.session import Session
     from systems.statics.events import Event
     from systems.statics.settle import StaticState
 
@@ -32,60 +35,69 @@ class Analysis:
     times: tuple[float, ...] | None = None
     limit: float = DEFAULT_LIMIT
 
-    def run(self, session: Session, name: str) -> Run:
+    def run(self, simulation: Simulation, name: str) -> Run:
         """Compute it; `name` is what the result calls the model."""
         if self.load_factors is not None:
-            return run_static(session, name, self.load_factors)
+            return run_static(simulation, name, self.load_factors)
         if self.times is not None:
-            return run_at(session, name, self.times)
-        return run_until_rest(session, name, self.limit)
+            return run_at(simulation, name, self.times)
+        return run_until_rest(simulation, name, self.limit)
+
+    def run_in(self, session: Session, name: str) -> Run:
+        """Compute it in a session, which adds what theory says about a run through time."""
+        if self.load_factors is not None:
+            return self.run(session.simulation, name)
+        session.run(steps=0)  # the beginning is noted, for theory beside the run
+        found = self.run(session.simulation, name)
+        return {**found, "message": session.message, "events": _records(session.model, session.remarks)}
 
 
-def run_until_rest(session: Session, name: str, limit: float) -> Run:
+def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
     """Run until at rest, at most `limit` s of simulated time."""
-    session.simulation.smooth = False  # nobody watches
-    status = session.run(until="rest", limit=limit)
-    return _run(session, name, status, [_state(session)])
+    simulation.smooth = False  # nobody watches
+    simulation.run_until_rest(simulation.model.clock.time + limit)
+    ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
+    status = ended.get(simulation.reason, "limit reached")
+    return _run(simulation, name, status, [_state(simulation)])
 
 
-def run_at(session: Session, name: str, times: Sequence[float]) -> Run:
+def run_at(simulation: Simulation, name: str, times: Sequence[float]) -> Run:
     """Run through the given times (s, ascending) and report the state at exactly each of them.
 
     The short last step to a reported time is taken on a copy, so that a report never changes the run.
     """
-    simulation, states = session.simulation, list[State]()
+    states: list[State] = []
     simulation.smooth = False  # nobody watches
-    session.run(steps=0)
     for target in times:
         simulation.run_to(target, whole_steps=True)
         if simulation.reason is StopReason.DIVERGED:
-            return _run(session, name, "diverged", [*states, _state(session)])
+            return _run(simulation, name, "diverged", [*states, _state(simulation)])
         if simulation.reason is StopReason.REST:  # time passes without steps
-            session.model.writable("clock.time")[0] = max(target, session.time)
+            simulation.model.writable("clock.time")[0] = max(target, simulation.model.clock.time)
         with simulation.at(target):
-            states.append(_state(session))
-            run = _run(session, name, "time reached", states)
+            states.append(_state(simulation))
+            run = _run(simulation, name, "time reached", states)
     return run
 
 
-def run_static(session: Session, name: str, factors: Sequence[float]) -> Run:
+def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> Run:
     """Settle at each load factor in turn; the history (yielding) is kept from one to the next."""
     from systems.statics.settle import settle
 
     started = time.perf_counter()
-    settlement = settle(session.model, factors)
+    settlement = settle(simulation.model, factors)
     seconds = time.perf_counter() - started
-    states = [_static_state(session, found) for found in settlement.states]
-    return _run(session, name, settlement.status, states) | {
+    states = [_static_state(simulation, found) for found in settlement.states]
+    return _run(simulation, name, settlement.status, states) | {
         "message": settlement.message,
         "wall_seconds": seconds,
         "time_step": None,
         "integrator": None,
-        "events": _records(session, settlement.events),
+        "events": _records(simulation.model, settlement.events),
     }
 
 
-def _static_state(session: Session, found: StaticState) -> State:
+def _static_state(simulation: Simulation, found: StaticState) -> State:
     """In statics, work is what the path of equilibria stores and dissipates."""
     energy = dict.fromkeys(ENERGIES, 0.0) | {
         "elastic": found.elastic_energy,
@@ -102,31 +114,31 @@ def _static_state(session: Session, found: StaticState) -> State:
         "rods.plastic_strain": found.plastic_strain,
         "rods.yielding": found.yielding,
     }
-    return state(session.model, energy, found.load_factor, found.residual, columns)
+    return state(simulation.model, energy, found.load_factor, found.residual, columns)
 
 
-def _state(session: Session) -> State:
-    return state(session.model, session.energy.as_dict(), None, session.simulation.residual)
+def _state(simulation: Simulation) -> State:
+    return state(simulation.model, simulation.energy.as_dict(), None, simulation.residual)
 
 
-def _records(session: Session, events: Sequence[Event]) -> list[dict[str, Any]]:
+def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
     from systems.statics.events import event_record
 
-    return [event_record(session.model, event) for event in events]
+    return [event_record(model, event) for event in events]
 
 
-def _run(session: Session, name: str, status: str, states: list[State]) -> dict[str, Any]:
-    clock, simulation = session.model.clock, session.simulation
+def _run(simulation: Simulation, name: str, status: str, states: list[State]) -> dict[str, Any]:
+    clock = simulation.model.clock
     return {
         "model": name,
         "status": status,
-        "message": session.message,
+        "message": simulation.message or simulation.warning,
         "time": clock.time,
         "steps": clock.steps,
         "time_step": clock.step_size,
         "integrator": simulation.integrator,
         "wall_seconds": simulation.compute_seconds,
         "compile_seconds": simulation.compile_seconds,
-        "events": _records(session, session.remarks),
+        "events": [],
         "states": states,
     }

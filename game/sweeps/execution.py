@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from game.sweeps.plan import Outcome, Plan
+from game.sweeps.specimen import compute
 from game.sweeps.variation import INSTALL, SweepError
 
 MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
@@ -36,7 +37,7 @@ def outcomes(
         workers = suitable_workers(plan, len(numbers))
     if scheduler is None and workers == 1:
         for task in _tasks(numbers, 1):
-            yield plan.compute_all(task)
+            yield compute(plan, task)
         return
     try:
         import distributed
@@ -81,7 +82,7 @@ def _distributed(distributed: Any, client: Any, plan: Plan, numbers: Sequence[in
     shared = client.submit(_same, plan, pure=False)  # unlike scattered data, survives the death of its workers
 
     def submit(task: Sequence[int]) -> Any:
-        return client.submit(Plan.compute_all, shared, task, pure=False)
+        return client.submit(compute, shared, task, pure=False)
 
     workers = max(len(client.scheduler_info()["workers"]), 1)
     tasks = {submit(task): task for task in _tasks(numbers, workers)}

@@ -1,18 +1,16 @@
-"""Plan: all variants of a sweep in a fixed order, and what each of them comes to."""
+"""Plan: all variants of a sweep in a fixed order, and what is asked of each."""
 
 from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import msgspec
 import numpy as np
 
-from game import Session
-from game.overrides import apply_override
 from game.report import Analysis
 from game.sweeps.installation import Installation
 from game.sweeps.measure import Measure
@@ -77,29 +75,9 @@ class Plan:
         values = map(as_text, self.values(number))
         return (*self.overrides, *(f"{path}={value}" for path, value in zip(self.varied, values, strict=True)))
 
-    def compute(self, number: int) -> Outcome:
-        """Compute a variant; one that cannot be is a record that says why."""
-        try:
-            session = Session.open(self.document)
-            for override in self.overrides_of(number):
-                apply_override(session.model, override)
-            run = self.analysis.run(session, self.name)
-        except Exception as error:  # one bad variant of thousands must not end the others
-            known = isinstance(error, ValueError)
-            return self.failure(number, str(error) if known else f"{type(error).__name__}: {error}")
-        return number, [
-            (run["status"], run["message"], s["time"], s["load_factor"], *(m.of(s) for m in self.measures))
-            for s in run["states"]
-        ]
-
     def failure(self, number: int, reason: str) -> Outcome:
         """What is recorded of a variant that could not be computed."""
         return number, [(FAILED, reason, *[None] * (len(RECORDED) - 2 + len(self.measures)))]
-
-    def compute_all(self, numbers: Sequence[int]) -> list[Outcome]:
-        """Compute some variants, here. Raises SweepError if this installation is not that of the plan."""
-        self.installation.require()
-        return [self.compute(number) for number in numbers]
 
     def fingerprint(self) -> str:
         """Tells plans apart: model, variations, seed, what is asked and measured, versions."""

@@ -11,7 +11,7 @@ DAMPED = triangle(damping=100, density=6.15)
 
 def test_states_are_reported_at_exactly_the_times_asked_for() -> None:
     times = (0.0, 1e-4, 3e-4, 0.3, 0.7)
-    run = Analysis(times=times).run(Session.open(DAMPED), "triangle")
+    run = Analysis(times=times).run(Session.open(DAMPED).simulation, "triangle")
     assert run["status"] == "time reached"
     assert [made["time"] for made in run["states"]] == list(times)
     forces = [made["rods"]["AB"]["axial_force"] for made in run["states"]]
@@ -21,6 +21,6 @@ def test_states_are_reported_at_exactly_the_times_asked_for() -> None:
 
 
 def test_a_report_on_the_way_does_not_change_the_run() -> None:
-    direct = Analysis(times=(3e-4,)).run(Session.open(DAMPED), "triangle")
-    reported = Analysis(times=(1.2345e-4, 3e-4)).run(Session.open(DAMPED), "triangle")
+    direct = Analysis(times=(3e-4,)).run(Session.open(DAMPED).simulation, "triangle")
+    reported = Analysis(times=(1.2345e-4, 3e-4)).run(Session.open(DAMPED).simulation, "triangle")
     assert reported["states"][-1] == direct["states"][-1]

@@ -10,14 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game import Session
+from game import Session, models
 from game.cli import main
 from game.overrides import apply_override
 from game.report import Analysis
 from game.sweeps import SweepError, sweep
 from game.sweeps.execution import outcomes
-from game.sweeps.plan import Plan
 from game.sweeps.results import Results
+from game.sweeps.run import plan_of
+from game.sweeps.specimen import Specimen, compute
 from tests.reference.models import square, triangle
 
 MODEL = triangle(damping=100, density=6.15, tensile_strength=215, compressive_strength=215)
@@ -33,7 +34,7 @@ def run_alone(overrides: Sequence[str], analysis: Analysis) -> dict[str, Any]:
     session = Session.open(MODEL)
     for override in overrides:
         apply_override(session.model, override)
-    return analysis.run(session, "alone")  # type: ignore[return-value]
+    return analysis.run(session.simulation, "alone")  # type: ignore[return-value]
 
 
 # --- variants ------------------------------------------------------------------------------------------
@@ -57,6 +58,58 @@ def test_a_variant_has_the_bits_of_a_run_of_its_own(analysis: Analysis) -> None:
             force, elastic = state["rods"]["AB"]["axial_force"], state["energy"]["elastic"]
             assert rows.pop(0) == (alone["status"], state["time"], force, x, y, elastic)
     assert not rows
+
+
+def begun() -> dict[str, Any]:
+    """The model in the middle of a run."""
+    session = Session.open(MODEL)
+    session.run(time=1e-4)
+    session.simulation.account_for_edits()
+    return models.document(session.model)
+
+
+ORDERS: dict[str, tuple[Any, list[str], Analysis]] = {
+    "yielding in some": (
+        square(damping=100, density=6.15),
+        ["rods.CD.compressive_strength=null,40,300", "rods.AC.stiffness=-1,164640"],
+        Analysis((1.0, 0.0)),
+    ),
+    "plasticity in some": (
+        MODEL,
+        ["settings.plasticity=true,false", "rods.BC.compressive_strength=90,215"],
+        Analysis(),
+    ),
+    "another integrator in some": (
+        MODEL,
+        ["settings.integrator=velocity_verlet,automatic", "rods.*.damping=0,50,100"],
+        Analysis(times=(1e-4, 2e-4)),
+    ),
+    "begun before": (
+        begun,
+        ["rods.CA.stiffness=1e5,164640,2e5", "particles.B.velocity.x=0,0.1"],
+        Analysis(times=(3e-4,)),
+    ),
+    "never at rest in some": (MODEL, ["rods.*.damping=0,100"], Analysis(limit=0.01)),
+    "discs that meet": (
+        "collision_ii",
+        ["settings.restitution=1,0.5", "particles.particle 1.radius=0.05,0.06"],
+        Analysis(times=(0.5,)),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ORDERS)
+def test_variants_leave_nothing_behind(name: str) -> None:
+    source, vary, analysis = ORDERS[name]
+    measures = [
+        "rods.*.axial_force,rods.*.plastic_strain",
+        "particles.*.velocity",
+        "energy.work,energy.imbalance",
+    ]
+    plan = plan_of(source() if callable(source) else source, vary, measures, analysis, (), None, 0)
+    alone = [compute(plan, [number])[0] for number in range(plan.size)]
+    assert compute(plan, range(plan.size)) == alone
+    assert compute(plan, range(plan.size)[::-1]) == alone[::-1]
 
 
 def test_load_factors_are_rows_of_a_variant() -> None:
@@ -96,8 +149,6 @@ def test_every_rod_is_drawn_for_itself_and_more_samples_keep_the_first() -> None
 def test_what_is_drawn_has_the_mean_and_deviation_asked_for(
     distribution: str, mean: float, deviation: float
 ) -> None:
-    from game.sweeps.run import plan_of
-
     plan = plan_of(MODEL, [f"{STIFFNESS}~{distribution}"], ["residual"], STATIC, (), 4000, 3)
     drawn = np.array([plan.values(number)[0] for number in range(plan.size)], dtype=float)
     assert drawn.mean() == pytest.approx(mean, abs=4 * deviation / 4000**0.5)
@@ -150,13 +201,13 @@ def interrupted(output: Path, **options: Any) -> None:
 def computed(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The numbers of the variants that are computed."""
     numbers: list[int] = []
-    compute = Plan.compute
+    records = Specimen.records
 
-    def noted(self: Plan, number: int) -> Any:
+    def noted(self: Specimen, number: int) -> Any:
         numbers.append(number)
-        return compute(self, number)
+        return records(self, number)
 
-    monkeypatch.setattr(Plan, "compute", noted)
+    monkeypatch.setattr(Specimen, "records", noted)
     return numbers
 
 
@@ -310,8 +361,6 @@ def test_sweeps_that_cannot_be_done(reason: str, change: dict[str, Any]) -> None
 
 def test_an_installation_that_differs_does_not_compute() -> None:
     from dataclasses import replace
-
-    from game.sweeps.run import plan_of
 
     plan = plan_of(MODEL, [FORCE_Y], MEASURES, STATIC, (), None, 0)
     with pytest.raises(SweepError, match=r"the sweep is of 9\.9"):
