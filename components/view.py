@@ -87,6 +87,7 @@ class View:
     heading: the word top left in red ("Pause"), or "". all_diagrams: force diagrams of all elements.
     legend: show the meaning of colours. help: show what can be pressed (`keys`: (key, meaning)).
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
+    forces_known: False while what computes forces is not there yet; then none are shown.
     caption: lines at the top: what this is, and facts about it. page: text that is shown instead.
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
@@ -97,6 +98,7 @@ class View:
     camera: Camera = field(default_factory=Camera)
     heading: str = ""
     all_diagrams: bool = False
+    forces_known: bool = True
     legend: bool = True
     help: bool = False
     pixel_ratio: float = 1.0

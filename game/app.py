@@ -19,6 +19,7 @@ from components.toolbar import Toolbar
 from components.view import MARGIN, Plot, View, drawn_positions
 from game.desk import Desk, ModelFile
 from game.preferences import DEFAULT_THEME, preferred_theme, remember_theme
+from game.preparation import Preparation
 from game.raster_program import load_raster
 from game.scenes.load import Load
 from game.script import Recorder
@@ -58,7 +59,7 @@ def open_window(
     theme: the name of its colours; None: those that the person chose last.
     """
     path, source = record
-    app = App(model, file, _spares(), theme or preferred_theme())
+    app = App(model, file, _spares(), theme or preferred_theme(), Preparation())
     if path is not None:
         with open(path, "w", encoding="utf-8") as script:
             Recorder(app.session, script, source)
@@ -78,7 +79,7 @@ def _spares() -> SpareKeeper | None:
 
 
 class App:
-    """The window and its session."""
+    """The window and its session; without a preparation it stands still while something is compiled."""
 
     def __init__(
         self,
@@ -86,6 +87,7 @@ class App:
         file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
         spares: SpareKeeper | None = None,
         theme: str = DEFAULT_THEME,
+        preparation: Preparation | None = None,
     ) -> None:
         os.environ.setdefault("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
         try:
@@ -96,12 +98,15 @@ class App:
         self.window.minimum_size = SMALLEST_SIZE
         pygame.key.set_repeat(400, 40)
         self.input = PygameInput()
-        self.render = PygameRender(self.window.get_surface(), load_raster)
-        systems: list[System] = [self.input, Hover(), *([spares] if spares else []), self.render]
+        raster = preparation.raster if preparation else load_raster
+        self.render = PygameRender(self.window.get_surface(), raster)
+        further = [system for system in (spares, preparation) if system is not None]
+        systems: list[System] = [self.input, Hover(), *further, self.render]
         self.session = Session(model, systems, View(theme=theme), file)
         self.session.window = self
         self.session.faults_told = 0  # also which mods were left out is shown
         self.session.spares = self.spares = spares
+        self.session.preparation = self.preparation = preparation
         self._theme = theme
         self._follow_size()
         self.session.view.fit(model)
@@ -119,6 +124,8 @@ class App:
             clock.tick(FRAME_RATE)
         if self.spares is not None:
             self.spares.close(self.session.desks)
+        if self.preparation is not None:
+            self.preparation.close()
         pygame.display.quit()
 
     def welcome(self) -> None:

@@ -13,7 +13,7 @@ from components.field import Column, Role
 from components.load import load_breaks, loads_end
 from components.model import Model
 from game.program_binding import bind, explain
-from game.program_cache import compile_module
+from game.program_cache import compile_module, is_compiled, note_compiled
 from game.program_controlled import MARKS, ControlledWriter
 from game.program_writer import Writer
 from systems.base import ACCOUNTS, Driver, StepSystem, StopReason
@@ -30,6 +30,16 @@ _ACCOUNT = (
 _CONTROL = ("time", "step_size", "step_error", "largest_displacement", "largest_speed")
 
 
+def _writer(model: Model, systems: Sequence[StepSystem], driver: Driver) -> Writer:
+    return (ControlledWriter if driver.controlled else Writer)(model, systems, driver)
+
+
+def has_program(model: Model, systems: Sequence[StepSystem], driver: Driver) -> bool:
+    """True if the program of this plan need not be compiled any more, only loaded."""
+    writer = _writer(model, systems, driver)
+    return is_compiled(writer.source(), writer.kernels)
+
+
 class Program:
     """A compiled step program, bound to the columns of one model.
 
@@ -43,7 +53,7 @@ class Program:
         self.model = model
         self.systems = tuple(systems)
         self.driver = driver
-        self._writer = (ControlledWriter if driver.controlled else Writer)(model, systems, driver)
+        self._writer = _writer(model, systems, driver)
         self._module = compile_module(self._writer.source(), self._writer.kernels)
         self.measures = np.zeros(7)
         self._state_revision = -1
@@ -58,8 +68,12 @@ class Program:
         try:
             self.advance(0)
             self.observe()
+            if self._writer.commits:  # of no rods, since a commit at all changes history
+                state, columns = ([a[:0] for a in arrays] for arrays in (self._state(), self._columns))
+                self._module.commit(0.0, 0.0, *state, np.zeros(len(_ACCOUNT)), *columns)
         except NumbaError as error:
             raise explain(self._writer.bound, self.model, error) from error
+        note_compiled(self._module)
 
     @property
     def resists_motion(self) -> bool:
@@ -221,7 +235,8 @@ class Program:
     def conserved_energy(self) -> float:
         """What the integrator conserves, less the work done so far (J), in the state last observed."""
         dt = self.model.clock.step_size
-        return float(self._module.conserved(self.measures, self._accounts(), dt, self._module.SHADOW))
+        conserved = self._module.conserved.py_func  # by itself it would have to be compiled in every process
+        return float(conserved(self.measures, self._accounts(), dt, self._module.SHADOW))
 
     def _accounts(self) -> Column:
         return np.array([getattr(self.model.clock, name) for name in _ACCOUNT])

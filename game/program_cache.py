@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import importlib.util
 import inspect
 import os
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any
@@ -61,12 +64,20 @@ def _constant(value: Any) -> str:
     return repr(value) if plain else type(value).__name__
 
 
-def _cache_folder() -> Path:
-    """A folder for generated modules that can be written to: the user's cache, or a temporary one."""
-    for folder in (user_cache_path("pinjoint") / "programs", Path(tempfile.gettempdir()) / "pinjoint-programs"):
+@cache
+def cache_folder() -> Path:
+    """A folder for generated modules that can be written to: the user's cache, or a temporary one.
+
+    What lies there is run, so a temporary folder that somebody else may have made is not used.
+    """
+    owner = os.getuid() if hasattr(os, "getuid") else 0
+    shared = Path(tempfile.gettempdir()) / f"pinjoint-programs-{owner}"
+    for folder in (user_cache_path("pinjoint") / "programs", shared):
         try:
-            folder.mkdir(parents=True, exist_ok=True)
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             with tempfile.TemporaryFile(dir=folder):
+                pass
+            if not hasattr(os, "getuid") or folder.stat().st_uid == owner:
                 return folder
         except OSError:
             continue
@@ -77,19 +88,10 @@ _modules: dict[str, ModuleType] = {}
 
 
 def compile_module(source: str, kernels: Mapping[str, Callable[..., Any]]) -> ModuleType:
-    """The module with this source in which `kernels` are known by name; its machine code is cached.
-
-    The file's name hashes everything that is compiled into it, because numba's cache does not notice
-    edits of functions that a cached one calls.
-    """
-    import numba
-
-    everything = "\n".join(
-        [source, _meaning_of(kernels[name] for name in sorted(kernels)), numba.__version__, sys.version]
-    )
-    name = "pinjoint_program_" + hashlib.sha256(everything.encode()).hexdigest()[:24]
+    """The module with this source in which `kernels` are known by name; its machine code is cached."""
+    name = _name_of(source, kernels)
     if name not in _modules:
-        path = _cache_folder() / f"{name}.py"
+        path = cache_folder() / f"{name}.py"
         _write_once(path, source)
         spec = importlib.util.spec_from_file_location(name, path)
         assert spec is not None
@@ -100,6 +102,49 @@ def compile_module(source: str, kernels: Mapping[str, Callable[..., Any]]) -> Mo
         spec.loader.exec_module(module)
         _modules[name] = module
     return _modules[name]
+
+
+def _name_of(source: str, kernels: Mapping[str, Callable[..., Any]]) -> str:
+    """The name of a generated module, which hashes everything that is compiled into it.
+
+    numba's cache notices neither edits of functions that a cached one calls, nor another processor.
+    """
+    import numba
+    from numba.core.registry import cpu_target
+
+    processor = repr(cpu_target.target_context.codegen().magic_tuple())
+    meaning = _meaning_of(kernels[name] for name in sorted(kernels))
+    everything = "\n".join([source, meaning, numba.__version__, sys.version, processor])
+    return "pinjoint_program_" + hashlib.sha256(everything.encode()).hexdigest()[:24]
+
+
+def load_compiler() -> None:
+    """Import the compiler and let it get ready, which takes longer than to load what it once compiled."""
+    from numba import njit
+
+    njit("int64(int64)")(lambda number: number)
+
+
+def is_compiled(source: str, kernels: Mapping[str, Callable[..., Any]]) -> bool:
+    """True if another process, or an earlier one, has compiled all of this module."""
+    name = _name_of(source, kernels)
+    return name in _modules or (cache_folder() / f"{name}.done").exists()
+
+
+def note_compiled(module: ModuleType) -> None:
+    """Let other processes know that all of a module is compiled, and later ones that it is in use."""
+    with contextlib.suppress(OSError):
+        (cache_folder() / f"{module.__name__}.done").touch()
+
+
+def forget_unused(days: float = 60.0) -> None:
+    """Delete modules that no program has used for so many days, of former versions mostly."""
+    folder = cache_folder()
+    for done in folder.glob("pinjoint_program_*.done"):
+        with contextlib.suppress(OSError):
+            if time.time() - done.stat().st_mtime > 86400.0 * days:
+                for path in (*folder.glob(f"__pycache__/{done.stem}.*"), folder / f"{done.stem}.py", done):
+                    path.unlink(missing_ok=True)
 
 
 def _write_once(path: Path, text: str) -> None:

@@ -4,18 +4,31 @@ from __future__ import annotations
 
 import inspect
 from functools import cache
+from typing import Any
 
-from game.program_cache import compile_module
+from game.program_cache import compile_module, is_compiled, note_compiled
 from systems.render.raster import SIGNATURES, Raster
 
 
 @cache
 def load_raster() -> Raster:
     """The kernels, compiled (which takes some seconds) or from the cache."""
+    module = compile_module(*_parts())
+    note_compiled(module)
+    return Raster(module)
+
+
+def has_raster() -> bool:
+    """True if the kernels need not be compiled any more, only loaded."""
+    return is_compiled(*_parts())
+
+
+def _parts() -> tuple[str, dict[str, Any]]:
+    """The source of the module, and the kernels that it wraps."""
     from systems.render import kernels
 
     known = {f"{name}_kernel": getattr(kernels, name) for name in SIGNATURES}
-    return Raster(compile_module(_source(kernels), known))
+    return _source(kernels), known
 
 
 def _source(kernels: object) -> str:

@@ -120,6 +120,12 @@ class Schedule:
             if isinstance(system, StepSystem) and not isinstance(system, Driver) and system.needs(model)
         ]
 
+    def named(self, names: Iterable[str]) -> list[StepSystem]:
+        """The step systems with these names, in order. Raises KeyError if one is not there."""
+        by_name = {s.name: s for s in self._ordered[Phase.STEP] if isinstance(s, StepSystem)}
+        wanted = {by_name[name] for name in names}
+        return [system for system in by_name.values() if system in wanted]
+
     def run(self, phase: Phase, scene: str, model: Model, frame: Any) -> None:
         """Run one phase of a frame, timing each system."""
         for system in self.frame_plan(phase, scene, model):

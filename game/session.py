@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 
 CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
 ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
-COMPILING = "Preparing the step program for this kind of model; a few seconds, only the first time."
+COMPILING = "Preparing the step program for this kind of model, which takes a while only the first time:"
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
 
 
@@ -96,6 +96,13 @@ class Spares(Protocol):
         """What a crash left behind is not wanted any more."""
 
 
+class Prepares(Protocol):
+    """What has step programs compiled in a window, which must not stand still meanwhile."""
+
+    def waits_for(self, simulation: Simulation) -> float | None:
+        """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
+
+
 class Session:
     """A model with its run, its scenes and its undo log.
 
@@ -125,6 +132,8 @@ class Session:
         self.on_press: Callable[[str, Vector | None], None] | None = None  # a recorder listens here
         self.on_resize: Callable[[], None] | None = None  # and here
         self.spares: Spares | None = None  # unsaved work is kept in them, in a window
+        self.preparation: Prepares | None = None  # compiles ahead of need, in a window
+        self._awaited = False  # something could not be done without the step program
         self._keyed = ""  # the scene in which a key was pressed last
         self.faults_told = len(FAULTS)  # of mods; the others are shown
         self._offer_tools()
@@ -365,6 +374,8 @@ class Session:
         """
         target = self.model.clock.steps + steps
         self._note_beginning()
+        if self._awaits_program():
+            return False
         self.history.end_run()
         self.history.begin_run(single=True)
         self.get_ready()  # so that the moment that stepping back may return to is
@@ -602,25 +613,25 @@ class Session:
     def get_ready(self) -> None:
         """Account for edits as if a frame had begun, so that what follows does not depend on when frames do."""
         self._note_beginning()
-        if not self.simulation.halted:
+        if not self.simulation.halted and not self._awaits_program():
             self.simulation.advance(0)
 
     def advance(self, elapsed: float) -> None:
         """Let the time of one frame pass in the model."""
         self._note_beginning()
-        if self.simulation.halted or self._announce_compiling():
+        if self.simulation.halted or self._awaits_program():
             return
         with self.timeline.recording():
             self.desk.live.frame(elapsed)
 
-    def _announce_compiling(self) -> bool:
-        """Let one frame be drawn that says what the person is about to wait for."""
-        if self.simulation.ready:
-            if self.notice == COMPILING:
-                self.notice = ""
-            return False
-        announced, self.notice = self.notice == COMPILING, COMPILING
-        return not announced
+    def _awaits_program(self) -> bool:
+        """True while the step program is compiled elsewhere, which is said; without a window it is compiled here."""
+        self._awaited = self._compiled_for() is not None
+        return self._awaited
+
+    def _compiled_for(self) -> float | None:
+        """Seconds that the step program has been waited for, or None if it can be had at once."""
+        return self.preparation.waits_for(self.simulation) if self.preparation is not None else None
 
     @property
     def focus(self) -> tuple[Model, View]:
@@ -640,7 +651,10 @@ class Session:
 
     def update_view(self) -> None:
         """Bring what the view says about the run up to date."""
-        view, scene = self.view, self.scenes.active
+        view, scene, waited = self.view, self.scenes.active, self._compiled_for()
+        view.forces_known = waited is None
+        self._awaited = self._awaited and waited is not None
+        said = f"{COMPILING} {waited:.0f} s so far." if self._awaited else self.notice
         view.preview = self._preview()
         view.heading = scene.heading
         self._offer_tools()
@@ -652,7 +666,7 @@ class Session:
             state=self._state_word(),
             hint=self._drawing_hint() or scene.hint(self),
             problem=self._problem(),
-            notice=self.notice or " ".join(remark.message for remark in self.remarks),
+            notice=said or " ".join(remark.message for remark in self.remarks),
         )
 
     def _preview(self) -> Preview | None:

@@ -81,8 +81,8 @@ def draw_rod_diagrams(sheet: Sheet) -> None:
 
 def _shown_rods(sheet: Sheet) -> tuple[NDArray[np.float64], Rows, Points, Points]:
     """Axial forces of all rods; rows and visible ends of those whose diagram is drawn."""
-    shown: NDArray[np.bool_] | slice = slice(None)
-    if not sheet.view.all_diagrams:
+    shown: NDArray[np.bool_] | slice = slice(None if sheet.view.forces_known else 0)
+    if sheet.view.forces_known and not sheet.view.all_diagrams:
         shown = sheet.chosen(sheet.tagged(DiagramShown, "rods"), sheet.rods)
     rows = sheet.rods[shown]
     force = np.nan_to_num(sheet.model.rods.axial_force) if len(rows) else np.empty(0)
@@ -213,7 +213,7 @@ def _places_by_rod(middle: Pair, normal: Pair, height: float, half: tuple[float,
 
 def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     """Arrows of the horizontal and vertical external force on each particle that shows its diagram."""
-    shown = sheet.particles
+    shown = sheet.particles if sheet.view.forces_known else sheet.particles[:0]
     if not sheet.view.all_diagrams:
         shown = shown[sheet.chosen(sheet.tagged(DiagramShown, "particles"), shown)]
     if not len(shown):

@@ -36,7 +36,8 @@ ABOVE: list[Layer] = []  # and above them
 def compose(model: Model | Form | Toolbar, view: View, theme: Theme) -> Picture:
     """The model (or form, or toolbar) as seen in a view, as marks in pixels. Reads it, changes nothing.
 
-    Forces are read only where a diagram shows them, yielding only where a rod has a strength.
+    Forces are read only where a diagram shows them, yielding only where a rod has a strength, and neither
+    before they are known.
     """
     if isinstance(model, Form):
         return compose_form(model, view, theme)

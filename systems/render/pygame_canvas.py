@@ -23,20 +23,19 @@ from systems.render.typography import WEIGHTS, capital_height
 _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
+_SKETCHED = 3_000  # elements of a kind
 _MANY = 300  # areas, discs; and 50 pixels of strokes for each: from there on the compiled kernels pay
-
-
-def no_raster() -> None:
-    """Large pictures are drawn like small ones, slowly."""
 
 
 class Canvas:
     """Draws pictures; keeps the texts, symbols and panels it has rendered.
 
-    raster: gives what draws large pictures, or None as long as that is not compiled.
+    raster: gives what draws large pictures, or None as long as that is not compiled; meanwhile only some of
+        the many elements are drawn, and the picture is but a sketch. Without it they are drawn slowly, but all.
     """
 
-    def __init__(self, raster: Callable[[], Raster | None] = no_raster) -> None:
+    def __init__(self, raster: Callable[[], Raster | None] | None = None) -> None:
+        self.sketch = False  # the last picture is
         self._raster = raster
         if not pygame.font.get_init():
             pygame.font.init()
@@ -51,6 +50,7 @@ class Canvas:
         v = picture.viewport
         before = surface.get_clip()
         surface.set_clip(pygame.Rect(v.left, v.top, v.width, v.height).clip(before))
+        self.sketch = False
         if picture.background is not None:
             surface.fill(picture.background)
         for mark in picture.marks:
@@ -80,22 +80,33 @@ class Canvas:
             found = self._cache[key] = self._former.pop(key, None) or make()
         return found
 
+    def _large(self) -> Raster | None:
+        return self._raster() if self._raster is not None else None
+
+    def _some(self, count: int) -> slice:
+        """All of so many elements, or as many as a sketch has."""
+        if self._raster is None or count <= _MANY:
+            return slice(None)
+        self.sketch = True
+        return slice(None, None, count // _SKETCHED + 1)
+
     # --- lines and areas -----------------------------------------------------------------------------
 
     def _strokes(self, surface: pygame.Surface, mark: Strokes) -> None:
         many = len(mark.start) > _MANY
         many = many or stroke_pixels_estimate(mark.start, mark.end, mark.width) > 50 * _MANY
-        if many and (raster := self._raster()):
+        if many and (raster := self._large()):
             raster.strokes(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
         else:
-            x, y, amount = stroke_coverage(mark.start, mark.end, mark.width)
+            some = self._some(len(mark.start))
+            x, y, amount = stroke_coverage(mark.start[some], mark.end[some], mark.width)
             _blend(surface, x, y, amount, mark.colour)
 
     def _fills(self, surface: pygame.Surface, mark: Fills) -> None:
-        if len(mark.corners) > _MANY and (raster := self._raster()):
+        if len(mark.corners) > _MANY and (raster := self._large()):
             raster.fills(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
         else:
-            for corners in np.round(mark.corners).astype(np.int64).tolist():
+            for corners in np.round(mark.corners[self._some(len(mark.corners))]).astype(np.int64).tolist():
                 pygame.gfxdraw.filled_polygon(surface, corners, mark.colour)
 
     def _panel(self, surface: pygame.Surface, mark: Panel) -> None:
@@ -117,13 +128,14 @@ class Canvas:
         surface.fblits(pairs)
 
     def _discs(self, surface: pygame.Surface, mark: Discs) -> None:
-        if len(mark.at) > _MANY and (raster := self._raster()):
+        if len(mark.at) > _MANY and (raster := self._large()):
             colours = _pixel(surface, mark.ink), _pixel(surface, mark.hollow)
             raster.discs(_pixels(surface), _clip(surface), mark, *colours)
         else:
-            fine = np.round(4.0 * mark.radius)
+            some = self._some(len(mark.at))
+            fine = np.round(4.0 * mark.radius[some])
             for quarters in np.unique(fine).tolist():
-                size, at = quarters / 4.0, mark.at[fine == quarters]
+                size, at = quarters / 4.0, mark.at[some][fine == quarters]
                 symbol, unit = ("ring", mark.rim / RIM) if mark.rim else ("disc", 1.0)
                 self._stamps(surface, Stamps(symbol, at, size, unit, mark.ink, mark.hollow))
 

@@ -13,7 +13,7 @@ from components.toolbar import Toolbar
 from components.view import View
 from systems.base import Phase, System
 from systems.render.picture import compose
-from systems.render.pygame_canvas import Canvas, no_raster
+from systems.render.pygame_canvas import Canvas
 from systems.render.raster import Raster
 from systems.render.theme import load_theme
 
@@ -24,22 +24,25 @@ class PygameRender(System):
     name = "render.pygame"
     phase = Phase.RENDER
 
-    def __init__(self, surface: pygame.Surface, raster: Callable[[], Raster | None] = no_raster) -> None:
+    def __init__(self, surface: pygame.Surface, raster: Callable[[], Raster | None] | None = None) -> None:
         self.surface = surface
         self.drawn = False
         self._canvas = Canvas(raster)
         self._shown: Any = None
+        self._sketch = False  # the last picture was one, since the drawing of large ones was not compiled yet
 
     def process(self, frame: Any) -> None:
         """Draw every stage of the scene, unless the picture would be the same as the last."""
         stages = frame.session.stages
         looks = tuple(repr(view) for _, view in stages)
         shown = (id(self.surface), looks, _revisions(stages))
-        self.drawn = shown != self._shown
+        self.drawn = shown != self._shown or self._sketch
         if self.drawn:
             theme = load_theme(frame.session.view.theme)
+            self._sketch = False
             for model, view in stages:
                 self._canvas.draw(self.surface, compose(model, view, theme))
+                self._sketch |= self._canvas.sketch
             self._shown = (id(self.surface), looks, _revisions(stages))
 
 

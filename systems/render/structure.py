@@ -102,7 +102,10 @@ def draw_rods(sheet: Sheet) -> None:
     """A line between the drawn positions of the ends: red if selected, violet while yielding."""
     rods, theme = sheet.model.rods, sheet.theme
     yielding = sheet.rods[:0]
-    if (np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)).any():
+    if (
+        sheet.view.forces_known
+        and (np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)).any()
+    ):
         yielding = np.flatnonzero(rods.yielding)
     selected = sheet.tagged(Selected, "rods")
     width = float(np.clip(0.12 * typical_length(sheet.start, sheet.end) / sheet.unit, 0.5, 2.5)) * sheet.unit

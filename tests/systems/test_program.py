@@ -337,7 +337,7 @@ CALLEE = "from numba import njit\n\nFACTOR = 2.0\n\n@njit\ndef twice(x):\n    re
 def test_an_edited_kernel_is_noticed_in_what_it_calls_too(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("game.program_cache._cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("game.program_cache.cache_folder", lambda: tmp_path)
     answers = []
     for factor in ("2.0", "5.0"):
         (tmp_path / "edited_helpers.py").write_text(CALLEE.replace("2.0", factor))

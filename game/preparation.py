@@ -1,0 +1,91 @@
+"""Preparation: what must be compiled is, in another process, before it is needed; the window goes on meanwhile."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from game.mods import MODS
+from game.prepare import RASTER
+from game.program import has_program
+from game.program_cache import load_compiler
+from game.raster_program import has_raster, load_raster
+from systems.base import Phase, System
+from systems.edit.pull import Pull
+
+if TYPE_CHECKING:
+    from game.simulation import Simulation
+    from systems.render.raster import Raster
+
+Job = tuple[str, ...]  # what `python -m game.prepare` is asked for
+
+
+class Preparation(System):
+    """Has the step program of the model that is open compiled as soon as it is known, and the drawing.
+
+    First the compiler itself is loaded, in a thread: that takes as long as a person takes to press a key.
+    """
+
+    name = "programs.preparation"
+    phase = Phase.EVENTS
+
+    def __init__(self) -> None:
+        self._frames = 0
+        self._compiler = threading.Thread(target=load_compiler, daemon=True)
+        self._running: dict[Job, subprocess.Popen[bytes]] = {}
+        self._since: dict[Job, float] = {}
+        self._done: set[Job] = set()
+
+    def process(self, frame: Any) -> None:
+        """Begin with what the session needs next."""
+        self._frames += 1
+        if self._frames == 2:  # the first picture comes first
+            self._compiler.start()
+        self.waits_for(frame.session.simulation)
+
+    def waits_for(self, simulation: Simulation) -> float | None:
+        """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
+        if simulation.ready:
+            return None
+        model, plan = simulation.model, simulation.schedule.step_plan(simulation.model)
+        job = simulation.integrator, *(system.name for system in plan)
+        waited = self._waits(job, lambda: has_program(model, plan, simulation.driver))
+        if waited is None and job in self._running:  # then it is new, with a hand that pulls as well
+            self._waits((*job, Pull.name), lambda: False)
+        return waited
+
+    def raster(self) -> Raster | None:
+        """What draws large pictures, as soon as it is compiled."""
+        return load_raster() if self._waits((RASTER,), has_raster) is None else None
+
+    def _waits(self, job: Job, is_compiled: Callable[[], bool]) -> float | None:
+        if job in self._done:
+            return None
+        waited = time.monotonic() - self._since.setdefault(job, time.monotonic())
+        if self._compiler.ident is None or self._compiler.is_alive():
+            return waited
+        if job not in self._running and not is_compiled():
+            self._running[job] = _started(job)
+        if job in self._running and self._running[job].poll() is None:
+            return waited
+        self._done.add(job)  # and if it could not be compiled there, it is tried, and explained, here
+        return None
+
+    def close(self) -> None:
+        """Let go of what is still being compiled."""
+        for process in self._running.values():
+            if process.poll() is None:
+                process.terminate()
+                process.wait()
+
+
+def _started(job: Job) -> subprocess.Popen[bytes]:
+    mods = [word for mod in MODS if mod.loaded and mod.folder for word in ("--mods", str(mod.folder))]
+    command = [sys.executable, "-m", "game.prepare", *mods, "--no-mods", *job]
+    return subprocess.Popen(
+        command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )

@@ -1,0 +1,39 @@
+"""Compile ahead of need: `python -m game.prepare DRIVER SYSTEM…` for a step program, or `… raster` for drawing.
+
+The window runs this in another process, because a compiler in its own would hold it up, in a thread too.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+from components.model import Model
+from components.particle import Particle
+from game.catalogue import DRIVERS
+from game.mods.command import load_as_asked
+from game.program import Program
+from game.program_cache import forget_unused
+from game.raster_program import load_raster
+from game.session import Session
+from systems.edit.pull import Hand
+
+RASTER = "raster"
+
+
+def main(words: Sequence[str]) -> None:
+    """Compile what is asked for into the cache."""
+    name, *systems = load_as_asked(words)
+    if name == RASTER:
+        load_raster()
+    else:
+        model = Model()
+        (particle,) = model.create(Particle, 1)
+        session = Session(model)
+        session.pull.take(Hand(particle, 1.0, 0.0, (0.0, 0.0)))  # in case that the hand is part of it
+        Program(model, session.schedule.named(systems), DRIVERS[name])
+    forget_unused()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

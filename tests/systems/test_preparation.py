@@ -1,0 +1,172 @@
+"""A window goes on while its step program is compiled elsewhere, and what was compiled there is used."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
+
+import pygame
+import pytest
+
+from game import models, preparation, program_cache
+from game.app import App
+from game.preparation import Preparation
+from game.session import COMPILING
+from systems.input import pygame_input
+
+
+class Compiler:
+    """In place of the process that compiles: it ends when told to."""
+
+    def __init__(self) -> None:
+        self.jobs: list[tuple[str, ...]] = []
+        self.status: int | None = None
+
+    def start(self, job: tuple[str, ...]) -> Compiler:
+        self.jobs.append(job)
+        return self
+
+    def poll(self) -> int | None:
+        return self.status
+
+
+@pytest.fixture
+def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
+    """Nothing is compiled yet."""
+    found = Compiler()
+    monkeypatch.setattr(preparation, "_started", found.start)
+    monkeypatch.setattr(preparation, "has_program", lambda *plan: False)
+    monkeypatch.setattr(preparation, "has_raster", lambda: False)
+    return found
+
+
+@pytest.fixture
+def app(monkeypatch: pytest.MonkeyPatch, compiler: Compiler) -> Iterator[App]:
+    monkeypatch.setattr(pygame_input, "IDLE_PAUSE", 0.0)
+    window = App(models.load("isostatic"), preparation=Preparation())
+    frames(window, 3)
+    window.preparation._compiler.join()  # type: ignore[union-attr]
+    frames(window, 1)
+    yield window
+    pygame.display.quit()
+
+
+def frames(app: App, count: int) -> None:
+    for _ in range(count):
+        app.frame(1 / 60)
+
+
+def test_it_begins_with_the_model_that_is_open(app: App, compiler: Compiler) -> None:
+    (job,) = compiler.jobs
+    plan = app.session.schedule.step_plan(app.session.model)
+    assert job == ("velocity_verlet", *(system.name for system in plan))
+
+
+def test_a_run_waits_and_says_so_and_goes_on(app: App, compiler: Compiler) -> None:
+    session = app.session
+    session.press("space")
+    frames(app, 3)
+    session.press("i")  # a key meanwhile
+    frames(app, 3)
+    assert session.model.clock.steps == 0
+    assert session.view.status.notice.startswith(COMPILING)
+    assert not session.view.forces_known
+    compiler.status = 0
+    frames(app, 3)
+    assert session.model.clock.steps > 0
+    assert session.view.status.notice == ""
+    assert session.view.forces_known
+    assert compiler.jobs[1] == (*compiler.jobs[0], "edit.pull")  # next, in case that it is pulled
+
+
+def test_what_cannot_be_compiled_there_is_compiled_here(app: App, compiler: Compiler) -> None:
+    compiler.status = 1
+    app.session.press("space")
+    frames(app, 3)
+    assert app.session.model.clock.steps > 0
+
+
+def test_stepping_waits_too(app: App, compiler: Compiler) -> None:
+    app.session.press(".")
+    frames(app, 1)
+    assert app.session.model.clock.steps == 0
+    assert app.session.view.status.notice.startswith(COMPILING)
+    compiler.status = 0
+    app.session.press(".")
+    assert app.session.model.clock.steps == 1
+
+
+def test_a_large_picture_is_a_sketch_until_its_drawing_is_compiled(app: App, compiler: Compiler) -> None:
+    from tests.benchmarks.models import mesh
+
+    large = App(mesh(10_000), preparation=app.preparation)
+    for _ in range(3):
+        large.frame(1 / 60)
+        assert large.render.drawn  # again and again, until it is more than a sketch
+    assert ("raster",) in compiler.jobs
+    sketch = pygame.surfarray.array2d(large.render.surface)
+    compiler.status = 0
+    frames(large, 2)
+    whole = pygame.surfarray.array2d(large.render.surface)
+    frames(large, 1)
+    assert not large.render.drawn
+    background = whole[-300, 60]
+    assert (whole != background).sum() > 1.5 * (sketch != background).sum()
+
+
+CHECK = """
+from game import Session
+session = Session.open("collision_i")
+session.simulation.program
+module = session.simulation.program._module
+for entry in (module.advance, module.observe):
+    print(sum(entry.stats.cache_hits.values()), sum(entry.stats.cache_misses.values()))
+"""
+
+
+def test_another_process_compiles_what_this_one_loads(tmp_path: Path) -> None:
+    from game import Session
+
+    session = Session.open("collision_i")
+    names = [system.name for system in session.schedule.step_plan(session.model)]
+    folders = {"XDG_CACHE_HOME": str(tmp_path), "LOCALAPPDATA": str(tmp_path), "HOME": str(tmp_path)}
+    command = [sys.executable, "-m", "game.prepare", "--no-mods", session.simulation.integrator, *names]
+    subprocess.run(command, env=os.environ | folders, check=True, timeout=300)
+    assert list(tmp_path.rglob("pinjoint_program_*.done"))
+    done = subprocess.run(
+        [sys.executable, "-c", CHECK], env=os.environ | folders, check=True, capture_output=True, text=True
+    )
+    assert done.stdout.split() == ["1", "0"] * 2
+
+
+def test_programs_that_nobody_uses_are_forgotten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(program_cache, "cache_folder", lambda: tmp_path)
+    (tmp_path / "__pycache__").mkdir()
+    for name, age in (("pinjoint_program_old", 61 * 86400), ("pinjoint_program_new", 0)):
+        for file in (f"{name}.py", f"{name}.done", f"__pycache__/{name}.advance-1.nbi"):
+            (tmp_path / file).touch()
+        before = (tmp_path / f"{name}.done").stat().st_mtime - age
+        os.utime(tmp_path / f"{name}.done", (before, before))
+    program_cache.forget_unused()
+    left = {path.name for path in tmp_path.rglob("*.*")}
+    assert left == {
+        "pinjoint_program_new.py",
+        "pinjoint_program_new.done",
+        "pinjoint_program_new.advance-1.nbi",
+    }
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have owners on POSIX systems only")
+def test_a_folder_of_somebody_else_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What lies in the cache is run: one that another person made where all may write is left alone."""
+    monkeypatch.setattr(program_cache, "user_cache_path", lambda name: tmp_path / "blocked")
+    (tmp_path / "blocked").write_text("not a folder")
+    monkeypatch.setattr(program_cache.tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setattr(program_cache.os, "getuid", lambda: 12345)
+    find: Callable[[], Path] = program_cache.cache_folder.__wrapped__
+    assert find().parent != tmp_path or find().name != "pinjoint-programs-12345"
