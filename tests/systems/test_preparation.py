@@ -64,7 +64,7 @@ def frames(app: App, count: int) -> None:
 def test_it_begins_with_the_model_that_is_open(app: App, compiler: Compiler) -> None:
     (job,) = compiler.jobs
     plan = app.session.schedule.step_plan(app.session.model)
-    assert job == ("velocity_verlet", *(system.name for system in plan))
+    assert job == (app.session.simulation.integrator, *(system.name for system in plan))
 
 
 def test_a_run_waits_and_says_so_and_goes_on(app: App, compiler: Compiler) -> None:
