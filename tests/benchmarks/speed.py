@@ -45,6 +45,24 @@ def step_costs(*, quick: bool) -> list[Row]:
     return rows
 
 
+FEATURES: dict[str, dict[str, float]] = {
+    "nothing but elasticity": {"damping": 0.0},
+    "dampers": {"damping": 1.0},
+    "strengths": {"damping": 0.0, "tensile_strength": 1e6, "compressive_strength": 1e6},
+    "dampers and strengths": KINDS["elastic-plastic-damped"],
+}
+
+
+def skipping() -> list[Row]:
+    """What a step costs with, and so what it saves without, dampers and strengths: the same 10 000 rods."""
+    runners = [_program_runner(lattice(10_000, **rods), 30) for rods in FEATURES.values()]
+    costs = [seconds / 30 / 10_000 * 1e9 for seconds in _best_of_each(*runners)]
+    return [
+        {"rods_have": features, "ns_per_rod": cost, "saved_by_skipping": 1.0 - cost / costs[-1]}
+        for features, cost in zip(FEATURES, costs, strict=True)
+    ]
+
+
 def scaling(steps: list[Row]) -> list[Row]:
     """The exponent p of time per step ∝ rods^p from 1000 rods on, by least squares of the logarithms."""
     rows = []
@@ -232,6 +250,7 @@ def report(*, quick: bool) -> dict[str, list[Row]]:
         "steps": steps,
         "scaling": scaling(steps),
         "ceiling": ceilings(steps),
+        "skipping": skipping(),
         "memory": memory(),
         "peers": peers(quick=quick),
         "start": [*start_up(), *bulk_creation()],

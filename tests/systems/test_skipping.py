@@ -1,0 +1,88 @@
+"""A plan holds what its model needs and nothing else, as read from the file itself."""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+from typing import Any
+
+import pytest
+
+from components.environment import Environment
+from components.rod import Rod
+from game import Session, models
+from systems.base import Phase
+
+STRENGTHS = ("tensile_strength", "compressive_strength")
+
+
+def entries(name: str) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(
+        (files("assets") / "models" / f"{name}.json").read_text(encoding="utf-8")
+    )
+    return found
+
+
+def needed(model: dict[str, Any]) -> set[str]:
+    """The laws and commits that a model file asks for."""
+    rods = model.get("rods", [])
+    plastic = model.get("settings", {}).get("plasticity", True)
+    yields = plastic and any(rod.get(strength) for rod in rods for strength in STRENGTHS)
+    has_yielded = any(rod.get("plastic_strain") for rod in rods)
+    systems = (
+        {"physics.elasticity_after_yielding" if yields or has_yielded else "physics.elasticity"}
+        if rods
+        else set()
+    )
+    if yields:
+        systems |= {"plasticity.strength", "plasticity.yielding"}
+    if any(rod.get("damping", Rod.damping.default) for rod in rods):
+        systems.add("physics.axial_damping")
+    if model.get("environment", {}).get("drag", Environment.drag.default):
+        systems.add("physics.drag")
+    kinds = {load.get("history", {"kind": "constant"})["kind"] for load in model.get("loads", [])}
+    return systems | {f"loads.{kind}" for kind in kinds - {"constant"}}
+
+
+def planned(session: Session) -> set[str]:
+    return {system.name for system in session.schedule.step_plan(session.model)}
+
+
+@pytest.mark.parametrize("name", models.bundled())
+def test_a_plan_holds_what_the_model_needs_and_nothing_else(name: str) -> None:
+    assert planned(Session.open(name)) == needed(entries(name))
+
+
+def test_every_system_is_left_out_of_some_plan() -> None:
+    plans = [needed(entries(name)) for name in models.bundled()]
+    for system in set().union(*plans):
+        assert any(system not in plan for plan in plans), system
+
+
+@pytest.mark.parametrize(
+    ("edit", "systems"),
+    [
+        (
+            lambda s: setattr(s.rods["AB"], "tensile_strength", 10.0),
+            {"plasticity.strength", "plasticity.yielding"},
+        ),
+        (lambda s: setattr(s.environment, "drag", 1.0), {"physics.drag"}),
+    ],
+    ids=["a strength", "drag"],
+)
+def test_an_edit_brings_a_system_in_and_undoing_it_takes_it_out(edit: Any, systems: set[str]) -> None:
+    session = Session.open("isostatic")
+    for rod in session.rods:
+        rod.tensile_strength = rod.compressive_strength = None
+    before = planned(session)
+    edit(session)
+    assert systems <= planned(session) - before
+    session.undo()
+    assert planned(session) == before
+
+
+def test_an_empty_model_needs_nothing() -> None:
+    session = Session.open({"format": "pinjoint model", "version": 1})
+    assert planned(session) == set()
+    names = [system.name for system in session.schedule.frame_plan(Phase.EDIT, "pause", session.model)]
+    assert "edit.hover" not in names
