@@ -10,7 +10,7 @@ from components.world import Derivation, World
 
 
 def derive_lengths(world: World) -> None:
-    """Original difference and length of every rod, and its rest length."""
+    """Original difference and length of every rod, its rest length, and its misfit at its temperature."""
     rods = world.tables["rods"]
     position = world.tables["particles"].position
     ends = rods.between
@@ -19,7 +19,10 @@ def derive_lengths(world: World) -> None:
     original = world.writable("rods.original_length")
     original[...] = np.hypot(difference[:, 0], difference[:, 1])
     prescribed = rods.prescribed_rest_length
-    world.writable("rods.rest_length")[...] = np.where(np.isnan(prescribed), original, prescribed)
+    rest = world.writable("rods.rest_length")
+    rest[...] = np.where(np.isnan(prescribed), original, prescribed)
+    thermal_strain = rods.thermal_expansion * rods.temperature_change
+    world.writable("rods.misfit")[...] = original - rest * (1.0 + thermal_strain)
 
 
 def derive_masses(world: World) -> None:
@@ -59,8 +62,14 @@ def derive_constant_force(world: World) -> None:
 
 DERIVATIONS = (
     Derivation(
-        ("rods.difference", "rods.original_length", "rods.rest_length"),
-        ("rods.between", "rods.prescribed_rest_length", "particles.position"),
+        ("rods.difference", "rods.original_length", "rods.rest_length", "rods.misfit"),
+        (
+            "rods.between",
+            "rods.prescribed_rest_length",
+            "rods.temperature_change",
+            "rods.thermal_expansion",
+            "particles.position",
+        ),
         derive_lengths,
     ),
     Derivation(

@@ -71,6 +71,17 @@ class Rod(Handle):
     density: Field[float] = Field(
         "kg/m", default=6.15, minimum=0.0, title="density", doc="Mass per length.", shown=("kg/cm", 0.01)
     )
+    temperature_change: Field[float] = Field(
+        "K", title="temperature change", doc="Warming since it had its rest length; it expands as it warms."
+    )
+    thermal_expansion: Field[float] = Field(
+        "1/K",
+        default=1.2e-5,
+        minimum=0.0,
+        title="thermal expansion",
+        doc="Strain per change of temperature; steel: 12·10⁻⁶/K.",
+        shown=("10⁻⁶/K", 1e6),
+    )
     plastic_strain: Field[float] = Field(
         role=Role.STATE, title="plastic strain", doc="Permanent part of the strain."
     )
@@ -92,6 +103,12 @@ class Rod(Handle):
     original_length: Field[float] = Field(
         "m", role=Role.DERIVED, title="original length", doc="Length of the original difference."
     )
+    misfit: Field[float] = Field(
+        "m",
+        role=Role.DERIVED,
+        title="misfit",
+        doc="Original length − rest length × (1 + thermal strain): its elongation where it was drawn.",
+    )
     tension_limit: Field[float] = Field(
         "kN", role=Role.DERIVED, title="tension limit", doc="Tensile strength; infinite if unlimited."
     )
@@ -104,7 +121,9 @@ class Rod(Handle):
     length: Field[float] = Field(
         "m", role=Role.DERIVED, title="length", doc="Present distance between the ends.", shown=("cm", 100.0)
     )
-    strain: Field[float] = Field(role=Role.DERIVED, title="strain", doc="Elongation / rest length.")
+    strain: Field[float] = Field(
+        role=Role.DERIVED, title="strain", doc="Elongation / rest length, without thermal expansion."
+    )
     yielding: Field[bool] = Field(
         dtype=bool, default=False, role=Role.DERIVED, title="yielding", doc="Axial force is at a strength."
     )
@@ -127,6 +146,19 @@ class Rod(Handle):
                     f"{table.world.describe(table[row])}: its ends are at the same place;"
                     " place them apart or give it a rest length above 0."
                 )
+        if "temperature_change" in changed or "thermal_expansion" in changed:
+            _check_warmth(table, rows)
+
+
+def _check_warmth(table: Table[Any], rows: NDArray[np.intp]) -> None:
+    """A rod that cools does not shrink to nothing."""
+    strain = table.thermal_expansion[rows] * table.temperature_change[rows]
+    for row in rows[strain <= -1.0][:1].tolist():
+        change = table.temperature_change[row]
+        raise FieldError(
+            f"{table.world.describe(table[row])}: a temperature change of {change:g} K leaves it no length;"
+            " cool it less or lower its thermal expansion."
+        )
 
 
 def spawn_rods(world: World, between: ArrayLike, **columns: Any) -> list[Rod]:
@@ -155,6 +187,11 @@ def _pair_codes(ends: NDArray[np.uint32]) -> NDArray[np.uint64]:
     low, high = np.minimum(ends[:, 0], ends[:, 1]), np.maximum(ends[:, 0], ends[:, 1])
     codes: NDArray[np.uint64] = (low.astype(np.uint64) << np.uint64(32)) | high
     return codes
+
+
+def is_warm(world: World) -> bool:
+    """True if the temperature of some rod has changed."""
+    return bool(world.tables["rods"].temperature_change.any())
 
 
 def can_yield(world: World) -> bool:

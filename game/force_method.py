@@ -301,13 +301,14 @@ def exact_forces(model: Model, unknowns: Sequence[Unknown]) -> list[float] | Non
 
 
 def _unload(model: Model) -> None:
-    """No load, no acceleration, no lack of fit: only what is added acts."""
+    """No load, no acceleration, no lack of fit, no warmth: only what is added acts."""
     model.delete(list(model.loads))
     model.environment.force = model.environment.acceleration = (0.0, 0.0)
     particles = list(model.particles)
     model.assign(particles, "acceleration", [(0.0, 0.0)] * len(particles))
     rods = list(model.rods)
     model.assign(rods, "prescribed_rest_length", model.rods.original_length.tolist())
+    model.assign(rods, "temperature_change", [0.0] * len(rods))
 
 
 def _release(model: Model, unknown: Unknown) -> None:

@@ -134,4 +134,4 @@ def _geometry(model: Model) -> Mapping[str, Numbers]:
     with np.errstate(divide="ignore", invalid="ignore"):
         stretch = np.where(both > 0.0, ((rods.difference + now) * shift).sum(axis=1) / both, 0.0)
         rate = np.where(length > 0.0, (drift * now).sum(axis=1) / length, 0.0)
-    return {"elongation": stretch + (rods.original_length - rods.rest_length), "rate": rate}
+    return {"elongation": stretch + rods.misfit, "rate": rate}

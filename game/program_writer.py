@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from components.model import Model
+from components.rod import is_warm
 from game.program_binding import PROVIDED, TRIAL, Bound, bind, check_names, find
 from systems.base import ACCOUNTS, Commit, Driver, Law, StepSystem
 
@@ -32,6 +33,7 @@ class Writer:
 
     def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver) -> None:
         self.model = model
+        self.warm = is_warm(model)
         self.bound = bound = [bind(system, model) for system in systems]
         check_names(bound)
         laws = sorted((b for b in bound if isinstance(b.system, Law)), key=lambda b: b.system.name)
@@ -49,7 +51,8 @@ class Writer:
         self.rates = bool(self.rod_rates or self.particle_rates)
         self.working = [b for b in of_rods if b in self.rod_laws and not (b.replaces or _is_elastic(b))]
         self.powers = self.rates or bool(self.particle_laws or self.working)
-        self.columns = list(_ALWAYS)  # all arrays that the stages read or write besides the driver's own
+        # All arrays that the stages read or write besides the driver's own.
+        self.columns = [*_ALWAYS, *(["rods_misfit"] if self.warm else [])]
         self._add_columns(bound)
 
     def _add_columns(self, bound: Iterable[Bound]) -> None:
@@ -186,11 +189,11 @@ class Writer:
             *_indent(1, body),
         ]
 
-    @staticmethod
-    def _geometry() -> list[str]:
-        """Elongation (2D + Δu)·Δu / (L + L_original) + (L_original − L₀): no digits cancel.
+    def _geometry(self) -> list[str]:
+        """Elongation (2D + Δu)·Δu / (L + L_original) + misfit: no digits cancel.
 
-        A rod whose ends meet has no direction and pulls nowhere, until something else parts them.
+        Where no rod is warm the misfit is L_original − L₀, and both are at hand. A rod whose ends meet has no
+        direction and pulls nowhere, until something else parts them.
         """
         return [
             "sx = displacement[b, 0] - displacement[a, 0]",
@@ -206,7 +209,7 @@ class Writer:
             "ny = y * inverse",
             "both = length + original",
             "stretch = ((dx + x) * sx + (dy + y) * sy) / both if both > 0.0 else 0.0",
-            "elongation = stretch + (original - rods_rest_length[r])",
+            f"elongation = stretch + {'rods_misfit[r]' if self.warm else '(original - rods_rest_length[r])'}",
         ]
 
     def _axial_force(self, *, without: Sequence[Bound] = ()) -> list[str]:

@@ -12,6 +12,7 @@ from components.extremes import incomputable
 from components.field import Column, Role
 from components.load import loads_end
 from components.model import Model
+from components.rod import is_warm
 from components.settings import AUTOMATIC
 from components.snapshot import Snapshot
 from components.world import Derivation
@@ -232,7 +233,8 @@ class Simulation:
         return self.program
 
     def _key(self, systems: list[StepSystem]) -> tuple[str, ...]:
-        return (*(system.name for system in systems), self.driver.name)
+        warmth = ("rods.misfit",) if is_warm(self.model) else ()
+        return (*(system.name for system in systems), self.driver.name, *warmth)
 
     def _bind(self) -> None:
         """Take hold of the model by the program of its plan, without mods whose systems cannot join it."""

@@ -64,6 +64,7 @@ class Structure:
     difference: Array
     original_length: Array
     rest_length: Array
+    misfit: Array
     stiffness: Array
     tension_limit: Array
     compression_limit: Array
@@ -88,6 +89,7 @@ class Structure:
             difference=rods.difference.copy(),
             original_length=rods.original_length.copy(),
             rest_length=rods.rest_length.copy(),
+            misfit=rods.misfit.copy(),
             stiffness=rods.stiffness.copy(),
             tension_limit=rods.tension_limit.copy() if yields else np.full(rods.count, np.inf),
             compression_limit=rods.compression_limit.copy() if yields else np.full(rods.count, np.inf),
@@ -164,7 +166,7 @@ class Structure:
     def respond(self, displacement: Array, plastic_strain: Array) -> Response:
         """Axial forces N = EA (ε − ε_p), ε = (L − L₀)/L₀, limited by yielding; both limits move with ε_p."""
         stretch, axis, length = self._stretch(self.relative(displacement))
-        elongation = stretch + (self.original_length - self.rest_length)
+        elongation = stretch + self.misfit
         strain = elongation / self.rest_length
         elastic = self.stiffness * (strain - plastic_strain)
         force = np.clip(elastic, -self.compression_limit, self.tension_limit)

@@ -209,7 +209,7 @@ def _flexibility(model: Model, unknowns: Sequence[Unknown]) -> tuple[Array, Arra
         if isinstance(unknown.element, Rod):
             rod = unknown.element
             own[index] = rod.rest_length / rod.stiffness
-            unstrained[index] = rod.rest_length * (1.0 + rod.plastic_strain) - rod.original_length
+            unstrained[index] = rod.rest_length * rod.plastic_strain - rod.misfit
     return own, unstrained
 
 

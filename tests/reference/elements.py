@@ -37,6 +37,7 @@ class Rod:
     span: Vector  # m, from the original position of `start` to that of `end`
     stiffness: float  # EA, kN
     rest_length: float  # m
+    free_length: float  # m, at its temperature
     tensile_strength: float  # kN, infinite when unlimited
     compressive_strength: float  # kN, positive, infinite when unlimited
     damping: float  # kN·s/m
@@ -133,14 +134,17 @@ def _read_rod(document: Document, particles: list[Document], number: dict[str, i
     start, end = (number[name] for name in document["between"])
     (x1, y1), (x2, y2) = (_vector(particles[index], "position") for index in (start, end))
     span = (x2 - x1, y2 - y1)
-    rest_length = document.get("rest_length")
+    prescribed = document.get("rest_length")
+    rest_length = math.hypot(*span) if prescribed is None else float(prescribed)
+    thermal_strain = document.get("thermal_expansion", 1.2e-5) * document.get("temperature_change", 0.0)
     return Rod(
         name=document["name"],
         start=start,
         end=end,
         span=span,
         stiffness=float(document.get("stiffness", 164640.0)),
-        rest_length=math.hypot(*span) if rest_length is None else float(rest_length),
+        rest_length=rest_length,
+        free_length=rest_length * (1 + thermal_strain),
         tensile_strength=_strength(document.get("tensile_strength"), yielding),
         compressive_strength=_strength(document.get("compressive_strength"), yielding),
         damping=float(document.get("damping", 100.0)),

@@ -54,10 +54,10 @@ class Simulation:
     # Laws: pure functions of a (trial) state.
 
     def elongation(self, rod: Rod, u: np.ndarray) -> float:
-        """Return L − L₀ [m], from the displacements so that no digits are lost to absolute coordinates.
+        """Return L − L₀ [m], L₀ without force at its temperature.
 
-        With original difference D and change of displacement Δ: L² − D² = (2D + Δ)·Δ, so
-        L − L₀ = (2D + Δ)·Δ / (L + |D|) + (|D| − L₀).
+        From the displacements, so that no digits are lost to absolute coordinates: with original difference D
+        and change of displacement Δ: L² − D² = (2D + Δ)·Δ, so L − L₀ = (2D + Δ)·Δ / (L + |D|) + (|D| − L₀).
         """
         dx, dy = rod.span
         change_x = u[rod.end][0] - u[rod.start][0]
@@ -65,7 +65,7 @@ class Simulation:
         length = math.hypot(dx + change_x, dy + change_y)
         original = math.hypot(dx, dy)
         growth = ((2 * dx + change_x) * change_x + (2 * dy + change_y) * change_y) / (length + original)
-        return float(growth + (original - rod.rest_length))
+        return float(growth + (original - rod.free_length))
 
     def direction(self, rod: Rod, u: np.ndarray) -> tuple[float, float]:
         """Return the unit vector along the present axis, from the rod's start to its end."""

@@ -102,10 +102,10 @@ class Stages:
             length = math.sqrt(x * x + y * y)
             inverse = 1.0 / length if length > 0.0 else 0.0
             directions.append((x * inverse, y * inverse))
-            original, rest = rods.original_length[row].item(), rods.rest_length[row].item()
+            original, misfit = rods.original_length[row].item(), rods.misfit[row].item()
             both = length + original
             stretch = ((dx + x) * sx + (dy + y) * sy) / both if both > 0.0 else 0.0
-            elongations.append(stretch + (original - rest))
+            elongations.append(stretch + misfit)
         return directions, elongations
 
     def rates(self, v: list[list[float]], directions: list[Pair]) -> list[float]:

@@ -58,7 +58,7 @@ def direct_stiffness(model: Model) -> Document:
     for rod in elements.rods:
         length = math.hypot(*rod.span)
         along = np.array(rod.span) / length
-        n = rod.stiffness * ((length - rod.rest_length) / rod.rest_length - rod.plastic_strain)
+        n = rod.stiffness * ((length - rod.free_length) / rod.rest_length - rod.plastic_strain)
         initial[2 * rod.start : 2 * rod.start + 2] -= n * along
         initial[2 * rod.end : 2 * rod.end + 2] += n * along
         axial_forces.append(n)
@@ -171,7 +171,7 @@ class _Path:
         axial_forces, plastic_strains = [], []
         for rod, committed in zip(self.elements.rods, self.plastic_strain, strict=True):
             freedoms = [2 * rod.start, 2 * rod.start + 1, 2 * rod.end, 2 * rod.end + 1]
-            elongation, along, length = self.kinematics(rod.span, rod.rest_length, u[freedoms])
+            elongation, along, length = self.kinematics(rod.span, rod.free_length, u[freedoms])
             strain = elongation / rod.rest_length
             trial = rod.stiffness * (strain - committed)
             n = min(max(trial, -rod.compressive_strength), rod.tensile_strength)
@@ -186,7 +186,7 @@ class _Path:
         return _Response(internal, tangent, axial_forces, plastic_strains)
 
     def kinematics(
-        self, span: tuple[float, float], rest_length: float, ends: np.ndarray
+        self, span: tuple[float, float], free_length: float, ends: np.ndarray
     ) -> tuple[float, np.ndarray, float]:
         """Return elongation [m], unit vector of the axis, and length [m], for the displacements of both ends.
 
@@ -196,14 +196,14 @@ class _Path:
         original = np.array(span)
         change = ends[2:] - ends[:2]
         original_length = math.hypot(*span)
-        misfit = original_length - rest_length
+        misfit = original_length - free_length
         if not self.exact:
             along = original / original_length
             return float(along @ change) + misfit, along, original_length
         present = original + change
         length = math.hypot(*present)
-        squares = float((2 * original + change) @ change) + misfit * (original_length + rest_length)
-        return squares / (length + rest_length), present / length, length
+        squares = float((2 * original + change) @ change) + misfit * (original_length + free_length)
+        return squares / (length + free_length), present / length, length
 
     def state(self) -> Document:
         """Return the present state by names."""
