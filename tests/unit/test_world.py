@@ -159,7 +159,7 @@ def test_what_there_is_one_of_is_neither_created_nor_deleted() -> None:
         (
             Load,
             {"on": [0], "history": [{"kind": "x"}]},
-            "load 1: history kind is 'x'; choose one of constant, ramp.",
+            "load 1: history kind is 'x'; choose one of constant, ",
         ),
     ],
 )
