@@ -142,6 +142,12 @@ PLANS = {
     "hanging_net": DAMPED + DRAG,
     "tower": YIELDING + RAMP,
     "warren_bridge": YIELDING + RAMP,
+    "ball_on_truss": DAMPED,
+    "billiards_break": (),
+    "galperin_pi": (),
+    "hard_disc_gas": (),
+    "newtons_cradle": (),
+    "pile": (),
 } | {f"collision_{number}": () for number in ("i", "ii", "iii", "iv", "v", "vi")}
 
 

@@ -1,0 +1,99 @@
+"""Collisions in the window: how many impacts there were, and the speeds of a gas beside Rayleigh's curve."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components import Model, Plot, Readout, Vector
+
+if TYPE_CHECKING:
+    from game.mods import App
+    from game.session import Session
+
+MANY = 100  # particles without rods, from which on their speeds are shown unasked
+BINS = 16
+RANGE = 2.5  # times the root mean square speed, that the bars cover
+
+_asked: weakref.WeakKeyDictionary[Session, bool] = weakref.WeakKeyDictionary()
+
+
+def free_speeds(model: Model) -> NDArray[np.float64]:
+    """Speeds v √(m / m̄) (m/s) of the particles that no rod holds, m̄ their mean mass.
+
+    In equilibrium the energies of all are distributed alike, so that these are too, whatever the masses.
+    """
+    particles = model.particles
+    free = np.logical_not(particles.fixed.all(axis=1))
+    free[model.rods.between.ravel()] = False
+    mass = particles.mass[free]
+    speed: NDArray[np.float64] = np.hypot(*particles.velocity[free].T) * np.sqrt(
+        mass / (mass.mean() if len(mass) else 1.0)
+    )
+    return speed
+
+
+def rayleigh(speed: NDArray[np.float64], mean_square: float) -> NDArray[np.float64]:
+    """Density (s/m) of the speeds of a two-dimensional gas: 2v/⟨v²⟩ exp(−v²/⟨v²⟩)."""
+    density: NDArray[np.float64] = 2 * speed / mean_square * np.exp(-(speed**2) / mean_square)
+    return density
+
+
+def histogram(
+    speed: NDArray[np.float64], mean_square: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Outline of the bars of a histogram: speeds (m/s) and densities (s/m)."""
+    edges = np.linspace(0.0, RANGE * np.sqrt(mean_square), BINS + 1)
+    density, _ = np.histogram(np.minimum(speed, edges[-1]), edges)
+    heights = density / (len(speed) * (edges[1] - edges[0]))
+    return np.repeat(edges, 2), np.concatenate([[0.0], np.repeat(heights, 2), [0.0]])
+
+
+def is_gas(model: Model) -> bool:
+    """True for many free particles that nothing accelerates."""
+    pulled = any(model.environment.acceleration) or model.particles.acceleration.any()
+    return not pulled and not model.rods.count and int((~model.particles.fixed.all(axis=1)).sum()) >= MANY
+
+
+def toggle_speeds(session: Session, pixel: Vector) -> None:
+    """Show the speeds of the particles, or not."""
+    shown = _asked[session] = not _asked.get(session, is_gas(session.model))
+    session.notice = "Speeds beside Rayleigh's curve." if shown else "Speeds are not shown."
+
+
+def panels(session: Session) -> Sequence[Readout]:
+    """The number of impacts once there are any, and the speeds where they are wanted."""
+    made = []
+    if session.model.clock.collisions:
+        made.append(Readout("Impacts", (("so far", str(session.model.clock.collisions)),)))
+    if _asked.get(session, is_gas(session.model)):
+        speed = free_speeds(session.model)
+        mean_square = float((speed**2).mean()) if len(speed) else 0.0
+        if mean_square > 0.0:
+            made.append(_speeds(speed, mean_square, session.model.clock.steps))
+    return made
+
+
+def _speeds(speed: NDArray[np.float64], mean_square: float, revision: int) -> Readout:
+    smooth = np.linspace(0.0, RANGE * np.sqrt(mean_square), 80)
+    curves = (
+        ("particles", *histogram(speed, mean_square)),
+        ("Rayleigh", smooth, rayleigh(smooth, mean_square)),
+    )
+    expected = np.sqrt(np.pi * mean_square) / 2
+    rows = (("mean", f"{speed.mean():.4g} m/s"), ("mean by Rayleigh", f"{expected:.4g} m/s"))
+    return Readout(
+        "Speeds", rows, Plot("speed (m/s)", "share (s/m)", curves, hash((revision, speed.tobytes())))
+    )
+
+
+def plugin(app: App) -> None:
+    """Register the panels and the key."""
+    app.panel(panels)
+    app.action(
+        "collisions.speeds", key="u", scenes=("simulation", "pause"), title="speeds beside Rayleigh's curve"
+    )(toggle_speeds)
