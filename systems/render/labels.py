@@ -142,7 +142,8 @@ def _free_places(
     low, high = bounds(occupancy.viewport)
     middle = np.minimum(np.maximum(middle, low + half), high - half)  # into the viewport where it sticks out
     cells = occupancy.cells_of(middle - half, 2.0 * half)
-    free = {covering: occupancy.are_free(cells, covering).tolist() for covering in (0, FAINT, STRONG)}
+    needed = sorted({covering for label in labels for covering in _COVERED[label.lines]})
+    free = {covering: occupancy.are_free(cells, covering).tolist() for covering in needed}
     places, boxes = middle.tolist(), cells.tolist()
     taken = [0] * len(occupancy.taken)  # by labels so far: the columns of each row as bits of one number
     first = 0
