@@ -144,18 +144,18 @@ def _free_places(
     cells = occupancy.cells_of(middle - half, 2.0 * half)
     needed = sorted({covering for label in labels for covering in _COVERED[label.lines]})
     free = {covering: occupancy.are_free(cells, covering).tolist() for covering in needed}
-    places, boxes = middle.tolist(), cells.tolist()
+    xs, ys = middle.T.tolist()  # by columns: thousands of small lists would be as many objects to look after
+    left, top, right, bottom = cells.T.tolist()
     taken = [0] * len(occupancy.taken)  # by labels so far: the columns of each row as bits of one number
     first = 0
     for label in labels:
         chosen = None
         indices = range(first, first + len(label.places))
         for index in (i for covering in _COVERED[label.lines] for i in indices if free[covering][i]):
-            left, top, right, bottom = boxes[index]
-            bits = (1 << right) - (1 << left)
-            if not any(row & bits for row in taken[top:bottom]):
-                taken[top:bottom] = [row | bits for row in taken[top:bottom]]
-                chosen = places[index][0], places[index][1]
+            rows, bits = slice(top[index], bottom[index]), (1 << right[index]) - (1 << left[index])
+            if not any(row & bits for row in taken[rows]):
+                taken[rows] = [row | bits for row in taken[rows]]
+                chosen = xs[index], ys[index]
                 break
         yield chosen
         first = indices.stop
