@@ -33,25 +33,26 @@ class RodOperator:
     def __init__(self, model: Model, along: Array, across: Array | None = None) -> None:
         particles, rods = model.particles, model.rods
         ends = rods.between.astype(np.intp)
-        self._first, self._second = ends[:, 0], ends[:, 1]
+        self._first, self._second = np.ascontiguousarray(ends[:, 0]), np.ascontiguousarray(ends[:, 1])
         present = rods.difference + (particles.displacement[self._second] - particles.displacement[self._first])
         length = np.hypot(present[:, 0], present[:, 1])
         self._axis = present / np.where(length > 0.0, length, 1.0)[:, None]
         self._along, self._across = along, across
+        self._excess = along if across is None else along - across  # (k a aᵀ + t (1 − a aᵀ)) v
         self._root = np.sqrt(particles.mobility)
         self.rows = particles.count
 
     def __call__(self, vector: Array) -> Array:
         scaled = self._root * vector
-        change = scaled[self._second] - scaled[self._first]
-        elongation = (change * self._axis).sum(axis=1)
-        pull = (self._along * elongation)[:, None] * self._axis
-        if self._across is not None:
-            pull += self._across[:, None] * (change - elongation[:, None] * self._axis)
+        change = [at.take(self._second) - at.take(self._first) for at in scaled.T]
+        pull = (change[0] * self._axis[:, 0] + change[1] * self._axis[:, 1]) * self._excess
         product = np.empty_like(vector)
         for d in range(2):
-            product[:, d] = np.bincount(self._second, pull[:, d], self.rows)
-            product[:, d] -= np.bincount(self._first, pull[:, d], self.rows)
+            force = pull * self._axis[:, d]
+            if self._across is not None:
+                force += self._across * change[d]
+            product[:, d] = np.bincount(self._second, force, self.rows)
+            product[:, d] -= np.bincount(self._first, force, self.rows)
         return self._root * product
 
     def gershgorin(self) -> float:
