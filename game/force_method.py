@@ -47,6 +47,11 @@ class Set:
     live: Live
 
     @property
+    def simulation(self) -> Simulation:
+        """Its run."""
+        return self.live.simulation
+
+    @property
     def moves(self) -> bool:
         """True if frames change it."""
         return not self.live.simulation.halted
@@ -76,6 +81,7 @@ class Mechanism:
     """What a structure does that cannot carry anything: it swings along its motion, (n, 2)."""
 
     moves = True
+    simulation = None  # no run: it is moved by hand
 
     def __init__(self, model: Model, motion: Column, view: View) -> None:
         self.model, self.view = model, view

@@ -133,7 +133,7 @@ class Session:
         self.on_resize: Callable[[], None] | None = None  # and here
         self.spares: Spares | None = None  # unsaved work is kept in them, in a window
         self.preparation: Prepares | None = None  # compiles ahead of need, in a window
-        self._awaited = False  # something could not be done without the step program
+        self._awaited: Simulation | None = None  # something could not be done without its step program
         self._keyed = ""  # the scene in which a key was pressed last
         self.faults_told = len(FAULTS)  # of mods; the others are shown
         self._offer_tools()
@@ -374,7 +374,7 @@ class Session:
         """
         target = self.model.clock.steps + steps
         self._note_beginning()
-        if self._awaits_program():
+        if not self.has_program(self.simulation):
             return False
         self.history.end_run()
         self.history.begin_run(single=True)
@@ -613,25 +613,25 @@ class Session:
     def get_ready(self) -> None:
         """Account for edits as if a frame had begun, so that what follows does not depend on when frames do."""
         self._note_beginning()
-        if not self.simulation.halted and not self._awaits_program():
+        if not self.simulation.halted and self.has_program(self.simulation):
             self.simulation.advance(0)
 
     def advance(self, elapsed: float) -> None:
         """Let the time of one frame pass in the model."""
         self._note_beginning()
-        if self.simulation.halted or self._awaits_program():
+        if self.simulation.halted or not self.has_program(self.simulation):
             return
         with self.timeline.recording():
             self.desk.live.frame(elapsed)
 
-    def _awaits_program(self) -> bool:
-        """True while the step program is compiled elsewhere, which is said; without a window it is compiled here."""
-        self._awaited = self._compiled_for() is not None
-        return self._awaited
+    def has_program(self, simulation: Simulation) -> bool:
+        """False while the step program is compiled elsewhere, which is said; without a window it is compiled here."""
+        self._awaited = None if self._waited_for(simulation) is None else simulation
+        return self._awaited is None
 
-    def _compiled_for(self) -> float | None:
-        """Seconds that the step program has been waited for, or None if it can be had at once."""
-        return self.preparation.waits_for(self.simulation) if self.preparation is not None else None
+    def _waited_for(self, simulation: Simulation) -> float | None:
+        """Seconds that a step program has been waited for, or None if it can be had at once."""
+        return self.preparation.waits_for(simulation) if self.preparation is not None else None
 
     @property
     def focus(self) -> tuple[Model, View]:
@@ -651,10 +651,10 @@ class Session:
 
     def update_view(self) -> None:
         """Bring what the view says about the run up to date."""
-        view, scene, waited = self.view, self.scenes.active, self._compiled_for()
-        view.forces_known = waited is None
-        self._awaited = self._awaited and waited is not None
-        said = f"{COMPILING} {waited:.0f} s so far." if self._awaited else self.notice
+        view, scene = self.view, self.scenes.active
+        view.forces_known = self._waited_for(self.simulation) is None
+        waited = self._waited_for(self._awaited) if self._awaited is not None else None
+        said = self.notice if waited is None else f"{COMPILING} {waited:.0f} s so far."
         view.preview = self._preview()
         view.heading = scene.heading
         self._offer_tools()

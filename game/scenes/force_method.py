@@ -60,7 +60,9 @@ class ForceMethod(Scene):
 
     def advance(self, session: Session, elapsed: float) -> None:
         for moving in self._moving():
-            moving.advance(elapsed)
+            moving.view.forces_known = moving.simulation is None or session.has_program(moving.simulation)
+            if moving.view.forces_known:
+                moving.advance(elapsed)
 
     def busy(self, session: Session) -> bool:
         return bool(self._moving())

@@ -101,6 +101,20 @@ def test_stepping_waits_too(app: App, compiler: Compiler) -> None:
     assert app.session.model.clock.steps == 1
 
 
+def test_the_force_method_waits_too(app: App, compiler: Compiler) -> None:
+    session = app.session
+    session.press("k")
+    frames(app, 2)
+    (structure,) = session.scenes.active.guide.moving  # type: ignore[attr-defined]
+    assert not structure.view.forces_known
+    assert structure.model.clock.steps == 0
+    assert session.view.status.notice.startswith(COMPILING)
+    compiler.status = 0
+    frames(app, 3)
+    assert structure.view.forces_known
+    assert structure.model.clock.steps > 0
+
+
 def test_a_large_picture_is_a_sketch_until_its_drawing_is_compiled(app: App, compiler: Compiler) -> None:
     from tests.benchmarks.models import mesh
 
@@ -142,6 +156,27 @@ def test_another_process_compiles_what_this_one_loads(tmp_path: Path) -> None:
         [sys.executable, "-c", CHECK], env=os.environ | folders, check=True, capture_output=True, text=True
     )
     assert done.stdout.split() == ["1", "0"] * 2
+
+
+SMALL = """
+from numba import njit
+from game.program_cache import compile_module
+double = njit(lambda x: 2.0 * x)
+source = "from numba import njit\\n\\n@njit(cache=True)\\ndef answer(x):\\n    return kernel(x)\\n"
+print(compile_module(source, {"kernel": double}).answer(21.0))
+"""
+
+
+def test_processes_that_compile_at_once_do_not_disturb_each_other(tmp_path: Path) -> None:
+    folders = {"XDG_CACHE_HOME": str(tmp_path), "LOCALAPPDATA": str(tmp_path), "HOME": str(tmp_path)}
+    processes = [
+        subprocess.Popen(
+            [sys.executable, "-c", SMALL], env=os.environ | folders, stdout=subprocess.PIPE, text=True
+        )
+        for _ in range(4)
+    ]
+    assert [process.communicate(timeout=120)[0].strip() for process in processes] == ["42.0"] * 4
+    assert not list(tmp_path.rglob("*.tmp"))
 
 
 def test_programs_that_nobody_uses_are_forgotten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
