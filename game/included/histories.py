@@ -62,6 +62,7 @@ PULSE = HistoryKind(
     static=0.0,
     ends=lambda history: float(history["start"] + history["duration"]),
     check=check_pulse,
+    breaks=lambda history: (history["start"], history["start"] + history["duration"]),
 )
 TABLE = HistoryKind(
     "table",
@@ -70,6 +71,7 @@ TABLE = HistoryKind(
     static=lambda history: float(history["factors"][-1]),
     ends=lambda history: float(history["times"][-1]),
     check=check_points,
+    breaks=lambda history: tuple(history["times"]),
 )
 RECORD = HistoryKind(
     "record",
@@ -78,6 +80,7 @@ RECORD = HistoryKind(
     static=0.0,
     ends=lambda history: float(history["times"][-1]),
     check=check_points,
+    breaks=lambda history: tuple(history["times"]),
 )
 
 

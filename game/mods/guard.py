@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -81,6 +81,10 @@ def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
     def ends(history: History) -> float:
         return float(mod.call(f"the end of the history '{kind.name}'", kind.ends, history, otherwise=-math.inf))
 
+    def breaks(history: History) -> Iterable[float]:
+        what = f"the breaks of the history '{kind.name}'"
+        return tuple(mod.call(what, kind.breaks, history, otherwise=()))
+
     static = kind.static
     if callable(static):
         own, what = static, f"the static factor of the history '{kind.name}'"
@@ -88,7 +92,7 @@ def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
         def static(history: History) -> float:
             return float(mod.call(what, own, history, otherwise=0.0))
 
-    return replace(kind, check=check, ends=ends, static=static, mod=mod)
+    return replace(kind, check=check, ends=ends, breaks=breaks, static=static, mod=mod)
 
 
 _METHODS = tuple(name for name, method in vars(Scene).items() if callable(method) and name[0] != "_")

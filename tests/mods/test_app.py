@@ -59,7 +59,7 @@ def test_a_command_gets_its_words_and_a_failing_one_ends_with_a_reason(
 
 def test_an_integrator_can_be_chosen(write_mod: Write) -> None:
     head = """
-from systems.physics.system import VelocityVerlet
+from systems.physics.drivers import VelocityVerlet
 class Mine(VelocityVerlet):
     '''Like Verlet's.'''
     name = "apple.mine"

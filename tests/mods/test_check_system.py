@@ -13,14 +13,13 @@ from numpy.typing import NDArray
 from components import Model
 from game import SystemCheckError, check_system
 from game.catalogue import step_systems
-from game.checks import BODIES, EVERYTHING
+from game.checks import BODIES, ELASTIC, EVERYTHING
 from game.registry import SYSTEMS
 from systems.base import Law, Phase, StepSystem, System
 from systems.edit.hover import Hover
 from systems.kernels import compiled
 
 OURS = {system.name: system for system in [*step_systems(), *(make() for make in SYSTEMS)]}
-ELASTIC = {**EVERYTHING, "rods": [{"name": "AC", "between": ["A", "C"]}, {"name": "BC", "between": ["B", "C"]}]}
 
 
 def again(system: StepSystem) -> System:
