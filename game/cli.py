@@ -469,7 +469,7 @@ def _bench(words: Sequence[str]) -> int:
         "names", nargs="*", metavar="NAME", help=f"any of {', '.join(bench.NAMES)}; default all"
     )
     parser.add_argument("--quick", action="store_true", help="smaller sizes; ends within a minute")
-    parser.add_argument("--output", metavar="DIR", help="also write CSV files there")
+    parser.add_argument("--output", metavar="DIR", help="also write CSV files and pictures there")
     options = parser.parse_args(words)
     for name in options.names:
         if name not in bench.NAMES:

@@ -146,8 +146,8 @@ class Driver(StepSystem):
         (1/s) of a model, not both 0; infinite if unconditionally stable, 0 if stable at none.
     order: of convergence. entry: source of the loop around the kernel. parts: sources that the kernel calls,
         "module:function" or "module:function=name in the program". constants: numbers and arrays by name.
-    controlled: it owns time and step size, lands on the times at which loads change abruptly and locates
-        events (see runge_kutta.py); else its steps are all alike.
+    controlled: it owns time and step size and locates events (see runge_kutta.py); else its steps are all
+        alike. Either ends a step, or a piece of one, where a load changes abruptly.
     estimates_error: it chooses its steps so that settings.tolerance is met, unless the step is fixed.
     particle_rows, rod_rows: arrays of shape (particles, 2) and (rods,) that it needs.
     check_interval: steps between checks for rest and divergence; larger: notices later.
