@@ -48,6 +48,7 @@ from systems.physics.pace import natural_pace
 if TYPE_CHECKING:
     from systems.statics.events import Event
     from systems.statics.path import Curve
+    from systems.statics.verify import Comparison
 
 CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
 ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
@@ -342,6 +343,15 @@ class Session:
         if left_out := ", ".join(law.name for law in laws if law.each != "loads"):
             self.notice += f" Settling does not know the laws of mods: without {left_out}."
         return found.status
+
+    def compare(self) -> Comparison:
+        """The run as it is now beside linear and exact theory: `rows` of every element, and the `worst`.
+
+        >>> s = Session.open("isostatic")
+        >>> s.compare().worst("linear").title
+        'displacement y of particle B'
+        """
+        return self.desk.beside.comparison()
 
     def load_path(self, factor: float = 1.0, *, until: str | None = None, points: int = 500) -> Curve:
         """The load–displacement curve, through limit points, up to a load factor or a displacement "B.y=-2.5".

@@ -142,10 +142,11 @@ class _Settling:
         self.structure = Structure.of(model, geometry)
         self.external = external_forces(model)
         self.events = [Event("note", 0.0, note) for note in self.external.notes]
-        self.factor, self.largest = 0.0, 0.0
+        self.factor = 0.0
         self.looked_for_bodies = self.soft = False
         at_rest = Path(self.structure, self._nothing, self._nothing)
         self.point = at_rest.start(start.displacement, start.plastic_strain)
+        self.largest = float(np.abs(self.point.response.axial_force).max(initial=0.0))
         self.load = self._holding()
 
     @property

@@ -52,6 +52,17 @@ def test_an_isostatic_structure_only_changes_its_shape() -> None:
         assert state.displacement[0, 0] == pytest.approx(-2.0 * ALPHA * 40.0, rel=1e-12)
 
 
+def test_a_warm_structure_that_moves_freely_keeps_no_force() -> None:
+    """All forces vanish, and what rounding leaves of them is no lack of balance."""
+    document = triangle((0, 0))
+    document["particles"][2]["fixed"] = [False, True]
+    for element in document["rods"]:
+        element["temperature_change"] = 78.75
+    found = settle(models.load(document)).final
+    assert found.status == "equilibrium"
+    assert found.residual < 1e-12
+
+
 def test_the_redundant_square_with_a_warm_diagonal() -> None:
     """Force method on the self-stress n̄: N = n̄ X, X = −Σ n̄ α ΔT L / Σ n̄² L/EA."""
     document = square((0, 0))
