@@ -178,12 +178,12 @@ def compare(model: Model, theory: Theories, simulated: Answer | None) -> Compari
 
 
 def remarks(model: Model, theory: Theories) -> list[Event]:
-    """What is worth knowing about a model at rest: passed unstable positions, and what came of an overshoot.
+    """What is worth knowing about a model at rest: a collapse, passed unstable positions, what came of an overshoot.
 
     Its load must have been one, applied at once or growing by one history, from theory.start on.
     """
     if theory.exact is None:
-        return []
+        return [event for event in theory.settlement.events if event.kind == "collapse"]
     overshot = overshoots(model, theory)
     worst = compare(model, theory, observed(model)).worst("simulation", "displacement")
     elsewhere = worst is not None and (worst.simulation_error or 0.0) > ELSEWHERE

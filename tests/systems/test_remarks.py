@@ -48,6 +48,13 @@ def test_a_structure_that_passed_through_its_unstable_position() -> None:
     assert "passed through its unstable position at the load factor 0.0254084 (25.4084 kN" in session.message
 
 
+def test_a_collapse_is_explained_where_its_remains_come_to_rest() -> None:
+    session = at_rest("isostatic_collapse")
+    assert kinds(session) == ["collapse"]
+    assert "Plastic collapse at the load factor 0.868552" in session.message
+    assert "rod BC yields" in session.message
+
+
 def test_run_prints_it_and_lists_it_among_the_events(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "overshoot_yield", "--format", "json"]) == 0
     run = json.loads(capsys.readouterr().out)
