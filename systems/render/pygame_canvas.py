@@ -23,7 +23,7 @@ from systems.render.typography import WEIGHTS, capital_height
 _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
-_SKETCHED = 3_000  # elements of a kind
+_SKETCHED = 1_500  # elements of a kind
 _MANY = 300  # areas, discs; and 50 pixels of strokes for each: from there on the compiled kernels pay
 
 
@@ -79,6 +79,11 @@ class Canvas:
                 self._former, self._cache = self._cache, {}
             found = self._cache[key] = self._former.pop(key, None) or make()
         return found
+
+    @property
+    def draws_all(self) -> bool:
+        """False while large pictures can only be sketched."""
+        return self._raster is None or self._large() is not None
 
     def _large(self) -> Raster | None:
         return self._raster() if self._raster is not None else None

@@ -36,7 +36,7 @@ class PygameRender(System):
         stages = frame.session.stages
         looks = tuple(repr(view) for _, view in stages)
         shown = (id(self.surface), looks, _revisions(stages))
-        self.drawn = shown != self._shown or self._sketch
+        self.drawn = shown != self._shown or (self._sketch and self._canvas.draws_all)
         if self.drawn:
             theme = load_theme(frame.session.view.theme)
             self._sketch = False
