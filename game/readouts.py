@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from systems.statics.verify import Comparison, Row, Theories
 
 MOST_ELEMENTS = 3  # of the selected ones that have a readout of their own
+NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
 
 _SHOWN = {"axial_force": ("N", "kN", 1.0), "reaction": ("R", "kN", 1.0), "displacement": ("u", "mm", 1000.0)}
 _WAYS = {"simulation": "run", "linear": "linear theory", "exact": "exact theory"}
@@ -80,18 +81,20 @@ def _symbol(row: Row) -> str:
 def _of_element(handle: Handle, comparison: Comparison) -> Iterator[Readout]:
     """A readout for every quantity of an element that theory knows."""
     if isinstance(handle, Rod):
-        yield _beside(comparison.row("axial_force", (handle.row,)))
+        yield _beside(comparison, "axial_force", (handle.row,))
     elif isinstance(handle, Particle):
         for axis, fixed in enumerate(handle.fixed):
-            yield _beside(comparison.row("reaction" if fixed else "displacement", (handle.row, axis)))
+            yield _beside(comparison, "reaction" if fixed else "displacement", (handle.row, axis))
 
 
-def _beside(row: Row) -> Readout:
-    """One quantity by the three ways, with errors."""
+def _beside(comparison: Comparison, quantity: str, place: tuple[int, ...]) -> Readout:
+    """One quantity of one element by the three ways, with errors."""
+    row, nothing = comparison.row(quantity, place), NOTHING * comparison.scale(quantity)
     _, unit, factor = _SHOWN[row.quantity]
     rows = []
     for way, title in _WAYS.items():
         value, error = getattr(row, way), getattr(row, f"{way}_error", None)
-        shown = "—" if value is None else f"{factor * value + 0.0:.7g} {unit}".replace("-", "−")
+        clear = 0.0 if value is None or abs(value) <= nothing else factor * value
+        shown = "—" if value is None else f"{clear:.7g} {unit}".replace("-", "−")
         rows.append((title if error is None else f"{title}, error {error:.1e}", shown))
     return Readout(row.title[:1].upper() + row.title[1:], tuple(rows))

@@ -79,7 +79,7 @@ def _by_element(comparison: Comparison | None) -> dict[str, dict[str, Any]]:
     """The rows as {"rods": {name: {quantity: values}}, "particles": {name: {quantity: {axis: values}}}}."""
     tables: dict[str, dict[str, Any]] = {"rods": {}, "particles": {}}
     for row in comparison.rows if comparison is not None else ():
-        values = {key: value for key, value in asdict(row).items() if key in _VALUES}
+        values = {key: value for key, value in vars(row).items() if key in _VALUES}
         quantities = tables[f"{row.element}s"].setdefault(row.name, {})
         if row.component:
             quantities.setdefault(row.quantity, {})[row.component] = values

@@ -96,7 +96,7 @@ def lowest_mode(matrix: Matrix, weight: Array) -> tuple[float, Array]:
 def soft_modes(matrix: Matrix, weight: Array, factor: Factor | None = None, most: int = 8) -> Array:
     """Up to `most` modes (N, k) that K resists by less than a share SOFT of W, orthonormal in W."""
     factor = factor or regular(matrix, weight)
-    if len(weight) == 0 or not factor.exists:
+    if len(weight) == 0 or most == 0 or not factor.exists:
         return np.zeros((len(weight), 0))
     root = np.sqrt(weight)
     block = pseudo_random(len(weight), min(most, len(weight)))

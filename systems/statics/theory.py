@@ -122,7 +122,8 @@ def mechanisms(model: Model) -> Array:
     if structure.size <= FULL:
         modes = _null_space(structure.compatibility(_unmoved(structure)).toarray())
     else:
-        modes = soft_modes(_stiffness(structure), structure.weight, most=MOST_MODES)
+        matrix = _stiffness(structure)
+        modes = soft_modes(matrix, structure.weight, most=min(MOST_MODES, soft_count(matrix, structure.weight)))
     fields = [structure.spread(mode) for mode in _localised(modes).T]
     scaled = [field / np.hypot(*field.T).max() for field in fields]
     return np.array(scaled).reshape(len(fields), *structure.unknown.shape)

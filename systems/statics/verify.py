@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -117,14 +118,8 @@ class Comparison:
     def row(self, quantity: str, place: tuple[int, ...]) -> Row:
         """One quantity of one element: of a rod (row,), of a particle (row, axis)."""
         table, unit = QUANTITIES[quantity]
-        found = {
-            way: float(values[place])
-            for way in self.answers
-            if (values := self._values(way, quantity)) is not None
-        }
-        errors = {
-            way: float(e[place]) for way in self.answers if (e := self._errors(way, quantity)) is not None
-        }
+        found = {way: float(values[place]) for way, values in self._values[quantity].items()}
+        errors = {way: float(values[place]) for way, values in self._errors[quantity].items()}
         return Row(
             element=table.removesuffix("s"),
             name=str(self.model.tables[table].column("name")[place[0]]),
@@ -142,7 +137,7 @@ class Comparison:
         """The row with the largest error of the "simulation" or of "linear" theory (of some quantities, if given)."""
         largest, row = -1.0, None
         for quantity in quantities or QUANTITIES:
-            errors, concerned = self._errors(way, quantity), self._concerned(quantity)
+            errors, concerned = self._errors[quantity].get(way), self._concerned(quantity)
             if errors is None or not concerned.any():
                 continue
             errors = np.where(concerned, errors, -1.0)
@@ -158,15 +153,29 @@ class Comparison:
         fixed: Flags = self.model.particles.fixed
         return fixed if quantity == "reaction" else ~fixed
 
-    def _values(self, way: str, quantity: str) -> Array | None:
-        return getattr(self.answers[way], quantity, None)
+    def scale(self, quantity: str) -> float:
+        """The largest exact value, 0 if there is none."""
+        exact = self._values[quantity].get("exact")
+        return float(np.abs(exact).max(initial=0.0)) if exact is not None else 0.0
 
-    def _errors(self, way: str, quantity: str) -> Array | None:
-        values, exact = self._values(way, quantity), self._values("exact", quantity)
-        if values is None or exact is None:
-            return None
-        errors: Array = np.abs(values - exact) / (float(np.abs(exact).max(initial=0.0)) or 1.0)
-        return errors
+    @cached_property
+    def _values(self) -> dict[str, dict[str, Array]]:
+        """By quantity and way."""
+        given = {way: answer for way, answer in self.answers.items() if answer is not None}
+        return {q: {way: getattr(answer, q) for way, answer in given.items()} for q in QUANTITIES}
+
+    @cached_property
+    def _errors(self) -> dict[str, dict[str, Array]]:
+        """By quantity and way, relative to the scale; none without an exact answer."""
+        return {
+            quantity: {
+                way: np.abs(array - values["exact"]) / (self.scale(quantity) or 1.0)
+                for way, array in values.items()
+            }
+            if "exact" in values
+            else {}
+            for quantity, values in self._values.items()
+        }
 
 
 def compare(model: Model, theory: Theories, simulated: Answer | None) -> Comparison:
