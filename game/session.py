@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 
 CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
 ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
-COMPILING = "Preparing the step program for this kind of model, which takes a while only the first time:"
+COMPILING = "Preparing the step program, which takes a while for the first model of its kind:"
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
 
 
@@ -664,7 +664,8 @@ class Session:
         view, scene = self.view, self.scenes.active
         view.forces_known = self._waited_for(self.simulation) is None
         waited = self._waited_for(self._awaited) if self._awaited is not None else None
-        said = self.notice if waited is None else f"{COMPILING} {waited:.0f} s so far."
+        self._awaited = None if waited is None else self._awaited
+        said = self.notice if waited is None else f"{COMPILING} {waited:.0f} s."
         view.preview = self._preview()
         view.heading = scene.heading
         self._offer_tools()
@@ -694,6 +695,8 @@ class Session:
     def _state_word(self) -> str:
         if self.simulation.halted:
             return "at rest" if self.simulation.reason is StopReason.REST else "diverged"
+        if self._awaited is not None:
+            return "preparing"
         if not self.busy:
             return "paused"
         return "running, slower than asked" if self.clock.lagging else "running"

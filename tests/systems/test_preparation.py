@@ -75,10 +75,12 @@ def test_a_run_waits_and_says_so_and_goes_on(app: App, compiler: Compiler) -> No
     frames(app, 3)
     assert session.model.clock.steps == 0
     assert session.view.status.notice.startswith(COMPILING)
+    assert session.view.status.state == "preparing"
     assert not session.view.forces_known
     compiler.status = 0
     frames(app, 3)
     assert session.model.clock.steps > 0
+    assert session.view.status.state == "running"
     assert session.view.status.notice == ""
     assert session.view.forces_known
     assert compiler.jobs[1] == (*compiler.jobs[0], "edit.pull")  # next, in case that it is pulled
