@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from systems.collision.arrays import Reason
 from systems.collision.discs import Discs
+from systems.collision.overlaps import part
 from tests.reference.scenes_of_discs import (
     GRAVITY,
     Scene,
@@ -128,6 +129,27 @@ def test_five_hundred_towards_one_point() -> None:
     assert (velocity**2).sum() == pytest.approx(count, rel=1e-12)
     assert velocity.sum(axis=0) == pytest.approx(towards.sum(axis=0), abs=1e-11)
     assert discs.impacts > 500
+
+
+def test_five_hundred_on_one_point_are_parted() -> None:
+    """Coincident centres have no line between them; where discs go is the same every time."""
+    position, inverse_mass = np.zeros((500, 2)), np.ones((500, 2))
+    radius = np.full(500, RADIUS)
+    parted = []
+    for _ in range(2):
+        displacement = np.zeros((500, 2))
+        left = part(position, displacement, radius, inverse_mass, lambda pairs: np.ones(len(pairs), dtype=bool))
+        assert np.isfinite(displacement).all()
+        parted.append(displacement)
+    assert parted[0].tobytes() == parted[1].tobytes()
+    assert left == 0
+    assert np.hypot(*parted[0].T).max() < 10 * RADIUS * np.sqrt(500)
+
+
+def test_coincident_centres_are_no_harm_to_the_engine() -> None:
+    scene = line([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1, 1, 1])
+    discs = fly(scene, 2.0)
+    assert discs.state_at(2.0)[1].sum(axis=0) == pytest.approx([-1, 0])
 
 
 def test_a_billion_metres_a_second() -> None:

@@ -72,6 +72,7 @@ from systems.collision.window.kernels import expect, find_bond, open_window
 
 DONE, BUSY, REPORT_FULL = int(Reason.DONE), int(Reason.BUSY), int(Reason.REPORT_FULL)
 QUEUE_FULL, GROUP_FULL = int(Reason.QUEUE_FULL), int(Reason.GROUP_FULL)
+TINY = 1e-300  # m; distance of centres that coincide
 
 
 @entry
@@ -194,6 +195,8 @@ def _link(i, j, force, touching, discs, group, time):
         distance = math.sqrt(dx * dx + dy * dy)
         group.links[touching, 0], group.links[touching, 1] = group.place[i], group.place[j]
         contact = group.contacts[touching]
+        if distance == 0.0:  # no direction is better than another
+            dx = distance = TINY
         contact[NX], contact[NY], contact[DISTANCE] = dx / distance, dy / distance, distance
         contact[BIAS], contact[FORCE] = 0.0, force
         contact[OPENING] = compliance(touching, touching, group)
