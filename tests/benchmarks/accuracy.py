@@ -34,7 +34,7 @@ Run = Callable[[float], tuple[float, Array]]  # of a tolerance or step size: (se
 
 def report(*, quick: bool) -> dict[str, list[Row]]:
     """Every run, the fastest method at each error, and the thesis' scheme at its own step."""
-    budget = 0.1 if quick else 1.0
+    budget = 0.1 if quick else 0.4
     runs = [row for problem in problems(quick=quick) for row in runs_of(problem, budget)]
     return {"runs": runs, "fastest": fastest(runs), "at_the_thesis_step": at_the_thesis_step(runs)}
 

@@ -101,7 +101,7 @@ def slow_yielding() -> Problem:
     """The thesis' square, its load growing slowly until rods yield: nearly static, very stiff."""
     limits = {"tensile_strength": 215, "compressive_strength": 215, "damping": 100, "stiffness": 164640}
     made = square(force=(0, 0), **limits)
-    made["loads"] = [{"on": "C", "force": [0, -260], "history": {"kind": "ramp", "duration": 0.5}}]
+    made["loads"] = [{"on": "C", "force": [0, -260], "history": {"kind": "ramp", "start": 0, "duration": 0.5}}]
     return _by_tight_integration("slow yielding", made, 0.5)
 
 
