@@ -150,7 +150,7 @@ class Program:
         fresh = self._state_revision == model.newest(Role.STATE)
         total = clock.steps
         account = self._accounts()
-        control = np.array([getattr(clock, name) for name in _CONTROL] + [0.0, 0.0])
+        control = np.array([*self._of_clock(_CONTROL), 0.0, 0.0])
         controls_error = self.driver.estimates_error and model.settings.time_step is None
         breaks = np.sort(np.append(self._breaks, [landing, math.inf]))
         taken, reason = self._call(
@@ -239,7 +239,12 @@ class Program:
         return float(conserved(self.measures, self._accounts(), dt, self._module.SHADOW))
 
     def _accounts(self) -> Column:
-        return np.array([getattr(self.model.clock, name) for name in _ACCOUNT])
+        return np.array(self._of_clock(_ACCOUNT))
+
+    def _of_clock(self, names: Sequence[str]) -> list[float]:
+        """Values of the clock, without the way over its handle, which takes longer than some runs."""
+        table = self.model.tables["clock"]
+        return [table.current(name)[0] for name in names]
 
     def _state(self) -> tuple[Column, ...]:
         displacement = self.model.writable("particles.displacement")

@@ -36,7 +36,8 @@ def report(*, quick: bool) -> dict[str, list[Row]]:
     """Every run, the fastest method at each error, and the thesis' scheme at its own step."""
     budget = 0.1 if quick else 0.4
     runs = [row for problem in problems(quick=quick) for row in runs_of(problem, budget)]
-    return {"runs": runs, "fastest": fastest(runs), "at_the_thesis_step": at_the_thesis_step(runs)}
+    tables = {"runs": runs, "fastest": fastest(runs), "at_the_thesis_step": at_the_thesis_step(runs)}
+    return {title: rows for title, rows in tables.items() if rows}
 
 
 def runs_of(problem: Problem, budget: float) -> Iterator[Row]:
