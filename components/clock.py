@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from components.field import Field, Role
+from components.paths import Paths, check_paths
 from components.world import Handle
 
 
@@ -85,4 +86,13 @@ class Clock(Handle):
     )
     collisions: Field[int] = Field(
         dtype=int, default=0, role=Role.STATE, title="collisions", doc="Impacts so far."
+    )
+    paths: Field[Paths | None] = Field(
+        dtype=object,
+        default=None,
+        nullable=True,
+        role=Role.STATE,
+        title="paths",
+        doc="What particles that fly free are on, and which rest on which, so that the run goes on bit for bit.",
+        checker=check_paths,
     )

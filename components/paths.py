@@ -69,7 +69,7 @@ def check_paths(value: Any, where: str) -> Paths:
         return value
     try:
         numbers = [[math.inf if number is None else number for number in row] for row in value["motion"]]
-        motion = np.array(numbers, dtype=np.float64)
+        motion = np.array(numbers, dtype=np.float64) if numbers else np.zeros((0, 0))
         contacts = np.array(value["contacts"], dtype=np.int64).reshape(-1, 2)
         forces = np.array(value["forces"], dtype=np.float64).reshape(-1)
         crowd = np.array(value["crowd"], dtype=np.float64)
@@ -77,7 +77,7 @@ def check_paths(value: Any, where: str) -> Paths:
         whole = whole and crowd.ndim == 1
     except (TypeError, ValueError, KeyError, OverflowError):
         whole = False
-    if not whole or (contacts < 0).any() or (contacts >= len(motion)).any() or np.isnan(motion).any():
+    if not whole or (contacts < 0).any() or np.isnan(motion).any():
         raise FieldError(
             f"{where}: paths are not what a saved run holds; remove them, and it goes on to within round-off."
         )

@@ -91,6 +91,7 @@ class View:
     caption: lines at the top: what this is, and facts about it. page: text that is shown instead.
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
+    flashes: points (m) where particles collided just now, shape (k, 2).
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     theory, energy: show theory beside the run, and its energy account, among them.
     """
@@ -107,6 +108,7 @@ class View:
     pointer: Vector | None = None
     tool: str = ""
     preview: Preview | None = None
+    flashes: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 2)))
     caption: tuple[str, ...] = ()
     page: Page | None = None
     toolbar: Toolbar = field(default_factory=Toolbar)

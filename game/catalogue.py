@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from components.settings import INTEGRATORS
 from systems.base import Driver, StepSystem
+from systems.collision.system import Collision, Support
 from systems.loads.system import varying_loads
 from systems.physics.drivers import (
     DormandPrince853,
@@ -46,5 +47,7 @@ def step_systems() -> list[StepSystem]:
         Drag(),
         Strength(),
         Yielding(),
+        Collision(),
+        Support(),
         *varying_loads(),
     ]

@@ -120,10 +120,13 @@ def _run(words: Sequence[str]) -> int:
     _add_analysis(parser)
     parser.add_argument("--format", choices=tuple(_FORMATS), default="table")
     parser.add_argument("--output", metavar="FILE", help="write to a file instead of standard output")
+    parser.add_argument("--events", metavar="FILE", help="write all impacts to a file, as CSV")
     options = parser.parse_args(words)
     session = _session(options)
     run = _analysis(options).run_in(session, options.model)
     _write(_FORMATS[options.format](run), options.output)
+    if options.events is not None:
+        _write(session.impacts.as_csv(), options.events, "--events")
     return ANSWERED if run["status"] in FOUND else NOT_ANSWERED
 
 
@@ -205,14 +208,14 @@ def _times(text: str) -> tuple[float, ...]:
     return times
 
 
-def _write(text: str, output: str | None) -> None:
+def _write(text: str, output: str | None, option: str = "--output") -> None:
     if output is None:
         sys.stdout.write(text)
         return
     try:
         Path(output).write_text(text, encoding="utf-8")
     except OSError as error:
-        raise Refusal(f"{output} cannot be written: {error.strerror}. Choose another --output.") from None
+        raise Refusal(f"{output} cannot be written: {error.strerror}. Choose another {option}.") from None
 
 
 # --- theory beside the simulation --------------------------------------------------------------------------

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from components.camera import Viewport
 from components.environment import Environment
@@ -30,6 +31,7 @@ from game.desk import Desk, Desks, ModelFile, file_of
 from game.document import missing_mods
 from game.gestures import TOOL_HINTS, Gesture
 from game.history import History
+from game.impacts import Impacts
 from game.mods.mod import FAULTS
 from game.readouts import own_readouts
 from game.registry import PANELS, SYSTEMS
@@ -53,6 +55,8 @@ if TYPE_CHECKING:
 CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
 ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
 COMPILING = "Preparing the step program, which takes a while for the first model of its kind:"
+FLASH = 0.15  # s shown, for which an impact is marked
+MOST_FLASHES = 500  # impacts marked at a time
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
 
 
@@ -268,9 +272,15 @@ class Session:
         return self.simulation.energy
 
     @property
+    def impacts(self) -> Impacts:
+        """The impacts of the run so far, in columns."""
+        return self.simulation.impacts
+
+    @property
     def message(self) -> str:
         """Why the run stopped, or what to beware of; "" if there is nothing to say."""
-        said = self.fault or self.simulation.message or self.simulation.warning or self.notice
+        simulation = self.simulation
+        said = self.fault or simulation.message or simulation.warning or simulation.note or self.notice
         return " ".join([*filter(None, [said]), *(remark.message for remark in self.remarks)])
 
     @property
@@ -667,6 +677,7 @@ class Session:
         self._awaited = None if waited is None else self._awaited
         said = self.notice if waited is None else f"{COMPILING} {waited:.0f} s."
         view.preview = self._preview()
+        view.flashes = self._flashes()
         view.heading = scene.heading
         self._offer_tools()
         view.keys = help_lines(scene.name) if view.help else []
@@ -679,6 +690,14 @@ class Session:
             problem=self._problem(),
             notice=said or " ".join(remark.message for remark in self.remarks),
         )
+
+    def _flashes(self) -> NDArray[np.float64]:
+        """Where particles collided within the last moment that was shown."""
+        if not self.busy or len(self.impacts) == 0:
+            return np.zeros((0, 2))
+        since = self.time - FLASH * self.clock.shown_pace
+        first = max(int(np.searchsorted(self.impacts.time, since)), len(self.impacts) - MOST_FLASHES)
+        return np.column_stack([self.impacts.x[first:], self.impacts.y[first:]])
 
     def _preview(self) -> Preview | None:
         try:
@@ -706,4 +725,4 @@ class Session:
             return f"{self.fault} Esc takes this away."
         if self.simulation.reason is StopReason.DIVERGED and self.simulation.halted:
             return self.simulation.message
-        return self.simulation.warning
+        return self.simulation.warning or self.simulation.note

@@ -18,12 +18,16 @@ from components.snapshot import Snapshot
 from components.world import Derivation
 from game.catalogue import DRIVERS
 from game.culprit import blame_mod, find_culprit
+from game.encounters import Encounters
+from game.flight import Flight, part_overlaps
+from game.impacts import Impacts
 from game.moment import Moment
 from game.program import Program
 from game.program_binding import ProgramError
 from game.program_writer import REVIEW_INTERVAL
 from game.schedule import Schedule
 from systems.base import Driver, StepSystem, StopReason
+from systems.collision.system import Collision, FreeFlight
 from systems.physics.automatic import SMALL, choose
 from systems.physics.pace import natural_pace
 from systems.physics.spectrum import Spectrum, spectrum
@@ -36,6 +40,7 @@ FREE_STEP = 1e-3  # s, where nothing limits the step
 DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
 MOST_RETRIES = 6  # times that an automatic step is halved before a run is given up
 DEFAULT_DRIVER = "velocity_verlet"
+FREE_FLIGHT = FreeFlight()
 
 CHOSEN = (
     "step_size",
@@ -81,7 +86,8 @@ class Simulation:
     """Advances one model and keeps its derived columns, its energy account and its last good state.
 
     reason: why the last advance ended; message: the same as a sentence, or "".
-    warning: what a person should know though the run goes on, or "".
+    warning, note: what a person should know though the run goes on, or "".
+    impacts: what collided so far.
     compute_seconds, compile_seconds: spent so far in steps, and in compiling or loading programs.
     smooth: steps are not longer than what is shown at once, even where accuracy would allow it; else they
         are too long to be watched, and to be interrupted.
@@ -94,14 +100,18 @@ class Simulation:
         self.reason = StopReason.DONE
         self.message = ""
         self.warning = ""
+        self.note = ""
+        self.impacts = Impacts(model)
+        self._encounters = Encounters(model, self.impacts, self._short_step, self._rebind)
         self.compute_seconds = 0.0
         self.compile_seconds = 0.0
         self.stable_step = math.inf
         self.watch: Callable[[], int] | None = None
         self.smooth = True
-        self._programs: dict[tuple[str, ...], Program] = {}
+        self._programs: dict[tuple[str, ...], Program | Flight] = {}
         self._driver: Driver | None = None
-        self._program: Program | None = None
+        self._program: Program | Flight | None = None
+        self._collides = False
         self._armed = False  # the energy account and the step size fit the present document
         self._armed_revision = -1
         self._before_edit: Column | None = None
@@ -127,10 +137,13 @@ class Simulation:
 
     @property
     def driver(self) -> Driver:
-        """The integrator that the settings ask for, or that suits the model."""
+        """The integrator that the settings ask for, or that suits the model; free particles need none."""
         if self._driver is None:
             name = self.model.settings.integrator
-            self._driver = DRIVERS[choose(self.model) if name == AUTOMATIC else name]
+            if [type(system) for system in self.schedule.step_plan(self.model)] == [Collision]:
+                self._driver = FREE_FLIGHT
+            else:
+                self._driver = DRIVERS[choose(self.model) if name == AUTOMATIC else name]
         return self._driver
 
     @property
@@ -139,7 +152,7 @@ class Simulation:
         return self.driver.name.rpartition(".")[2]
 
     @property
-    def program(self) -> Program:
+    def program(self) -> Program | Flight:
         """The step program, bound to the model as it is now."""
         if self._program is None:
             self._bind()
@@ -159,6 +172,7 @@ class Simulation:
     def forget(self) -> None:
         """The state was replaced (undo, a saved run) by one that fits the document, accounted for."""
         self._armed = self._started
+        self._program = None  # its plan may be another one: what is in contact is part of the state
         self._before_edit = None
         self._safe = None
         self._retries = 0
@@ -182,7 +196,8 @@ class Simulation:
 
     def moment(self, *tables: str) -> Moment:
         """The present, to return to: the state of these tables (none given: of all)."""
-        state = Snapshot.take(self.model, *tables)
+        state, paths = Snapshot.take(self.model, *tables), self.model.clock.paths
+        columns = sum(column.nbytes for column in state.columns.values())
         return Moment(
             state,
             self.model.clock.steps,
@@ -190,7 +205,7 @@ class Simulation:
             self._before_edit,
             self.stable_step,
             self.warning,
-            size=sum(column.nbytes for column in state.columns.values()),
+            size=columns + (paths.nbytes if paths is not None else 0),
         )
 
     def resume(self, moment: Moment) -> None:
@@ -213,13 +228,16 @@ class Simulation:
             self.observe()
             self._before_edit = self.program.measures.copy()
             self._armed = False
+        if self.model.clock.paths is not None:
+            self.model.writable("clock.paths")[0] = None
         self._driver = self._program = None
 
-    def _arm(self) -> Program:
+    def _arm(self) -> Program | Flight:
         """Get ready to run after edits: account for them, choose the step size, note a safe state."""
         if not self._armed:
             problem = incomputable(self.model)
             if not problem:
+                self._part_overlaps()
                 self._close_account()
                 self._choose_step(self._find_stable_step())
             self._armed = True
@@ -240,20 +258,39 @@ class Simulation:
         """Take hold of the model by the program of its plan, without mods whose systems cannot join it."""
         while self._program is None:
             systems = self.schedule.step_plan(self.model)
+            self._collides = any(isinstance(system, Collision) for system in systems)
             try:
                 self._program = self._bound(systems)
             except ProgramError as error:
                 if not blame_mod(error):
                     raise
 
-    def _bound(self, systems: list[StepSystem]) -> Program:
+    def _bound(self, systems: list[StepSystem]) -> Program | Flight:
         key = self._key(systems)
         if key in self._programs:
             self._programs[key].bind()
         else:
-            self._programs[key] = Program(self.model, systems, self.driver)
+            self._programs[key] = self._made(systems)
             self.compile_seconds += self._programs[key].compile_seconds
         return self._programs[key]
+
+    def _rebind(self) -> Program:
+        """The program of a plan that time has changed."""
+        self._program = None
+        self._bind()
+        assert isinstance(self._program, Program)
+        return self._program
+
+    def _made(self, systems: list[StepSystem]) -> Program | Flight:
+        if self.driver is FREE_FLIGHT:
+            return Flight(self.model, self.impacts)
+        return Program(self.model, [s for s in systems if not isinstance(s, Collision)], self.driver)
+
+    def _part_overlaps(self) -> None:
+        """Particles that edits left in one another's place are moved apart; a note says so."""
+        self.note = ""
+        if any(isinstance(system, Collision) for system in self.schedule.step_plan(self.model)):
+            self.note = part_overlaps(self.model)
 
     def _account(self) -> tuple[float, float, float]:
         """(initial energy, work, potential reference) in J, edits since the last step included.
@@ -347,7 +384,10 @@ class Simulation:
         if self.stable_step == 0.0:
             return _rounded_down(DOUBTFUL_STEP / frequency)
         share = ACCURATE if self.model.rods.count <= SMALL else SAFETY
-        return _rounded_down(min(share * self.stable_step, FREE_STEP))
+        size = min(share * self.stable_step, FREE_STEP)
+        if self.smooth and self.driver is FREE_FLIGHT:
+            size = min(size, SHOWN * natural_pace(self.model))
+        return _rounded_down(size)
 
     def _begin_step_size(self, size: float) -> None:
         """From now on steps have this size; the guard against divergence compares with this moment."""
@@ -376,12 +416,20 @@ class Simulation:
         while clock.steps - first < steps and not self.halted:
             ahead = steps - (clock.steps - first)
             ahead = ahead if self.watch is None else min(ahead, self.watch())
-            taken, reason = self._arm().advance(ahead, until)
+            self._arm()
+            taken, reason = self._take(ahead, until)
             if taken == 0 and reason is StopReason.DONE:
                 break
             self._heed(reason)
         self.compute_seconds += time.perf_counter() - started
         return clock.steps - first
+
+    def _take(self, steps: int, until: float) -> tuple[int, StopReason]:
+        """Take up to `steps` steps, looking out for what meets on the way if anything can."""
+        program = self.program
+        if isinstance(program, Program) and self._collides:
+            return self._encounters.advance(program, steps, until)
+        return program.advance(steps, until)
 
     def _heed(self, reason: StopReason) -> None:
         """Do what a program that returned for this reason asks for."""
@@ -401,7 +449,7 @@ class Simulation:
     def _go_on_without_mod(self) -> bool:
         """If a mod made a number that is not finite, switch it off and return to the last good state."""
         assert self._safe is not None
-        mod = find_culprit(self.program, self._safe)
+        mod = find_culprit(self.program, self._safe) if isinstance(self.program, Program) else None
         if mod is None:
             return False
         self._safe.restore(self.model)
@@ -434,6 +482,12 @@ class Simulation:
 
     def _land(self, target: float) -> StopReason:
         """Take the last, short step to a time (s)."""
+        if isinstance(self.program, Program) and self._collides:
+            return self._encounters.land(self.program, target)
+        return self._short_step(target)
+
+    def _short_step(self, target: float) -> StopReason:
+        """Take it without looking out for what meets."""
         clock, reason = self.model.clock, StopReason.DONE
         if self.driver.controlled:
             while clock.time < target and reason in (StopReason.DONE, StopReason.REVIEW):

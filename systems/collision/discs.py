@@ -96,7 +96,7 @@ class Discs:
         self.numbers[arrays.WORK_SINCE] = time
         self.queue = _queue(2 * n + 64)
         self.grid = _grid(n, 2)
-        self.group = _group(n, 4 * n + 64)
+        self.group = room_for(n, 4 * n + 64)
         self.report = _report(max(REPORT, len(self.group.links)))
         self.ties = _ties(n, joined, 2 * len(self.group.links), self.counts)
 
@@ -148,7 +148,7 @@ class Discs:
             self.grid = _grid(n, int(self.counts[arrays.LAYERS]) + 1)
         elif reason is Reason.GROUP_FULL:
             size = 2 * len(self.group.links)
-            self.group = _group(n, size)
+            self.group = room_for(n, size)
             self.report = _report(max(REPORT, size))
             self.ties = _more_lasting(self.ties, 2 * size, self.counts)
 
@@ -256,7 +256,8 @@ def _grid(n: int, layers: int) -> Grid:
     )
 
 
-def _group(n: int, contacts: int) -> Group:
+def room_for(n: int, contacts: int) -> Group:
+    """An empty group of at most n members and so many contacts."""
     return Group(
         members=np.zeros(n, dtype=np.int64),
         place=np.full(n, arrays.NONE, dtype=np.int64),

@@ -20,7 +20,7 @@ from systems.render.structure import draw_ghost, draw_grid, draw_halos, draw_par
 from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Theme
 from systems.render.toolbar import compose_toolbar
-from systems.render.tools import draw_preview
+from systems.render.tools import draw_flashes, draw_preview
 
 if TYPE_CHECKING:
     from components.model import Model
@@ -64,5 +64,5 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme) -> Picture:
     overlays += draw_readouts(sheet, room)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit)
     scale = draw_scale(sheet, room) if model.particles.count else []
-    over = [*scale, *draw_preview(sheet), *overlays]
+    over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays]
     return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over])

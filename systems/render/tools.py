@@ -18,6 +18,16 @@ _COILS = 9  # of the spring that pulls
 Pixel = NDArray[np.float64]
 
 
+def draw_flashes(sheet: Sheet) -> list[Mark]:
+    """Where particles collided just now."""
+    at = sheet.view.camera.to_pixels(sheet.view.flashes)
+    at = at[np.isfinite(at).all(axis=1)]
+    if len(at) == 0:
+        return []
+    colour = sheet.theme.force
+    return [Stamps("disc", at, 7.0 * sheet.unit, sheet.unit, faded(colour, 0.25), faded(colour, 0.8))]
+
+
 def draw_preview(sheet: Sheet) -> list[Mark]:
     """The rod, arrow, spring or box that a person draws just now, with its value at the end."""
     preview = sheet.view.preview

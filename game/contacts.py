@@ -1,0 +1,94 @@
+"""Contacts: the forces between particles that stay in contact while other forces drive them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from components.model import Model
+from components.paths import Paths
+from components.snapshot import Snapshot
+from game.program import Program
+from game.strikes import NO_CROWD, NO_MOTION
+from systems.base import StopReason
+from systems.collision.near import Floats, Rows
+from systems.collision.system import Support, contacts_of, support_forces
+from systems.collision.vicinity import Vicinity
+
+HELD = 1e-10  # of the smaller radius, within which particles in contact are kept
+MOST_TRIES = 60  # of the forces in a step
+
+
+class Contacts:
+    """Takes steps in which particles in lasting contact push each other so that they touch at the end."""
+
+    def __init__(self, model: Model, vicinity: Vicinity) -> None:
+        self.model = model
+        self._near = vicinity
+
+    def step(self, program: Program, before: Snapshot, take: Callable[[], StopReason]) -> StopReason:
+        """One step from a moment before, taken by `take`.
+
+        Forces F ≥ 0, constant during the step, are sought by Broyden's method, which begins with the compliance
+        h²/2 Nᵀ M⁻¹ N; contacts whose force is 0 may open.
+        """
+        contacts = contacts_of(self.model)
+        if contacts is None:
+            _push(program, self.model, 0.0)
+            return take()
+        pairs, forces = contacts.contacts, contacts.forces
+        start = before.columns["particles.displacement"]
+        _, normal = self._near.gaps(pairs, start)
+        held = HELD * self._near.radius[pairs].min(axis=1)
+        inverse: Floats | None = None
+        tried: tuple[Floats, Floats] | None = None
+        for _ in range(MOST_TRIES):
+            _push(program, self.model, support_forces(self._near.position + start, pairs, forces))
+            reason = take()
+            h = self.model.clock.time - before.columns["clock.time"][0]
+            if h == 0.0 or reason is StopReason.DIVERGED:
+                return reason
+            gap, _ = self._near.gaps(pairs, self.model.particles.displacement)
+            if not (np.where(forces > 0.0, np.abs(gap), -gap) > held).any():
+                break
+            if inverse is None:
+                inverse = np.linalg.pinv(0.5 * h * h * self._compliance(pairs, normal))
+            elif tried is not None:
+                inverse = _improved(inverse, forces - tried[0], gap - tried[1])
+            tried = forces, gap
+            forces = np.maximum(forces - inverse @ gap, 0.0)
+            if np.array_equal(forces, tried[0]):
+                break
+            before.restore(self.model)
+        lasts = (forces > 0.0) | (gap <= held)
+        paths = Paths(NO_MOTION, pairs[lasts], forces[lasts], NO_CROWD)
+        self.model.writable("clock.paths")[0] = paths
+        return reason
+
+    def _compliance(self, pairs: Rows, normal: Floats) -> Floats:
+        """Nᵀ M⁻¹ N: how fast a unit force in one contact opens another, 1/kg."""
+        columns = np.zeros((len(pairs), len(self._near.position), 2))
+        rows = np.arange(len(pairs))
+        columns[rows, pairs[:, 1]] += normal
+        columns[rows, pairs[:, 0]] -= normal
+        flat = (columns * np.sqrt(self._near.weight)).reshape(len(pairs), -1)
+        product: Floats = flat @ flat.T
+        return product
+
+
+def _push(program: Program, model: Model, force: Floats | float) -> None:
+    """Push the particles by these forces (kN) in the next step."""
+    for system in program.systems:
+        if isinstance(system, Support):
+            system.push(model, force)
+
+
+def _improved(inverse: Floats, moved: Floats, changed: Floats) -> Floats:
+    """Broyden's update of the inverse of how gaps follow forces."""
+    applied = inverse @ changed
+    scale = float(moved @ applied)
+    if scale == 0.0:
+        return inverse
+    updated: Floats = inverse + np.outer(moved - applied, moved @ inverse) / scale
+    return updated

@@ -1,0 +1,162 @@
+"""Encounters: impacts and contacts of particles that rods, drag or a hand drive.
+
+The integrator takes its steps; when particles come near each other every step is looked at: the paths in it
+are taken as parabolas, whose first meeting is found like that of free particles, the step is taken again to end
+there, and forces are evaluated anew after the impact.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from components.model import Model
+from components.snapshot import Snapshot
+from game.contacts import Contacts
+from game.encounter_kernels import kernels
+from game.impacts import Impacts
+from game.program import Program
+from game.strikes import TOUCH, Strikes
+from systems.base import StopReason
+from systems.collision.vicinity import WATCHED, Vicinity
+
+FEW = 4  # steps; a shorter time is not worth letting pass unwatched
+DOUBT = 1e-3  # of a radius, by which a path may differ from a parabola where particles meet
+SWAY = 0.15  # times h |Δv|: by how much a cubic path differs from the parabola through its ends (4/27)
+MOST_TRIES = 60  # of the length of a step that ends at an impact
+
+Take = Callable[[float | None], StopReason]  # takes a step: a whole one, or up to a time (s)
+
+
+class Encounters:
+    """Takes the steps of a program of one model, and ends them where particles meet.
+
+    land: takes a short step to a time (s). rebind: the plan changed; returns the program for it.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        impacts: Impacts,
+        land: Callable[[float], StopReason],
+        rebind: Callable[[], Program],
+    ) -> None:
+        self.model = model
+        self._near = Vicinity(model)
+        self._contacts = Contacts(model, self._near)
+        self._strikes = Strikes(model, impacts, self._near)
+        self._land = land
+        self._rebind = rebind
+
+    def advance(self, program: Program, steps: int, until: float) -> tuple[int, StopReason]:
+        """Take up to `steps` steps that end by `until` (s); returns how many, and why it stopped."""
+        self._near.look_up()
+        clock = self.model.clock
+        first = clock.steps
+        while clock.steps - first < steps:
+            taken, reason = 0, StopReason.DONE
+            clear = self._near.clear_time()
+            if clear >= FEW * clock.step_size:
+                left = steps - (clock.steps - first)
+                taken, reason = program.advance(left, min(until, clock.time + clear))
+            if taken == 0 and reason is StopReason.DONE:
+                taken, reason, program = self._watched_step(program, until)
+            if reason is not StopReason.DONE or taken == 0:
+                return clock.steps - first, reason
+        return clock.steps - first, StopReason.DONE
+
+    def land(self, program: Program, target: float) -> StopReason:
+        """Take the last, short step to a time (s), in parts if there are impacts."""
+        self._near.look_up()
+        self._near.clear_time()
+        reason = StopReason.DONE
+        while self.model.clock.time < target and reason in (StopReason.DONE, StopReason.REVIEW):
+            _, reason, program = self._watched_step(program, target, landing=True)
+        return reason
+
+    def _watched_step(
+        self, program: Program, until: float, *, landing: bool = False
+    ) -> tuple[int, StopReason, Program]:
+        """One step, or the part of it up to the first impact, and what that does."""
+        before, clock = Snapshot.take(self.model), self.model.clock
+        start, steps = clock.time, clock.steps
+
+        def take(target: float | None) -> StopReason:
+            def once() -> StopReason:
+                return program.advance(1, until)[1] if target is None else self._land(target)
+
+            return self._contacts.step(program, before, once)
+
+        reason = take(until if landing else None)
+        while not self._is_nearly_parabolic(before):
+            half = 0.5 * (start + clock.time)
+            before.restore(self.model)
+            reason = take(half)
+        if clock.time == start or reason is StopReason.DIVERGED:
+            return clock.steps - steps, reason, program
+        time = self._meeting(before)
+        if time == start:
+            before.restore(self.model)
+        elif time <= clock.time:
+            reason = self._end_at_meeting(before, take, time)
+        if self._strikes.happen(before):
+            program = self._rebind()
+        return max(clock.steps - steps, 1), reason, program
+
+    # --- where paths meet ----------------------------------------------------------------------------
+
+    def _is_nearly_parabolic(self, before: Snapshot) -> bool:
+        """False if a pair comes so near that how its paths differ from parabolas could hide that it meets."""
+        near, particles = self._near, self.model.particles
+        old, speed = before.columns["particles.displacement"], before.columns["particles.velocity"]
+        h = self.model.clock.time - before.columns["clock.time"][0]
+        if h == 0.0:
+            return True
+        moved = particles.displacement - old
+        sway = SWAY * np.hypot(*(h * (particles.velocity + speed) - 2.0 * moved).T)
+        turn = h * np.hypot(*(particles.velocity - speed).T).max(initial=0.0)
+        near.cover(old, float(turn + 4.0 * sway.max(initial=0.0)))
+        doubt = sway[near.pairs].sum(axis=1)
+        first, _ = near.gaps(near.pairs, old)
+        last, _ = near.gaps(near.pairs, particles.displacement)
+        unsure = (np.minimum(first, last) < 2.0 * doubt) & (near.kinds(old) == WATCHED)
+        return not (unsure & (doubt > DOUBT * near.radius[near.pairs].min(axis=1))).any()
+
+    def _meeting(self, before: Snapshot) -> float:
+        """When a watched pair first met in the step just taken (s); infinite if none did."""
+        near, particles, start = self._near, self.model.particles, before.columns["clock.time"][0]
+        old, speed = before.columns["particles.displacement"], before.columns["particles.velocity"]
+        s = kernels().meeting(
+            self.model.clock.time - start,
+            near.pairs,
+            near.kinds(old),
+            near.position,
+            old,
+            speed,
+            particles.displacement.copy(),
+            near.radius,
+        )
+        return float(start + s)
+
+    def _end_at_meeting(self, before: Snapshot, take: Take, time: float) -> StopReason:
+        """Take the step again so that it ends where the first pair meets: Newton's method on the gap."""
+        near, particles, start = self._near, self.model.particles, before.columns["clock.time"][0]
+        reason = StopReason.DONE
+        for _ in range(MOST_TRIES):
+            before.restore(self.model)
+            reason = take(time)
+            pairs = near.pairs[near.kinds(before.columns["particles.displacement"]) == WATCHED]
+            gap, normal = near.gaps(pairs, particles.displacement)
+            relative = particles.velocity[pairs[:, 1]] - particles.velocity[pairs[:, 0]]
+            rate = (normal * relative).sum(axis=1)
+            late = np.where(rate < 0.0, gap / np.where(rate < 0.0, rate, 1.0), -math.inf)
+            first = int(np.argmax(late))  # the pair that met first, or is to meet first
+            better = time - float(late[first])
+            if abs(gap[first]) <= TOUCH * near.reach(pairs)[first] or better == time:
+                break
+            if not start < better < time + (time - start):
+                break
+            time = better
+        return reason

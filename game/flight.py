@@ -1,0 +1,232 @@
+"""Flight: stands in for the step program where nothing but constant forces and impacts moves the particles."""
+
+from __future__ import annotations
+
+import math
+import time
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import Role
+from components.model import Model
+from components.paths import Paths
+from game.impacts import Impacts
+from game.program_cache import compile_module
+from systems.base import StopReason
+from systems.collision.arrays import CROWD_COUNTS, CROWD_TIMES, MOVING
+
+if TYPE_CHECKING:
+    from systems.collision.discs import Discs
+
+CROWD = len(CROWD_COUNTS) + len(CROWD_TIMES)
+CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
+
+_SOURCE = '''\
+"""The event queue of collisions. Generated; safe to delete."""
+
+from numba import njit
+
+entry = njit(error_model="numpy", _nrt=False, cache=True)
+
+
+@entry
+def advance(until, most_events, discs, grid, ties, queue, group, report, numbers, counts):
+    return fly(until, most_events, discs, grid, ties, queue, group, report, numbers, counts)
+'''
+
+
+@cache
+def _discs() -> type[Discs]:
+    """The engine with its kernel compiled once and for all, or loaded from the cache."""
+    from systems.collision.discs import Discs
+    from systems.collision.flight.kernels import advance
+
+    class Compiled(Discs):
+        kernel = staticmethod(compile_module(_SOURCE, {"fly": advance}).advance)
+
+    Compiled([[0.0, 0.0]], [[0.0, 0.0]], [1.0], [[1.0, 1.0]]).advance(0.0)
+    return Compiled
+
+
+def part_overlaps(model: Model) -> str:
+    """Move particles apart that overlap, but for nodes of structures among themselves; says so, or ""."""
+    from systems.collision.near import near_pairs
+
+    particles = model.particles
+    node = np.zeros(particles.count, dtype=bool)
+    node[model.rods.between.ravel()] = True
+    held = (particles.mobility == 0.0).all(axis=1)
+
+    def among(pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
+        chosen: NDArray[np.bool_] = ~(node[pairs].all(axis=1) | held[pairs].all(axis=1))
+        return chosen
+
+    displacement = particles.displacement.copy()
+    touching = near_pairs(particles.position + displacement, particles.radius)
+    if not among(touching).any():
+        return ""
+    from systems.collision.overlaps import overlaps, part
+
+    count = int(among(overlaps(particles.position + displacement, particles.radius)).sum())
+    if count == 0:
+        return ""
+    left = part(particles.position, displacement, particles.radius, particles.mobility, among)
+    model.writable("particles.displacement")[...] = displacement
+    pairs = "1 pair of particles" if count == 1 else f"{count} pairs of particles"
+    note = f"{pairs} overlapped and were moved apart along their lines of centres."
+    return note if left == 0 else f"{note} {left} still overlap: move them, or free a direction."
+
+
+class Flight:
+    """The particles of one model on their exact paths from impact to impact.
+
+    measures: as of a step program. compile_seconds: what compiling it took, or loading it from the cache.
+    What the paths are is part of the model's state: clock.paths.
+    """
+
+    def __init__(self, model: Model, impacts: Impacts) -> None:
+        started = time.perf_counter()
+        self.model = model
+        self.measures = np.zeros(7)
+        self._impacts = impacts
+        self._make = _discs()
+        self.bind()
+        self.compile_seconds = time.perf_counter() - started
+
+    @property
+    def resists_motion(self) -> bool:
+        """True if impacts take energy."""
+        return self.model.settings.restitution < 1.0
+
+    def bind(self) -> None:
+        """The document changed: paths are found anew."""
+        self._flying: Discs | None = None
+        self._state_revision = -1
+
+    @property
+    def _fresh(self) -> bool:
+        return self._flying is not None and self._state_revision == self.model.newest(Role.STATE)
+
+    @property
+    def discs(self) -> Discs:
+        """The engine, in the present state of the model."""
+        if not self._fresh:
+            particles, clock = self.model.particles, self.model.clock
+            self._flying = self._make(
+                particles.position,
+                particles.velocity,
+                particles.radius,
+                np.where(particles.fixed, 0.0, 1.0 / particles.mass[:, None]),
+                displacement=particles.displacement,
+                acceleration=particles.mobility * particles.constant_force,
+                restitution=self.model.settings.restitution,
+                time=clock.time,
+            )
+            if clock.paths is not None and self._fits(clock.paths):
+                self._flying.follow(clock.paths)
+            self._state_revision = self.model.newest(Role.STATE)
+        assert self._flying is not None
+        return self._flying
+
+    def _fits(self, paths: Paths) -> bool:
+        """True if the paths lead through the present state, bit for bit."""
+        particles, now = self.model.particles, self.model.clock.time
+        inside = (paths.contacts < particles.count).all() and len(paths.crowd) == CROWD
+        if paths.motion.shape != (particles.count, len(MOVING)) or not inside:
+            return False
+        u, v, a = paths.motion[:, 0:2], paths.motion[:, 2:4], paths.motion[:, 4:6]
+        s = (now - paths.motion[:, 6])[:, None]
+        here = u + s * (v + 0.5 * s * a)
+        return bool((here == particles.displacement).all() and (v + s * a == particles.velocity).all())
+
+    # --- running -----------------------------------------------------------------------------------
+
+    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
+        """Let the time of up to `steps` steps pass; returns how many, and why it stopped.
+
+        No step ends after `until` (s); one that would pass `landing` (s) is cut to end there. Steps are only
+        where one looks: what happens does not depend on them.
+        """
+        clock = self.model.clock
+        first, origin, size = clock.steps - clock.origin_steps, clock.origin, clock.step_size
+        if until < math.inf:
+            steps = min(steps, max(math.floor((until - origin) / size * (1.0 + 1e-15)) - first, 0))
+        target = origin + (first + steps) * size
+        if landing < math.inf and origin + (first + steps + 1) * size > landing > clock.time:
+            return self._land(landing)
+        if steps == 0:
+            return 0, StopReason.DONE
+        discs = self._fly(target)
+        rest = self._steps_until_rest(discs)
+        if rest <= steps:
+            steps = int(rest)
+        self._enter(discs, steps, origin + (first + steps) * size)
+        return steps, StopReason.REST if rest <= steps else StopReason.DONE
+
+    def _land(self, landing: float) -> tuple[int, StopReason]:
+        discs = self._fly(landing)
+        self._enter(discs, 1, landing)
+        self.model.writable("clock.origin")[0] = landing
+        self.model.writable("clock.origin_steps")[0] = self.model.clock.steps
+        return 1, StopReason.DONE
+
+    def _fly(self, target: float) -> Discs:
+        """Advance the discs and enter the impacts into the account."""
+        discs = self.discs
+        _, happened = discs.advance(target)
+        if len(happened):
+            clock = self.model.clock
+            columns = (happened.time, happened.pairs, happened.impulse, happened.loss, happened.point)
+            self._impacts.record(np.column_stack(columns))
+            lost = np.cumsum([clock.dissipated_impact, *happened.loss])  # one by one, in whatever calls
+            self.model.writable("clock.dissipated_impact")[0] = lost[-1]
+            self.model.writable("clock.collisions")[0] = clock.collisions + len(happened)
+        return discs
+
+    def _steps_until_rest(self, discs: Discs) -> float:
+        """In how many steps a check will find everything at rest; infinite if it moves."""
+        if not discs.at_rest:
+            return math.inf
+        clock = self.model.clock
+        since = math.ceil((discs.last_change - clock.origin) / clock.step_size) + clock.origin_steps
+        return -(-max(since, clock.steps + 1) // CHECK_INTERVAL) * CHECK_INTERVAL - clock.steps
+
+    def _enter(self, discs: Discs, steps: int, now: float) -> None:
+        """Put the state at a time into the model."""
+        displacement, velocity = discs.state_at(now)
+        self.model.writable("particles.displacement")[...] = displacement
+        self.model.writable("particles.velocity")[...] = velocity
+        self.model.writable("clock.time")[0] = now
+        self.model.writable("clock.steps")[0] += steps
+        self.model.writable("clock.paths")[0] = discs.paths()
+        self._state_revision = self.model.newest(Role.STATE)
+
+    # --- reading -----------------------------------------------------------------------------------
+
+    def commit(self) -> None:
+        """Nothing here has a history."""
+
+    def observe(self) -> None:
+        """Bring forces, reactions and measures up to date."""
+        particles = self.model.particles
+        constant, fixed, velocity = particles.constant_force, particles.fixed, particles.velocity
+        force = constant + 0.001 * self.discs.contact_forces()
+        self.model.writable("particles.applied_force")[...] = force
+        self.model.writable("particles.reaction")[...] = np.where(fixed, 0.0 - force, 0.0)
+        free: NDArray[np.float64] = np.where(fixed, 0.0, force)
+        self.measures[:] = (
+            0.5 * float((particles.mass[:, None] * velocity * velocity).sum()),
+            1000.0 * float((free * particles.mobility * free).sum()),
+            0.0,
+            1000.0 * float((constant * particles.displacement).sum()),
+            float(np.abs(free).max(initial=0.0)),
+            float(np.abs(constant).max(initial=0.0)),
+            0.0,
+        )
+
+    def conserved_energy(self) -> float:
+        """Energy is exact to round-off: nothing guards it."""
+        return 0.0

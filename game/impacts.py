@@ -1,0 +1,77 @@
+"""Impacts: the record of a run's impacts, as columns to read and as CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.model import Model
+
+MOST = 2**22  # impacts that are kept; of longer runs the earliest are forgotten
+_COLUMNS = ("time", "first", "second", "impulse", "energy_lost", "x", "y")
+
+Column = NDArray[Any]
+
+
+class Impacts:
+    """The impacts of a model's run so far, earliest first; going back in time takes them back.
+
+    time: s. first, second: rows of the two particles. impulse: N·s along the line of centres. energy_lost: J;
+    in a joint impact of many, a share of it. x, y: the point of contact, m. In an array each.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._table = np.zeros((0, len(_COLUMNS)))
+        self._first = self._count = model.clock.collisions  # of the run, in the table and after it
+
+    def record(self, rows: NDArray[np.float64]) -> None:
+        """Add impacts, shape (k, 7), to those that the clock has counted."""
+        self._take_back()
+        kept = self._count - self._first
+        if kept + len(rows) > MOST:
+            kept = max(MOST // 2 - len(rows), 0)
+            self._table = self._table[self._count - self._first - kept : self._count - self._first]
+            self._first = self._count - kept
+            rows = rows[-MOST:]
+        if kept + len(rows) > len(self._table):
+            larger = np.zeros((max(2 * len(self._table), kept + len(rows), 256), len(_COLUMNS)))
+            larger[:kept] = self._table[:kept]
+            self._table = larger
+        self._table[kept : kept + len(rows)] = rows
+        self._count += len(rows)
+
+    def _take_back(self) -> None:
+        """Forget impacts that going back in time has undone."""
+        counted = self._model.clock.collisions
+        if counted < self._first or counted > self._count:
+            self._first = self._count = counted
+        self._count = counted
+
+    def __len__(self) -> int:
+        self._take_back()
+        return self._count - self._first
+
+    def __getattr__(self, name: str) -> Column:
+        if name not in _COLUMNS:
+            raise AttributeError(f"Impacts have no column '{name}'; they have {', '.join(_COLUMNS)}.")
+        column = self._table[: len(self), _COLUMNS.index(name)]
+        if name in ("first", "second"):
+            return column.astype(np.int64)
+        column = column.view()
+        column.flags.writeable = False
+        return column
+
+    def as_csv(self) -> str:
+        """One impact a line: time (s), the particles' names, impulse (N·s), energy lost (J), point (m)."""
+        names = self._model.particles.names
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(_COLUMNS)
+        for time, first, second, *numbers in self._table[: len(self)].tolist():
+            writer.writerow([time, names[int(first)], names[int(second)], *numbers])
+        return text.getvalue()

@@ -1,0 +1,125 @@
+"""Strikes: what impacts do to particles that other forces drive."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from components.model import Model
+from components.paths import Paths
+from components.snapshot import Snapshot
+from game.encounter_kernels import kernels
+from game.impacts import Impacts
+from systems.collision.near import Floats, Rows
+from systems.collision.system import contacts_of
+from systems.collision.vicinity import LASTING, LEFT_ALONE, WATCHED, Vicinity
+
+TOUCH = 1e-12  # of the reach of two particles: nearer than this they touch
+REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
+NO_MOTION, NO_CROWD = np.zeros((0, 0)), np.zeros(0)  # of particles that do not fly free
+
+
+class Strikes:
+    """Carries out the impacts at an instant, and notes which particles stay in contact."""
+
+    def __init__(self, model: Model, impacts: Impacts, vicinity: Vicinity) -> None:
+        self.model = model
+        self._impacts = impacts
+        self._near = vicinity
+
+    def happen(self, before: Snapshot) -> bool:
+        """Impacts of all that touch now, after a step from a moment before; True if new contacts last."""
+        near, particles = self._near, self.model.particles
+        gap, normal = near.gaps(near.pairs, particles.displacement)
+        kinds = near.kinds(before.columns["particles.displacement"])
+        touching = np.flatnonzero((kinds != LEFT_ALONE) & (gap <= 4.0 * TOUCH * near.reach(near.pairs)))
+        rate = self._rates(near.pairs, normal)
+        noise = 1e-14 * np.hypot(*particles.velocity.T).max(initial=0.0)
+        if not (rate[touching] < -noise).any() and not (kinds[touching] == WATCHED).any():
+            return False
+        slow = self._rest_speed(before)
+        slow[kinds == LASTING] = math.inf
+        for group in connected(near.pairs[touching]):
+            self._strike(touching[group], normal, rate, slow)
+        touching = touching[kinds[touching] == WATCHED]
+        return self._note_contacts(near.pairs[touching], normal[touching], slow[touching])
+
+    def _rates(self, pairs: Rows, normal: Floats) -> Floats:
+        """Speeds (m/s) at which pairs part along their lines of centres."""
+        velocity = self.model.particles.velocity
+        rates: Floats = (normal * (velocity[pairs[:, 1]] - velocity[pairs[:, 0]])).sum(axis=1)
+        return rates
+
+    def _rest_speed(self, before: Snapshot) -> Floats:
+        """Speed of approach below which pairs stay in contact: √(2 a h), a being the larger acceleration."""
+        particles, pairs = self.model.particles, self._near.pairs
+        height = TOUCH * self._near.reach(pairs)
+        if self.model.settings.restitution < 1.0:
+            height = np.maximum(height, REST_HEIGHT * self._near.radius[pairs].min(axis=1))
+        pull = np.hypot(*(particles.mobility * particles.applied_force).T)
+        h = self.model.clock.time - before.columns["clock.time"][0]
+        if h > 0.0:
+            change = (particles.velocity - before.columns["particles.velocity"]) / h
+            pull = np.maximum(pull, np.hypot(*change.T))
+        speed: Floats = np.sqrt(2.0 * pull[pairs].max(axis=1) * height)
+        return speed
+
+    def _strike(self, chosen: Rows, normal: Floats, rate: Floats, slow: Floats) -> None:
+        """The joint impact of a group of pairs; plastic if none approaches faster than at rest."""
+        from systems.collision.arrays import IMPULSE, NX, NY
+        from systems.collision.discs import room_for
+
+        pairs = self._near.pairs[chosen]
+        count, fast = len(pairs), bool((rate[chosen] < -slow[chosen]).any())
+        members, links = np.unique(pairs, return_inverse=True)
+        group = room_for(len(members), count)
+        group.links[:count] = links.reshape(-1, 2)
+        group.contacts[:count, [NX, NY]] = normal[chosen]
+        group.mobility[...] = self._near.weight[members]
+        velocity = self.model.writable("particles.velocity")
+        group.motion[...] = velocity[members]
+        kernels().impact(len(members), count, self.model.settings.restitution if fast else 0.0, group)
+        velocity[members] = group.motion
+        impulse = group.contacts[:count, IMPULSE]
+        loss = -0.5 * float((impulse * (rate[chosen] + self._rates(pairs, normal[chosen]))).sum())
+        clock = self.model.clock
+        self.model.writable("clock.dissipated_impact")[0] = clock.dissipated_impact + loss
+        if fast and impulse.any():
+            self._record(pairs, normal[chosen], impulse, loss)
+
+    def _record(self, pairs: Rows, normal: Floats, impulse: Floats, loss: float) -> None:
+        felt, clock = impulse > 0.0, self.model.clock
+        pairs, impulse = pairs[felt], impulse[felt]
+        place = self._near.position + self.model.particles.displacement
+        point = place[pairs[:, 0]] + normal[felt] * self._near.radius[pairs[:, 0]][:, None]
+        share = loss * impulse / impulse.sum()
+        self._impacts.record(np.column_stack((np.full(len(pairs), clock.time), pairs, impulse, share, point)))
+        self.model.writable("clock.collisions")[0] = clock.collisions + len(pairs)
+
+    def _note_contacts(self, pairs: Rows, normal: Floats, slow: Floats) -> bool:
+        """Pairs that touch and part no faster than at rest are in contact from now on."""
+        new = pairs[(self._rates(pairs, normal) <= slow) & (slow > 0.0)]
+        if len(new) == 0:
+            return False
+        known = contacts_of(self.model)
+        contacts, forces = new, np.zeros(len(new))
+        if known is not None:
+            contacts = np.concatenate([known.contacts, contacts])
+            forces = np.concatenate([known.forces, forces])
+        self.model.writable("clock.paths")[0] = Paths(NO_MOTION, contacts, forces, NO_CROWD)
+        return True
+
+
+def connected(pairs: Rows) -> list[Rows]:
+    """Which of the pairs are connected through shared members; each group in ascending order."""
+    group = {int(i): {int(i)} for i in np.unique(pairs)}
+    for i, j in pairs.tolist():
+        if group[i] is not group[j]:
+            group[i] |= group[j]
+            for k in group[j]:
+                group[k] = group[i]
+    found: dict[int, list[int]] = {}
+    for k, (i, _) in enumerate(pairs.tolist()):
+        found.setdefault(min(group[i]), []).append(k)
+    return [np.array(rows, dtype=np.int64) for rows in found.values()]

@@ -1,0 +1,1 @@
+"""Discs that other forces drive: where their paths in one step first meet, and what an impact does to them."""

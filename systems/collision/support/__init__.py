@@ -1,0 +1,1 @@
+"""Forces between particles that rest on one another while other forces drive them."""

@@ -1,0 +1,102 @@
+"""Step systems of collisions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.paths import Paths
+from systems.base import Driver, Law, StepSystem
+
+if TYPE_CHECKING:
+    from components.model import Model
+
+
+class Collision(StepSystem):
+    """Discs that meet push one another apart; see game/flight.py for what drives them."""
+
+    name = "collision.discs"
+    reads = ("particles.radius", "particles.mobility", "settings.restitution")
+    writes = ("particles.velocity", "clock.collisions", "clock.dissipated_impact")
+
+    def needs(self, model: Model) -> bool:
+        return model.settings.collisions and can_touch(model)
+
+
+def can_touch(model: Model) -> bool:
+    """True if there are two particles that a rod does not join, of which one can move."""
+    movable: NDArray[np.bool_] = np.any(model.particles.mobility > 0.0, axis=1)
+    count, moving = len(movable), int(movable.sum())
+    held = count - moving
+    pairs = count * (count - 1) // 2 - held * (held - 1) // 2
+    joined = movable[model.rods.between.astype(np.intp)].any(axis=1)
+    return pairs > int(joined.sum())
+
+
+class Support(Law):
+    """Forces in lasting contacts of particles that rods or other laws drive; constant during a step."""
+
+    name = "collision.support"
+    each = "particles"
+    kernel = "systems.collision.support.kernels:support"
+    adds = ("particles.force",)
+    account = "work"
+
+    def __init__(self) -> None:
+        self._pushes: WeakKeyDictionary[Model, NDArray[np.float64]] = WeakKeyDictionary()
+
+    def needs(self, model: Model) -> bool:
+        return contacts_of(model) is not None and model.settings.collisions
+
+    def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
+        """The sum over the contacts of each particle (kN), from the forces of the last step."""
+        paths = contacts_of(model)
+        assert paths is not None
+        particles = model.particles
+        place = particles.position + particles.displacement
+        self._pushes[model] = support_forces(place, paths.contacts, paths.forces)
+        return {"collision_support_force": self._pushes[model].view()}
+
+    def push(self, model: Model, force: NDArray[np.float64] | float) -> None:
+        """Push the particles of a model by these forces (kN) in the next step."""
+        if model in self._pushes and not (self._pushes[model] == force).all():
+            self._pushes[model][...] = force
+            model.writable("particles.velocity")  # marks the state as changed: its forces are no longer known
+
+
+def contacts_of(model: Model) -> Paths | None:
+    """The lasting contacts among particles that do not fly free, if there are any."""
+    paths: Paths | None = model.clock.paths
+    if paths is None or len(paths.motion) or not len(paths.contacts):
+        return None
+    return paths if paths.contacts.max() < model.particles.count else None
+
+
+def support_forces(
+    place: NDArray[np.float64], pairs: NDArray[np.int64], forces: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Force on each particle (kN), shape (n, 2), from the forces (N) that keep pairs apart."""
+    line = place[pairs[:, 1]] - place[pairs[:, 0]]
+    push = line * (0.001 * forces / np.hypot(line[:, 0], line[:, 1]))[:, None]
+    total = np.zeros_like(place)
+    for d in range(2):
+        total[:, d] = np.bincount(pairs[:, 1], push[:, d], len(place))
+        total[:, d] -= np.bincount(pairs[:, 0], push[:, d], len(place))
+    return total
+
+
+class FreeFlight(Driver):
+    """Exact: particles fly on parabolas from impact to impact, whatever the step."""
+
+    name = "collision.free_flight"
+    controlled = True
+
+    @staticmethod
+    def stable_step(frequency: float, decay: float) -> float:
+        """Infinite."""
+        return math.inf

@@ -1,0 +1,174 @@
+"""Impacts and contacts with structures, and of particles under drag or a person's hand, through Session."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from game import Session
+
+GRAVITY = {"acceleration": [0.0, -9.81]}
+
+
+def truss(ball: dict[str, Any], restitution: float = 0.5, **settings: Any) -> dict[str, Any]:
+    """Two rods to two pins, and a ball above the node that they carry."""
+    rod = {"stiffness": 200, "damping": 0.2, "density": 3}
+    return {
+        "format": "pinjoint model",
+        "version": 1,
+        "environment": GRAVITY,
+        "settings": {"restitution": restitution, **settings},
+        "particles": [
+            {"name": "A", "position": [0.0, 0.0], "fixed": [True, True]},
+            {"name": "B", "position": [1.0, 0.5]},
+            {"name": "C", "position": [2.0, 0.0], "fixed": [True, True]},
+            {"name": "ball", "position": [1.0, 0.65], "mass": 2.0} | ball,
+        ],
+        "rods": [rod | {"name": "AB", "between": ["A", "B"]}, rod | {"name": "BC", "between": ["B", "C"]}],
+    }
+
+
+def state(session: Session) -> bytes:
+    particles = session.model.particles
+    return particles.displacement.tobytes() + particles.velocity.tobytes()
+
+
+def gap(session: Session) -> float:
+    """Between the rims of the ball and the node."""
+    node, ball = session.particles["B"], session.particles["ball"]
+    line = [
+        (b + v) - (a + u)
+        for a, u, b, v in zip(node.position, node.displacement, ball.position, ball.displacement, strict=True)
+    ]
+    return float(np.hypot(*line)) - (node.radius + ball.radius)
+
+
+def test_a_ball_comes_to_rest_on_a_truss_and_loads_it() -> None:
+    session = Session.open(truss({}))
+    assert session.run(until="rest") == "at rest"
+    assert abs(gap(session)) < 1e-6 * 0.05
+    loaded = Session.open(truss({"position": [1.0, 5.0], "fixed": [True, True]}))
+    loaded.particles["B"].force = (0.0, -2.0 * 9.81e-3)
+    loaded.settings.collisions = False
+    loaded.settle()
+    assert session.rods["AB"].axial_force == pytest.approx(loaded.rods["AB"].axial_force, rel=1e-7)
+    assert session.particles["A"].reaction == pytest.approx(loaded.particles["A"].reaction, rel=1e-7)
+
+
+def test_energy_is_accounted_for() -> None:
+    session = Session.open(truss({}))
+    session.run(time=0.5)
+    energy = session.energy
+    assert len(session.impacts) >= 3
+    assert energy.dissipated_impact > 0.05 * energy.work
+    assert energy.dissipated_impact == pytest.approx(session.impacts.energy_lost.sum(), rel=1e-3)
+    assert energy.imbalance == pytest.approx(0.0, abs=1e-7 * energy.work)
+
+
+def test_all_integrators_agree() -> None:
+    found = {}
+    for settings in ({}, {"integrator": "velocity_verlet", "time_step": 1e-4}, {"integrator": "rk4"}):
+        session = Session.open(truss({}, **settings))
+        session.run(time=0.19)
+        found[session.simulation.integrator] = session
+    exact = found.pop("dop853")
+    assert len(exact.impacts) >= 4
+    for session in found.values():
+        assert len(session.impacts) == len(exact.impacts)
+        np.testing.assert_allclose(session.impacts.time, exact.impacts.time, rtol=1e-4)
+        np.testing.assert_allclose(
+            session.model.particles.displacement, exact.model.particles.displacement, atol=1e-5
+        )
+
+
+@pytest.mark.parametrize("speed", [10.0, 1e3, 1e6])
+def test_nothing_tunnels_through_a_node(speed: float) -> None:
+    """First impact: impulse −(1 + e) v m_ball m_node / (m_ball + m_node), at the time of the free flight."""
+    document = truss({"position": [1.0, 3.0], "velocity": [0.0, -speed]}, integrator="velocity_verlet")
+    document["environment"] = {}
+    document["settings"]["time_step"] = 1e-2
+    session = Session.open(document)
+    session.settings.restitution = 0.5
+    session.run(time=3.0 / speed)
+    node = session.particles["B"].mass
+    assert session.impacts.time[0] == pytest.approx(2.4 / speed, rel=1e-12)
+    assert session.impacts.impulse[0] == pytest.approx(1.5 * speed * 2.0 * node / (2.0 + node), rel=1e-12)
+
+
+def test_how_a_run_is_divided_does_not_matter_nor_is_anything_lost_by_saving(tmp_path: Path) -> None:
+    whole, divided = Session.open(truss({})), Session.open(truss({}))
+    whole.run(steps=160)
+    for _ in range(8):
+        divided.run(steps=20)
+        divided.save(tmp_path / "saved.json")
+        divided = Session.open(tmp_path / "saved.json")
+    assert whole.model.clock.paths is not None, "the ball rests on the node by now"
+    assert state(whole) == state(divided)
+    assert whole.energy == divided.energy
+
+
+def test_undo_returns_the_same_bits_through_impacts_and_contact() -> None:
+    session, straight = Session.open(truss({})), Session.open(truss({}))
+    straight.run(steps=160)
+    session.run(steps=60)
+    middle = state(session)
+    session.run(steps=100)
+    assert state(session) == state(straight)
+    session.undo()
+    assert state(session) == middle
+    session.redo()
+    assert state(session) == state(straight)
+    session.run(steps=40)
+    assert session.step(-30)
+    session.run(steps=30)
+    straight.run(steps=40)
+    assert state(session) == state(straight)
+
+
+def test_particles_joined_by_a_rod_pass_through_each_other() -> None:
+    document = truss({})
+    document["particles"][3] = {"name": "ball", "position": [1.0, 0.58], "mass": 2.0}
+    document["rods"].append({"name": "B-ball", "between": ["B", "ball"], "stiffness": 1.0, "damping": 1.0})
+    session = Session.open(document)
+    session.run(time=0.2)
+    assert len(session.impacts) == 0
+
+
+def test_nodes_that_overlap_are_left_alone() -> None:
+    document = truss({"position": [1.0, 5.0], "fixed": [True, True]})
+    document["particles"].append({"name": "D", "position": [1.04, 0.45]})
+    document["rods"] += [
+        {"name": "AD", "between": ["A", "D"], "stiffness": 200, "damping": 1},
+        {"name": "CD", "between": ["C", "D"], "stiffness": 200, "damping": 1},
+    ]
+    session = Session.open(document)
+    session.run(time=0.2)
+    assert len(session.impacts) == 0
+    assert "overlap" not in session.message
+
+
+def test_drag_slows_particles_between_impacts() -> None:
+    """v = v₀ exp(−c t): distance to the impact v₀ (1 − exp(−c t))/c = 0.9 m."""
+    document = {
+        "format": "pinjoint model",
+        "version": 1,
+        "environment": {"drag": 1.0},
+        "particles": [
+            {"name": "p", "position": [0.0, 0.0], "velocity": [2.0, 0.0]},
+            {"name": "q", "position": [1.0, 0.0]},
+        ],
+    }
+    session = Session.open(document)
+    session.run(time=1.0)
+    assert session.impacts.time[0] == pytest.approx(-np.log(1.0 - 0.45), rel=1e-9)
+    assert session.particles["q"].velocity[0] == pytest.approx(2.0 * np.exp(-1.0), rel=1e-8)
+
+
+def test_a_structure_without_anything_near_it_takes_the_same_steps() -> None:
+    collides, alone = Session.open("warren_bridge"), Session.open("warren_bridge")
+    alone.settings.collisions = False
+    for session in (collides, alone):
+        session.run(steps=300)
+    assert "collision.discs" in [system.name for system in collides.schedule.step_plan(collides.model)]
+    assert state(collides) == state(alone)
