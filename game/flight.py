@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ from components.field import Role
 from components.model import Model
 from components.paths import Paths
 from game.impacts import Impacts
-from game.program_cache import compile_module
+from game.program_cache import compile_module, is_compiled, note_compiled
 from systems.base import StopReason
 from systems.collision.arrays import CROWD_COUNTS, CROWD_TIMES, MOVING
 
@@ -38,16 +39,29 @@ def advance(until, most_events, discs, grid, ties, queue, group, report, numbers
 '''
 
 
-@cache
-def _discs() -> type[Discs]:
-    """The engine with its kernel compiled once and for all, or loaded from the cache."""
-    from systems.collision.discs import Discs
+def _kernels() -> dict[str, Callable[..., int]]:
     from systems.collision.flight.kernels import advance
 
+    return {"fly": advance}
+
+
+def has_flight() -> bool:
+    """True if the engine need not be compiled any more, only loaded."""
+    return is_compiled(_SOURCE, _kernels())
+
+
+@cache
+def load_flight() -> type[Discs]:
+    """The engine with its kernel compiled once and for all, or loaded from the cache."""
+    from systems.collision.discs import Discs
+
+    module = compile_module(_SOURCE, _kernels())
+
     class Compiled(Discs):
-        kernel = staticmethod(compile_module(_SOURCE, {"fly": advance}).advance)
+        kernel = staticmethod(module.advance)
 
     Compiled([[0.0, 0.0]], [[0.0, 0.0]], [1.0], [[1.0, 1.0]]).advance(0.0)
+    note_compiled(module)
     return Compiled
 
 
@@ -92,7 +106,7 @@ class Flight:
         self.model = model
         self.measures = np.zeros(7)
         self._impacts = impacts
-        self._make = _discs()
+        self._make = load_flight()
         self.bind()
         self.compile_seconds = time.perf_counter() - started
 

@@ -9,8 +9,9 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from game.flight import has_flight
 from game.mods import MODS
-from game.prepare import RASTER
+from game.prepare import FLIGHT, RASTER
 from game.program import has_program
 from game.program_cache import load_compiler
 from game.raster_program import has_raster, load_raster
@@ -52,6 +53,8 @@ class Preparation(System):
         if simulation.ready:
             return None
         model, plan = simulation.model, simulation.schedule.step_plan(simulation.model)
+        if simulation.integrator == FLIGHT:
+            return self._waits((FLIGHT,), has_flight)
         job = simulation.integrator, *(system.name for system in plan)
         waited = self._waits(job, lambda: has_program(model, plan, simulation.driver))
         if waited is None and job in self._running:  # then it is new, with a hand that pulls as well

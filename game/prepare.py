@@ -1,4 +1,5 @@
-"""Compile ahead of need: `python -m game.prepare DRIVER SYSTEM…` for a step program, or `… raster` for drawing.
+"""Compile ahead of need: `python -m game.prepare DRIVER SYSTEM…` for a step program, `… free_flight` for collisions
+of free particles, or `… raster` for drawing.
 
 The window runs this in another process, because a compiler in its own would hold it up, in a thread too.
 """
@@ -11,6 +12,7 @@ from collections.abc import Sequence
 from components.model import Model
 from components.particle import Particle
 from game.catalogue import DRIVERS
+from game.flight import load_flight
 from game.mods.command import load_as_asked
 from game.program import Program
 from game.program_cache import forget_unused
@@ -18,7 +20,7 @@ from game.raster_program import load_raster
 from game.session import Session
 from systems.edit.pull import Hand
 
-RASTER = "raster"
+RASTER, FLIGHT = "raster", "free_flight"
 
 
 def main(words: Sequence[str]) -> None:
@@ -26,6 +28,8 @@ def main(words: Sequence[str]) -> None:
     name, *systems = load_as_asked(words)
     if name == RASTER:
         load_raster()
+    elif name == FLIGHT:
+        load_flight()
     else:
         model = Model()
         (particle,) = model.create(Particle, 1)

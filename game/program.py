@@ -31,7 +31,8 @@ _CONTROL = ("time", "step_size", "step_error", "largest_displacement", "largest_
 
 
 def _writer(model: Model, systems: Sequence[StepSystem], driver: Driver) -> Writer:
-    return (ControlledWriter if driver.controlled else Writer)(model, systems, driver)
+    joining = [system for system in systems if system.kernel]
+    return (ControlledWriter if driver.controlled else Writer)(model, joining, driver)
 
 
 def has_program(model: Model, systems: Sequence[StepSystem], driver: Driver) -> bool:
@@ -51,7 +52,7 @@ class Program:
     def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver) -> None:
         started = time.perf_counter()
         self.model = model
-        self.systems = tuple(systems)
+        self.systems = tuple(system for system in systems if system.kernel)
         self.driver = driver
         self._writer = _writer(model, systems, driver)
         self._module = compile_module(self._writer.source(), self._writer.kernels)

@@ -284,7 +284,7 @@ class Simulation:
     def _made(self, systems: list[StepSystem]) -> Program | Flight:
         if self.driver is FREE_FLIGHT:
             return Flight(self.model, self.impacts)
-        return Program(self.model, [s for s in systems if not isinstance(s, Collision)], self.driver)
+        return Program(self.model, systems, self.driver)
 
     def _part_overlaps(self) -> None:
         """Particles that edits left in one another's place are moved apart; a note says so."""

@@ -89,7 +89,7 @@ class StepSystem(System):
 
     kernel: "module:function" of a numba-compiled function, or the function itself. Its parameters are
         bound by name: `<table>_<column>`, `time`, `dt`, an entry of `arrays`, or one of the quantities
-        that the role provides.
+        that the role provides. "": what it does is not part of the step program.
     """
 
     phase: ClassVar[Phase] = Phase.STEP
