@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -135,9 +136,10 @@ def test_a_large_picture_is_a_sketch_until_its_drawing_is_compiled(app: App, com
     assert (whole != background).sum() > 1.5 * (sketch != background).sum()
 
 
-CHECK = """
+ALONE = '{"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}]}'
+CHECK = f"""
 from game import Session
-session = Session.open("collision_i")
+session = Session.open({ALONE})
 session.simulation.program
 module = session.simulation.program._module
 for entry in (module.advance, module.observe):
@@ -148,7 +150,7 @@ for entry in (module.advance, module.observe):
 def test_another_process_compiles_what_this_one_loads(tmp_path: Path) -> None:
     from game import Session
 
-    session = Session.open("collision_i")
+    session = Session.open(json.loads(ALONE))
     names = [system.name for system in session.schedule.step_plan(session.model)]
     folders = {"XDG_CACHE_HOME": str(tmp_path), "LOCALAPPDATA": str(tmp_path), "HOME": str(tmp_path)}
     command = [sys.executable, "-m", "game.prepare", "--no-mods", session.simulation.integrator, *names]

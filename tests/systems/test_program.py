@@ -303,7 +303,8 @@ def test_a_name_that_is_no_python_name_is_refused() -> None:
 
 COMPILE = """
 from game import Session
-session = Session.open("collision_i")
+alone = {"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}]}
+session = Session.open(alone)
 session.run(steps=1)
 print(session.simulation.compile_seconds)
 """
