@@ -1,11 +1,12 @@
-"""The bundled models of collisions against the formulas that their descriptions promise, on the engine alone."""
+"""The bundled models of collisions against the formulas that their descriptions promise."""
 
 import math
 
 import numpy as np
 import pytest
 
-from game import models
+from game import Session, models
+from game.included.collisions import panels
 from systems.collision.arrays import Reason
 from systems.collision.discs import Discs
 from tests.reference import closed_forms
@@ -75,3 +76,31 @@ def test_the_pile_comes_to_rest_without_sinking_in() -> None:
     place = particles.position + discs.state_at(10.0)[0]
     assert deepest(place, particles.radius, ~particles.fixed.all(axis=1)) <= 1e-6 * particles.radius.min()
     assert (place[:60, 1] > 0).all()
+
+
+# --- in the program -------------------------------------------------------------------------------------------
+
+
+def test_the_digits_of_pi_are_counted_on_screen() -> None:
+    session = Session.open("galperin_pi")
+    session.run(time=10.0)
+    assert [readout.rows for readout in panels(session)] == [(("so far", "314"),)]
+
+
+def test_the_ball_strikes_the_truss_by_newtons_law() -> None:
+    """At √(2h/g), when the truss has sagged a little; J = (1 + e) μ v with the masses of ball and node alone."""
+    session = Session.open("ball_on_truss")
+    gravity, height = 9.81, 1.0
+    fall = math.sqrt(2 * height / gravity)
+    session.run(time=fall + 0.05)
+    assert session.impacts.time[0] == pytest.approx(fall, abs=2e-4)
+    node = session.particles["F"].mass
+    reduced = 40 * node / (40 + node)
+    assert session.impacts.impulse[0] == pytest.approx(1.5 * reduced * gravity * fall, rel=0.01)
+    assert abs(session.energy.imbalance) <= 1e-3 * 40 * gravity * height
+
+
+def test_the_pile_is_told_to_be_at_rest() -> None:
+    session = Session.open("pile")
+    assert session.run(until="rest") == "at rest"
+    assert not session.particles.velocity.any()
