@@ -80,6 +80,17 @@ class Readout:
     plot: Plot | None = None
 
 
+@dataclass(frozen=True)
+class Shape:
+    """A mechanism or a mode of vibration, to be drawn over the model.
+
+    title: such as "Mode 1 of 5: 9.276 Hz". displacement: from the original positions (m), as drawn, (n, 2).
+    """
+
+    title: str
+    displacement: NDArray[np.float64] = field(compare=False, repr=False)
+
+
 @dataclass
 class View:
     """How one model is shown in one viewport.
@@ -93,6 +104,7 @@ class View:
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
     flashes: points (m) where particles collided just now, shape (k, 2).
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
+    shape: a mechanism or mode that is drawn over the model, with its title below the caption.
     theory, energy: show theory beside the run, and its energy account, among them.
     """
 
@@ -116,6 +128,7 @@ class View:
     readouts: tuple[Readout, ...] = ()
     theory: bool = False
     energy: bool = False
+    shape: Shape | None = None
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model."""

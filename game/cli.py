@@ -24,6 +24,7 @@ from game.registry import COMMANDS
 from game.report import FOUND, Analysis
 from game.results import as_csv, as_json, as_table
 from game.session import DEFAULT_LIMIT, Session
+from game.shapes import NoShape, numbered
 from game.sweeps import SweepError, sweep
 from game.sweeps.variation import FORMS
 from systems.render.theme import theme_names
@@ -64,6 +65,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         script.ScriptError,
         ModError,
         SweepError,
+        NoShape,
     ) as error:
         print(f"pinjoint: {error}", file=sys.stderr)
         return getattr(error, "status", BAD_INPUT)
@@ -421,12 +423,16 @@ def _render(words: Sequence[str]) -> int:
     parser.add_argument("--until-rest", action="store_true", help="run until at rest first (a GIF's default)")
     parser.add_argument("--at", type=_positive, metavar="T", help="run to this time (s) first")
     parser.add_argument("--diagrams", action="store_true", help="show all force diagrams")
+    shape = parser.add_mutually_exclusive_group()
+    shape.add_argument("--mechanism", type=int, metavar="N", help="draw a motion that elongates no rod over it")
+    shape.add_argument("--mode", type=int, metavar="N", help="draw a natural mode over it, 1 the lowest")
     parser.add_argument("--theme", choices=theme_names(), default="light", help="colours")
     parser.add_argument("--limit", type=_positive, default=DEFAULT_LIMIT, help=argparse.SUPPRESS)
     options = parser.parse_args(words)
     width, height = _size(options.size)
     session = _session(options)
     session.view.all_diagrams = options.diagrams
+    _show_shape(session, options)
     try:
         if options.output.lower().endswith(".gif"):
             status = _animate(session, options, (width, height))
@@ -435,6 +441,13 @@ def _render(words: Sequence[str]) -> int:
     except OSError as error:
         raise Refusal(f"{options.output} cannot be written: {error}. Choose another --output.") from None
     return ANSWERED if status in FOUND else NOT_ANSWERED
+
+
+def _show_shape(session: Session, options: argparse.Namespace) -> None:
+    """Raises NoShape if there is none with that number."""
+    for kind in ("mechanism", "mode"):
+        if (number := getattr(options, kind)) is not None:
+            session.desk.shapes.show(numbered(session.model, kind, number))
 
 
 def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:

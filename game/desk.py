@@ -15,6 +15,7 @@ from game.beside import Beside
 from game.history import History
 from game.live import Live
 from game.schedule import Schedule
+from game.shapes import Shapes
 from game.simulation import Simulation
 from game.timeline import Timeline
 from systems.edit.pull import Pull
@@ -44,6 +45,7 @@ class Desk:
         self.live = Live(self.simulation)
         self.beginning: Snapshot | None = None
         self.beside = Beside(model, self.simulation)
+        self.shapes = Shapes(model)
         self.file = file
         self.spare: Path | None = None
         self.saved = self._last_edit = model.revision

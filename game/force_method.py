@@ -20,6 +20,7 @@ from components.world import Handle
 from game.document import document, parse
 from game.live import Live
 from game.schedule import Schedule
+from game.shapes import DRAWN_SHARE, extent
 from game.simulation import Simulation
 from systems.statics.force_method import (
     ForceMethodError,
@@ -33,7 +34,6 @@ from systems.statics.force_method import (
 from systems.statics.settle import settle
 
 PARTS = 7
-DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
 DIAGRAM_HEIGHT = 34.0  # px of the largest force diagram
 SWING = 3.0  # s in which a mechanism is shown to move there and back
 
@@ -64,7 +64,7 @@ class Set:
         """Choose drawing scales for the displacements and forces that it will come to."""
         moved = float(np.abs(state.displacement).max(initial=0.0))
         pulled = float(np.abs(state.axial_force).max(initial=0.0))
-        share = DRAWN_SHARE * _size(self.model)
+        share = DRAWN_SHARE * extent(self.model)
         self.model.settings.displacement_scale = _round(share / moved) if moved > 0.0 else 1.0
         self.model.settings.diagram_scale = _round(DIAGRAM_HEIGHT / pulled) if pulled > 0.0 else 1.0
 
@@ -86,7 +86,7 @@ class Mechanism:
     def __init__(self, model: Model, motion: Column, view: View) -> None:
         self.model, self.view = model, view
         self.model.settings.displacement_scale = 1.0
-        self._motion = DRAWN_SHARE * _size(model) * motion
+        self._motion = DRAWN_SHARE * extent(model) * motion
         self._time = 0.0
 
     def advance(self, elapsed: float) -> None:
@@ -324,11 +324,6 @@ def _release(model: Model, unknown: Unknown) -> None:
     particle = model.particles[unknown.element.name]
     x, y = particle.fixed
     particle.fixed = (x and unknown.axis != 0, y and unknown.axis != 1)
-
-
-def _size(model: Model) -> float:
-    """The larger of width and height (m)."""
-    return float(np.ptp(model.particles.position, axis=0).max())
 
 
 def _round(number: float) -> float:

@@ -679,6 +679,7 @@ class Session:
         view.preview = self._preview()
         view.flashes = self._flashes()
         view.heading = scene.heading
+        view.shape = self.desk.shapes.shown
         self._offer_tools()
         view.keys = help_lines(scene.name) if view.help else []
         view.readouts = (*own_readouts(self), *(readout for panel in PANELS for readout in panel(self)))

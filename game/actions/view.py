@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 from components.field import Vector
 from game.actions.registry import action
+from game.shapes import NoShape
+from systems.edit.refusal import Refusal
 from systems.render.theme import load_theme
 
 if TYPE_CHECKING:
@@ -44,6 +46,16 @@ def _toggle_theory(session: Session, pixel: Vector) -> None:
 @action("toggle energy", while_drawing=True)
 def _toggle_energy(session: Session, pixel: Vector) -> None:
     session.view.energy = not session.view.energy
+
+
+@action("next shape", while_drawing=True)
+def _next_shape(session: Session, pixel: Vector) -> None:
+    """Mechanisms, then natural modes, then none."""
+    try:
+        session.desk.shapes.next()
+    except NoShape as error:
+        raise Refusal(str(error)) from None
+    session.view.shape = session.desk.shapes.shown
 
 
 @action("next theme", while_drawing=True)

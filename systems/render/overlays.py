@@ -159,15 +159,20 @@ def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
 def _caption(sheet: Sheet, top: float) -> tuple[list[Mark], float]:
     """What this viewport shows, and facts about it, at its top between hairlines; and their lower end."""
     v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(13.0)
-    if not sheet.view.caption:
+    shape = (sheet.view.shape.title,) if sheet.view.shape is not None else ()
+    marks: list[Mark] = []
+    if sheet.view.caption:
+        thin = max(round(u), 1)
+        edges = np.array([[v.left, v.top, v.width, thin], [v.left, v.top, thin, v.height]], dtype=np.int64)
+        marks.append(Rectangles(edges, theme.line))
+    elif not shape:
         return [], top
-    thin = max(round(u), 1)
-    edges = np.array([[v.left, v.top, v.width, thin], [v.left, v.top, thin, v.height]], dtype=np.int64)
-    marks: list[Mark] = [Rectangles(edges, theme.line)]
     left, room = v.left + _EDGE * u, v.width - 2 * _EDGE * u
     number = 0
-    for line in sheet.view.caption:
-        weight, colour = ("semibold", theme.text) if line is sheet.view.caption[0] else ("regular", theme.muted)
+    for line in (*sheet.view.caption, *shape):
+        weight, colour = ("semibold", theme.text) if number == 0 else ("regular", theme.muted)
+        if line in shape:
+            weight, colour = "semibold", theme.hover
         for text in wrapped(line, room, size, weight):
             y = top + 8.0 * u + (number + 0.5) * line_height(size)
             width = text_width(text, size, weight)

@@ -15,6 +15,7 @@ from systems.render.overlays import draw_overlays, draw_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
 from systems.render.readouts import draw_readouts
+from systems.render.shape import draw_shape
 from systems.render.sheet import Sheet, measure
 from systems.render.structure import draw_ghost, draw_grid, draw_halos, draw_particles, draw_rods, label_names
 from systems.render.supports import draw_supports, support_sides
@@ -56,6 +57,7 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme) -> Picture:
     draw_supports(sheet, sides)
     draw_rods(sheet)
     draw_particles(sheet)
+    draw_shape(sheet)
     draw_particle_diagrams(sheet, sides)
     label_names(sheet)
     for layer in ABOVE:

@@ -1,0 +1,118 @@
+"""Shapes: how a structure can move without elongating a rod, or how it vibrates, as something to draw."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import Role
+from components.model import Model
+from components.view import Shape
+
+DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
+LOWEST = 10  # mechanisms, then modes, that one key goes through
+LOWEST_OF_LARGE = 50  # modes that are found of structures that are too large for all
+LARGEST = 2000  # rods up to which they are found while a person waits
+
+
+class NoShape(LookupError):
+    """The shape that was asked for does not exist; the message says which do."""
+
+
+class Shapes:
+    """The shape that is shown over a model, if any; it goes away when the model is edited."""
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._round: list[Shape] = []  # those that `next` goes through
+        self._shown: Shape | None = None
+        self._revision = -1
+
+    @property
+    def shown(self) -> Shape | None:
+        """What is drawn now."""
+        if self._shown is not None and self._model.newest(Role.DOCUMENT) != self._revision:
+            self._shown = None
+        return self._shown
+
+    def show(self, shape: Shape) -> None:
+        """Draw this one until the model is edited."""
+        self._shown, self._revision = shape, self._model.newest(Role.DOCUMENT)
+
+    def next(self) -> None:
+        """Go on to the next: mechanisms, then modes by their frequency, then none. Raises NoShape."""
+        if self.shown is None:
+            self._round = _first_ones(self._model)
+            self.show(self._round[0])
+            return
+        after = self._round.index(self._shown) + 1 if self._shown in self._round else len(self._round)
+        self._shown = self._round[after] if after < len(self._round) else None
+
+
+def _first_ones(model: Model) -> list[Shape]:
+    if model.rods.count > LARGEST:
+        raise NoShape(f"Of more than {LARGEST} rods this takes a while; use: pinjoint render --mode 1")
+    found = [*mechanism_shapes(model, LOWEST), *mode_shapes(model, LOWEST)]
+    if not found:
+        raise NoShape("There are no mechanisms or modes: no rod has an end that is free to move.")
+    return found
+
+
+def mechanism_shapes(model: Model, most: int | None = None) -> list[Shape]:
+    """Motions that elongate no rod; at most 20 of large structures, or `most`."""
+    from systems.statics.explain import describe_motion
+    from systems.statics.theory import mechanisms
+
+    motions = mechanisms(model)
+    return [
+        _shape(
+            model, f"Mechanism {number} of {len(motions)}: moves {describe_motion(model, motion[None])}", motion
+        )
+        for number, motion in enumerate(motions[:most], start=1)
+    ]
+
+
+def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
+    """Natural modes of the unloaded structure by frequency, less its mechanisms; the lowest 50 of a large one, or `most`."""
+    from systems.statics.theory import indeterminacy
+    from systems.statics.vibration import FULL, vibrations
+
+    if model.rods.count == 0:
+        return []
+    degrees = indeterminacy(model)
+    still = degrees.mechanisms
+    count = model.rods.count - degrees.static  # the rank of the compatibility matrix
+    wanted = count if still + count <= FULL else min(count, LOWEST_OF_LARGE)
+    wanted = wanted if most is None else min(wanted, most)
+    found = vibrations(model, count=still + wanted)
+    return [
+        _shape(model, f"Mode {number} of {count}: {hertz:.4g} Hz", motion)
+        for number, (hertz, motion) in enumerate(
+            zip(found.hertz[still:].tolist(), found.modes[still:], strict=True), start=1
+        )
+    ]
+
+
+def numbered(model: Model, kind: str, number: int) -> Shape:
+    """A "mechanism" or "mode" by its number, from 1. Raises NoShape."""
+    find: dict[str, Callable[[Model], Sequence[Shape]]] = {"mechanism": mechanism_shapes, "mode": mode_shapes}
+    found = find[kind](model)
+    if not found:
+        why = "every motion elongates a rod" if kind == "mechanism" else "nothing can vibrate"
+        raise NoShape(f"There is no {kind}: {why}.")
+    if not 1 <= number <= len(found):
+        there = "is only 1" if len(found) == 1 else f"are only {len(found)}"
+        plural = "" if len(found) == 1 else "s"
+        raise NoShape(f"There is no {kind} {number}; there {there} {kind}{plural} to draw, counted from 1.")
+    return found[number - 1]
+
+
+def _shape(model: Model, title: str, motion: NDArray[np.float64]) -> Shape:
+    return Shape(title, DRAWN_SHARE * extent(model) * motion)
+
+
+def extent(model: Model) -> float:
+    """The larger of width and height (m)."""
+    return float(np.ptp(model.particles.position, axis=0).max())
