@@ -63,13 +63,11 @@ def _first_ones(model: Model) -> list[Shape]:
 def mechanism_shapes(model: Model, most: int | None = None) -> list[Shape]:
     """Motions that elongate no rod; at most 20 of large structures, or `most`."""
     from systems.statics.explain import describe_motion
-    from systems.statics.theory import mechanisms
+    from systems.statics.theory import indeterminacy, mechanisms
 
-    motions = mechanisms(model)
+    motions, count = mechanisms(model), indeterminacy(model).mechanisms
     return [
-        _shape(
-            model, f"Mechanism {number} of {len(motions)}: moves {describe_motion(model, motion[None])}", motion
-        )
+        _shape(model, f"Mechanism {number} of {count}: moves {describe_motion(model, motion[None])}", motion)
         for number, motion in enumerate(motions[:most], start=1)
     ]
 

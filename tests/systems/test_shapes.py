@@ -112,6 +112,30 @@ def test_mechanisms_vibrate_with_no_frequency_and_modes_with_some(name: str) -> 
     assert len(frequencies) + len(mechanism_shapes(model)) == free
 
 
+def test_of_a_large_structure_some_are_found_and_all_are_counted() -> None:
+    """A square net held at the left, its right edge loose: without self-stress, so that every rod holds one motion."""
+    side = 18
+    name = [[f"P{x}.{y}" for y in range(side)] for x in range(side)]
+    particles = [
+        {"name": name[x][y], "position": [x, y], "fixed": [x == 0, x == 0]}
+        for x in range(side)
+        for y in range(side)
+    ]
+    pairs = [(name[x][y], name[x + 1][y]) for x in range(side - 1) for y in range(side)]
+    pairs += [(name[x][y], name[x][y + 1]) for x in range(1, side - 1) for y in range(side - 1)]
+    rods = [{"name": f"{a}-{b}", "between": [a, b]} for a, b in pairs]
+    document = {"format": "pinjoint model", "version": 1, "particles": particles, "rods": rods}
+    model = models.load(document)
+    unknowns = 2 * side * (side - 1)
+    still = unknowns - len(rods)
+    shapes = mechanism_shapes(model)
+    assert (still, len(shapes)) == (34, 20)
+    assert shapes[0].title.startswith(f"Mechanism 1 of {still}: ")
+    modes = mode_shapes(model)
+    assert len(modes) == 50
+    assert modes[0].title.startswith(f"Mode 1 of {unknowns - still}: ")
+
+
 @pytest.mark.parametrize(
     ("kind", "number", "said"),
     [
