@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Callable
 from functools import partial
 from importlib.resources import files
@@ -214,7 +215,23 @@ def _rendered(mark: Stamps, phase_x: float, phase_y: float) -> tuple[pygame.Surf
 
 
 def _rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:
-    """A box with smooth corners."""
+    """A box with smooth corners: one no larger than its corners need, with its middle stretched."""
+    least = 2 * math.ceil(mark.radius) + 5  # the column and row in the middle are part of no corner
+    small = _small_rounded((min(size[0], least), min(size[1], least)), mark)
+    whole = pygame.Surface(size, pygame.SRCALPHA)
+    columns, rows = (_stretched(length, min(length, least)) for length in size)
+    _pixels(whole)[:, : size[0]] = _pixels(small)[rows][:, columns]
+    return whole
+
+
+def _stretched(length: int, short: int) -> NDArray[np.intp]:
+    """For each of `length` places the one of `short` that it shows, the middle one as often as it takes."""
+    place = np.arange(length)
+    return np.maximum(np.minimum(place, short // 2), place - (length - short))
+
+
+def _small_rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:
+    """The same drawn as a whole, finely, then reduced; the time this takes grows with its area."""
     fine = 4
     large = pygame.Surface((size[0] * fine, size[1] * fine), pygame.SRCALPHA)
     edge = mark.outline or mark.fill

@@ -19,9 +19,9 @@ from components.rod import spawn_rods
 from components.tags import Selected
 from components.view import Status, View
 from systems.render.coverage import stroke_coverage
-from systems.render.marks import Picture, Stamps, Strokes, Text
+from systems.render.marks import Panel, Picture, Stamps, Strokes, Text
 from systems.render.picture import compose
-from systems.render.pygame_canvas import Canvas
+from systems.render.pygame_canvas import Canvas, _rounded, _small_rounded
 from systems.render.theme import load_theme
 from systems.render.typography import WEIGHTS, text_width
 
@@ -112,6 +112,17 @@ def test_texts_stand_at_their_anchor(anchor: str, left: int) -> None:
     expected = 100 - {"left": 0.0, "centre": 0.5, "right": 1.0}[anchor] * width
     assert dark[:, 0].min() == pytest.approx(expected, abs=3)
     assert (dark[:, 1].min() + dark[:, 1].max() + 1) / 2 == pytest.approx(30, abs=1)
+
+
+@pytest.mark.parametrize("size", [(1, 1), (9, 40), (15, 16), (120, 31), (300, 200)])
+@pytest.mark.parametrize("radius", [0.0, 4.0, 7.5])
+@pytest.mark.parametrize("outline", [None, (10, 20, 30, 90)])
+def test_a_stretched_box_is_the_one_drawn_as_a_whole(
+    size: tuple[int, int], radius: float, outline: tuple[int, int, int, int] | None
+) -> None:
+    panel = Panel(0, 0, *size, radius, (255, 250, 240, 219), outline)
+    stretched, whole = _rounded(size, panel), _small_rounded(size, panel)
+    assert pygame.image.tobytes(stretched, "RGBA") == pygame.image.tobytes(whole, "RGBA")
 
 
 pixel = st.floats(20, 80)
