@@ -467,12 +467,13 @@ class World:
 
     def tagged(self, tag: type) -> list[Handle]:
         """Handles of the existing entities with a mark, in order of creation."""
-        found = [
-            table.handles[row]
-            for table in self.tables.values()
-            for row in self.tagged_rows(tag, table.name).tolist()
-        ]
-        return sorted(found, key=lambda handle: handle.entity)
+        rows = {name: self.tagged_rows(tag, name) for name in self.tables}
+        found = [self.tables[name].handles[row] for name in rows for row in rows[name].tolist()]
+        return [found[index] for index in np.argsort([handle.entity for handle in found]).tolist()]
+
+    def any_tagged(self, tag: type) -> bool:
+        """True if any existing entity has a mark; quicker than to ask for all that have it."""
+        return any(len(self.tagged_rows(tag, table)) for table in self.tables)
 
     def tagged_rows(self, tag: type, table: str) -> NDArray[np.intp]:
         """Rows of the entities of one table with a mark, ascending."""

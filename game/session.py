@@ -463,8 +463,8 @@ class Session:
 
     @property
     def has_selected(self) -> bool:
-        """True if anything is selected; quicker than to ask for all of it."""
-        return any(len(self.model.tagged_rows(Selected, table)) for table in self.model.tables)
+        """True if anything is selected."""
+        return self.model.any_tagged(Selected)
 
     def select(self, *handles: Handle) -> None:
         """Select exactly these elements; none: deselect."""

@@ -44,7 +44,7 @@ def _never(session: Session) -> bool:
 
 
 def _shows_diagrams(session: Session) -> bool:
-    return session.view.all_diagrams or bool(session.model.tagged(DiagramShown))
+    return session.view.all_diagrams or session.model.any_tagged(DiagramShown)
 
 
 def _has_selected(session: Session) -> bool:

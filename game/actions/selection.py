@@ -43,13 +43,12 @@ def _select_all(session: Session, pixel: Vector) -> None:
 def _toggle_diagrams(session: Session, pixel: Vector) -> None:
     """Of the selected particles and rods; of all when nothing is selected."""
     model, view = session.model, session.view
-    chosen = [handle for handle in session.selected if isinstance(handle, Particle | Rod)]
-    if not session.selected:
+    if not session.has_selected:
         view.all_diagrams = not view.all_diagrams
-        for handle in model.tagged(DiagramShown):
-            model.untag(handle, DiagramShown)
+        model.tag_only([], DiagramShown)
         return
-    shown = set(map(id, model.tagged(DiagramShown)))
-    hide = all(id(handle) in shown for handle in chosen)
-    for handle in chosen:
-        (model.untag if hide else model.tag)(handle, DiagramShown)
+    chosen = {handle.entity: handle for handle in session.selected if isinstance(handle, Particle | Rod)}
+    shown = {handle.entity: handle for handle in model.tagged(DiagramShown)}
+    hide = chosen.keys() <= shown.keys()
+    others = [shown[entity] for entity in shown.keys() - chosen.keys()]
+    model.tag_only(others if hide else [*others, *chosen.values()], DiagramShown)

@@ -177,6 +177,16 @@ def test_i_shows_the_diagrams_of_the_selected_or_of_all(session: Session) -> Non
     session.click(1, 1)
     session.press("i")
     assert session.model.tagged(DiagramShown) == [session.particles["B"]]
+    session.select(*session.model.rods, session.particles["B"])
+    session.press("i")
+    assert session.model.tagged(DiagramShown) == [session.particles["B"], *session.model.rods]
+    session.select(session.rods["AB"])
+    session.press("i")
+    assert session.rods["AB"] not in session.model.tagged(DiagramShown)
+    session.select(*session.model.rods, *session.model.grids)  # one of them shows none: all shall
+    session.press("i")
+    assert session.model.tagged(DiagramShown) == [session.particles["B"], *session.model.rods]
+    session.select()
     session.press("i")
     assert session.model.tagged(DiagramShown) == []
 
