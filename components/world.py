@@ -81,6 +81,7 @@ class World:
 
     on_command: called with the inverse of every executed command (the undo log listens here).
     before_change: called before any command is applied (a running simulation notes what it starts from).
+    before_command: called before a command begins; what it raises stops whoever gives the command.
     revision: grows by one at every change of anything.
     changing: a command is being applied; code that is interrupted now would leave half of it.
     """
@@ -90,6 +91,7 @@ class World:
         self.revision = 0
         self.on_command: Callable[[Command], None] | None = None
         self.before_change: Callable[[], None] | None = None
+        self.before_command: Callable[[], None] | None = None
         self.row_of_entity: NDArray[np.int64] = np.full(64, -1, dtype=np.int64)
         self.tables: dict[str, Table[Any]] = {}
         self.tags_revision = 0
@@ -315,6 +317,8 @@ class World:
                 for part in command.commands:
                     self.execute(part)
             return
+        if self.before_command is not None:
+            self.before_command()
         outer, self.changing = self.changing, True
         try:
             self._report(self.apply(command))

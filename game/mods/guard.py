@@ -11,7 +11,7 @@ from components.field import FieldError
 from components.load import History, HistoryKind
 from components.snapshot import Snapshot
 from game.mods.mod import INCLUDED, Mod
-from game.mods.watchdog import interrupted_after
+from game.mods.watchdog import interrupted_after, stop_after
 from game.scenes import Scene
 from systems.base import StepSystem, System
 
@@ -59,11 +59,16 @@ def guarded_system(mod: Mod, system: System) -> System:
 
 
 def _watched(process: Callable[[Any], None], frame: Any, model: Model) -> None:
-    """Interrupt it if it takes long, and put back what it deleted past the tables."""
+    """Interrupt it if it takes long, and put back what it deleted past the tables.
+
+    Never in the middle of a command; one that does nothing but give commands is stopped before the next.
+    """
+    model.before_command = stop_after(PATIENCE)
     try:
         with interrupted_after(PATIENCE, lambda: not model.changing):
             process(frame)
     finally:
+        model.before_command = None
         model.check_entities()
 
 

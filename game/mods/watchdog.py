@@ -82,3 +82,14 @@ def interrupted_after(seconds: float, may: Callable[[], bool]) -> Iterator[None]
         yield
     finally:
         _watchdog.stop()
+
+
+def stop_after(seconds: float) -> Callable[[], None]:
+    """A function that raises TooLong when it is called later than that."""
+    deadline = time.monotonic() + seconds
+
+    def check() -> None:
+        if time.monotonic() > deadline:
+            raise TooLong
+
+    return check

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from importlib.resources import files
 from typing import Any
@@ -40,8 +41,18 @@ def needed(model: dict[str, Any]) -> set[str]:
         systems.add("physics.axial_damping")
     if model.get("environment", {}).get("drag", Environment.drag.default):
         systems.add("physics.drag")
+    if model.get("settings", {}).get("collisions", True) and can_meet(model):
+        systems.add("collision.discs")
     kinds = {load.get("history", {"kind": "constant"})["kind"] for load in model.get("loads", [])}
     return systems | {f"loads.{kind}" for kind in kinds - {"constant"}}
+
+
+def can_meet(model: dict[str, Any]) -> bool:
+    """Whether there are two particles without a rod between them, of which one can move."""
+    held = {one["name"] for one in model["particles"] if all(one.get("fixed", [False, False]))}
+    joined = {frozenset(rod["between"]) for rod in model.get("rods", [])}
+    pairs = itertools.combinations([one["name"] for one in model["particles"]], 2)
+    return any(not held.issuperset(pair) and frozenset(pair) not in joined for pair in pairs)
 
 
 def planned(session: Session) -> set[str]:

@@ -30,9 +30,10 @@ def events(found: Settlement, kind: str) -> list[Event]:
     return [event for event in found.events if event.kind == kind]
 
 
-def agree(values: np.ndarray, by_name: dict[str, Any], relative: float = RELATIVE) -> None:
+def agree(values: np.ndarray, by_name: dict[str, Any], relative: float = RELATIVE, size: float = 0.0) -> None:
+    """Equal, relative to the largest; `size`: of like quantities before, where all may have become zero."""
     expected = np.array(list(by_name.values()))
-    assert np.abs(values - expected).max() <= relative * np.abs(expected).max()
+    assert np.abs(values - expected).max() <= relative * max(np.abs(expected).max(), size)
 
 
 # --- elastic, small and large displacements ---------------------------------------------------------------
@@ -228,6 +229,7 @@ JUST_BEFORE = 1 - 1e-12  # of a load
 @given(seed=st.integers(0, 10_000))
 @example(seed=86)  # a rod stops yielding when another begins
 @example(seed=169)
+@example(seed=284)  # nothing but round-off is left after unloading
 def test_yielding_in_exact_geometry(seed: int) -> None:
     """Loaded half-way from first yield to collapse and unloaded: at once, in pieces, by an independent solver.
 
@@ -246,7 +248,7 @@ def test_yielding_in_exact_geometry(seed: int) -> None:
     for state, reference in zip(found.states, expected[-2:], strict=True):
         moved = np.array(list(reference["displacement"].values()))
         assert np.abs(state.displacement - moved).max() <= RELATIVE * size
-        agree(state.axial_force, reference["axial_force"])
+        agree(state.axial_force, reference["axial_force"], size=load)
 
 
 def first_yield(document: Document) -> float:
