@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from components.field import Role
 from components.model import Model
 from systems.collision.near import Floats, Rows, near_pairs
 from systems.collision.system import contacts_of
@@ -29,9 +30,10 @@ class Vicinity:
 
     def look_up(self) -> None:
         """Find out what the document says of who may meet whom, if it changed."""
-        if self._revision == self.model.revision:
+        revision = self.model.newest(Role.DOCUMENT)
+        if self._revision == revision:
             return
-        self._revision = self.model.revision
+        self._revision = revision
         particles, ends = self.model.particles, np.sort(self.model.rods.between.astype(np.int64), axis=1)
         self._joined = np.sort(ends[:, 0] * particles.count + ends[:, 1])
         self._node = np.zeros(particles.count, dtype=bool)
