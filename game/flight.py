@@ -104,7 +104,7 @@ class Flight:
     def __init__(self, model: Model, impacts: Impacts) -> None:
         started = time.perf_counter()
         self.model = model
-        self.measures = np.zeros(7)
+        self.measures = np.zeros(8)
         self._impacts = impacts
         self._make = load_flight()
         self.bind()
@@ -239,6 +239,7 @@ class Flight:
             float(np.abs(free).max(initial=0.0)),
             float(np.abs(constant).max(initial=0.0)),
             0.0,
+            1000.0 * float((free * velocity).sum()),
         )
 
     def conserved_energy(self) -> float:

@@ -56,7 +56,7 @@ class Program:
         self.driver = driver
         self._writer = _writer(model, systems, driver)
         self._module = compile_module(self._writer.source(), self._writer.kernels)
-        self.measures = np.zeros(7)
+        self.measures = np.zeros(8)
         self._state_revision = -1
         self.bind()
         self._compile()

@@ -285,6 +285,7 @@ class Writer:
         body = [
             "kinetic = 0.0",
             "power_norm = 0.0",
+            "power = 0.0",
             "potential = 0.0",
             "residual = 0.0",
             "largest = 0.0",
@@ -296,6 +297,7 @@ class Writer:
             "        total = force[i, d] + resisting[i, d]" if self.rates else "        total = force[i, d]",
             "        power_norm += total * particles_mobility[i, d] * total",
             "        if particles_mobility[i, d] > 0.0:",
+            "            power += total * velocity[i, d]",
             "            residual = max(residual, abs(force[i, d]))",
             "        largest = max(largest, abs(particles_constant_force[i, d]))",
             "        moved = max(moved, abs(displacement[i, d]))",
@@ -318,6 +320,7 @@ class Writer:
             "measures[4] = residual",
             "measures[5] = largest",
             "measures[6] = 2.220446049250313e-16 * stiffest * moved",
+            "measures[7] = 1000.0 * power",
         ]
         head = f"def measure(displacement, velocity, force, resisting, measures, {self._columns_text()}):"
         return "\n".join(["@compiled", head, *_indent(1, body)])

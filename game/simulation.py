@@ -382,7 +382,7 @@ class Simulation:
 
     def _automatic_step(self, frequency: float) -> float:
         if self.stable_step == 0.0:
-            return _rounded_down(DOUBTFUL_STEP / frequency)
+            return _rounded_down(min(DOUBTFUL_STEP / frequency, FREE_STEP))
         share = ACCURATE if self.model.rods.count <= SMALL else SAFETY
         size = min(share * self.stable_step, FREE_STEP)
         if self.smooth and self.driver is FREE_FLIGHT:

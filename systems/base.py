@@ -151,6 +151,7 @@ class Driver(StepSystem):
     estimates_error: it chooses its steps so that settings.tolerance is met, unless the step is fixed.
     particle_rows, rod_rows: arrays of shape (particles, 2) and (rods,) that it needs.
     check_interval: steps between checks for rest and divergence; larger: notices later.
+    guard: which energy it conserves, for the check for divergence; `shadow` in systems/physics/kernels.py.
     """
 
     order: ClassVar[int] = 0

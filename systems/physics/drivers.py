@@ -51,6 +51,7 @@ class SemiImplicitEuler(Integrator):
     """
 
     name = "physics.semi_implicit_euler"
+    guard = 2.0
     parts = _FIXED
     kernel = "systems.physics.integrators:semi_implicit_euler"
     order: ClassVar[int] = 1
@@ -121,6 +122,7 @@ class RungeKutta4(Integrator):
     kernel = f"{_RUNGE_KUTTA}:controlled"
     entry = f"{_RUNGE_KUTTA}:advance"
     parts = (
+        *_FIXED,
         f"{_RUNGE_KUTTA}:accelerate",
         f"{_RUNGE_KUTTA}:combine",
         f"{_RUNGE_KUTTA}:begin_search",
@@ -170,6 +172,7 @@ class ImplicitRungeKutta4(Integrator):
     kernel = f"{_RUNGE_KUTTA}:controlled"
     entry = f"{_RUNGE_KUTTA}:advance"
     parts = (
+        *_FIXED,
         f"{_RUNGE_KUTTA}:accelerate",
         f"{_RUNGE_KUTTA}:combine",
         f"{_RUNGE_KUTTA}:begin_search",

@@ -8,6 +8,7 @@ REST_RESIDUAL = 2e-9  # of the largest force, so that sums of residuals are with
 SMALL_SHARE = 1e-3  # of the largest force ever, taken as scale where all forces die out
 DIVERGENCE_SHARE = 0.2  # of all energy ever supplied; smaller: may stop good runs at large steps
 YIELDING_SHARE = 0.5  # of what yielding dissipated, which is of first order where a step passes the strength
+WOBBLE_SHARE = 10.0  # of all energy supplied; at stable steps of the thesis' scheme at most 8 is possible
 INSTABILITY_SHARE = 2.0  # of all energy ever supplied; at stable steps at most 1 is possible
 SMALLEST_ENERGY = 1e-24  # J, below which nothing is told from round-off
 
@@ -41,11 +42,15 @@ def drag(particles_mass, particles_velocity, environment_drag):
 def conserved(measures, account, dt, shadow):
     """Kinetic − (h²/8) fᵀM⁻¹f + elastic + lost by yielding and impacts − supplied (J), as in judge().
 
+    Semi-implicit Euler's velocity is Verlet's half a step earlier: its kinetic energy is
+    kinetic + (h/2) f·v + (h²/8) fᵀM⁻¹f, of which the last term cancels.
     What dampers take is left out: near the largest stable step it is known too coarsely.
     """
     kinetic, power_norm, elastic, potential = measures[0], measures[1], measures[2], measures[3]
     supplied = account[0] + potential - account[5]
     lost = account[2] + account[3]
+    if shadow == 2.0:
+        return kinetic + 0.5 * dt * measures[7] + elastic + lost - supplied
     return kinetic + elastic - max(shadow, 0.0) * dt * dt / 8.0 * power_norm + lost - supplied
 
 
@@ -54,10 +59,11 @@ def judge(measures, account, dt, shadow, ahead, loads_are_over):
     """Decide from the measures of a state whether the run stops: 0 go on, 2 rest, 3 diverged.
 
     measures: kinetic energy, Σ fᵀM⁻¹f, elastic energy, potential of constant forces (all J), residual,
-        largest force and round-off of the forces (kN).
+        largest force and round-off of the forces (kN), power f·v of all forces (W).
     account: the accounts, then initial energy, potential reference, force scale, energy scale, guard energy.
-    shadow: 1 if the integrator conserves kinetic − (h²/8) fᵀM⁻¹f + elastic, else 0. ahead: what varying
-        loads will supply in the next step (J); after a jump they have moved the mass but done no work yet.
+    shadow: 1 if the integrator conserves kinetic − (h²/8) fᵀM⁻¹f + elastic, 2 if it does with velocities
+        half a step earlier, -1 if it is as exact as its tolerance, else 0. ahead: what varying loads will
+        supply in the next step (J); after a jump they have moved the mass but done no work yet.
 
     Diverged: energy came from nowhere, more than a share of all that was supplied (or, where nothing is
     conserved, of what one step can move) and of what yielding took. Beyond the stable step Verlet conserves
@@ -68,17 +74,19 @@ def judge(measures, account, dt, shadow, ahead, loads_are_over):
     kinetic, power_norm, elastic, potential = measures[0], measures[1], measures[2], measures[3]
     residual, largest, round_off = measures[4], measures[5], measures[6]
     supplied = account[0] + potential - account[5]
-    deficit = max(shadow, 0.0) * dt * dt / 8.0 * power_norm
-    wobble = dt * dt * power_norm if shadow == 0.0 else 0.0
+    deficit = min(max(shadow, 0.0), 1.0) * dt * dt / 8.0 * power_norm
+    swinging = kinetic + 0.5 * dt * measures[7] + deficit if shadow == 2.0 else kinetic
     created = conserved(measures, account, dt, shadow) - account[8]
     if shadow < 0.0:
         created = min(created, kinetic + elastic - supplied - account[4])
     account[6] = max(account[6], largest)
-    account[7] = max(account[7], abs(account[4]), abs(account[0]), abs(supplied), ahead, wobble)
+    supply = max(abs(account[4]), abs(account[0]), abs(supplied), ahead)
+    wobble = min(dt * dt * power_norm, WOBBLE_SHARE * supply) if shadow == 0.0 else 0.0
+    account[7] = max(account[7], supply, wobble)
     bound = DIVERGENCE_SHARE * account[7] + YIELDING_SHARE * account[2] + SMALLEST_ENERGY
     if not created <= bound:
         return 3
-    if min(max(kinetic, elastic), deficit - elastic) > INSTABILITY_SHARE * account[7] + SMALLEST_ENERGY:
+    if min(max(swinging, elastic), deficit - elastic) > INSTABILITY_SHARE * account[7] + SMALLEST_ENERGY:
         return 3
     still_force = max(REST_RESIDUAL * max(largest, SMALL_SHARE * account[6]), 8.0 * round_off)
     still_energy = REST_RESIDUAL**2 * max(elastic, SMALL_SHARE**2 * account[7])

@@ -13,7 +13,7 @@ from game import models
 from game.document import document
 from tests.benchmarks.models import lattice
 from tests.benchmarks.motion import equations
-from tests.reference.closed_forms import free_vibration
+from tests.reference.closed_forms import elastic_plastic_step, free_vibration
 from tests.reference.elements import Model
 from tests.reference.models import oscillator, pendulum, square, triangle
 
@@ -77,24 +77,6 @@ def yielding_step() -> Problem:
     return Problem(
         "elastic–plastic mass", made, 1.5, lambda: _along_x(0.01 * elastic_plastic_step(1.5, omega, share))
     )
-
-
-def elastic_plastic_step(time: float, omega: float, share: float) -> float:
-    """u/u_y at a time after a force of `share` of the strength, ½ < share < 1, before it yields again.
-
-    Elastic u = share (1 − cos ωt) to 1; then u'' = −ω² (1 − share) to rest; then about a new middle.
-    """
-    yields = math.acos(1 - 1 / share) / omega
-    speed = share * omega * math.sin(omega * yields)
-    slowing = omega**2 * (1 - share)
-    rests = yields + speed / slowing
-    if time <= yields:
-        return share * (1 - math.cos(omega * time))
-    if time <= rests:
-        since = time - yields
-        return 1 + speed * since - slowing * since**2 / 2
-    peak = 1 + speed**2 / (2 * slowing)
-    return peak - (1 - share) * (1 - math.cos(omega * (time - rests)))
 
 
 def slow_yielding() -> Problem:

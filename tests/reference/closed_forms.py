@@ -88,6 +88,24 @@ def elastoplastic_ductility(force_over_strength: float) -> float:
     return 1 / (2 * (1 - force_over_strength))
 
 
+def elastic_plastic_step(time: float, omega: float, share: float) -> float:
+    """Return u/u_yield at `time` after a sudden force of `share` > ½ of the strength, before it yields again.
+
+    Elastic u = share (1 − cos ωt) to 1; then u'' = −ω² (1 − share) to rest, if share < 1; then about a new middle.
+    """
+    yields = math.acos(1 - 1 / share) / omega
+    speed = share * omega * math.sin(omega * yields)
+    slowing = omega**2 * (1 - share)
+    rests = yields + speed / slowing if slowing > 0 else math.inf
+    if time <= yields:
+        return share * (1 - math.cos(omega * time))
+    if time <= rests:
+        since = time - yields
+        return 1 + speed * since - slowing * since**2 / 2
+    peak = 1 + speed**2 / (2 * slowing)
+    return peak - (1 - share) * (1 - math.cos(omega * (time - rests)))
+
+
 # Several degrees of freedom, large swings, impacts
 
 
