@@ -6,11 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from components.settings import INTEGRATORS
 from game import bench
-from tests.benchmarks import collisions, drawing, speed
+from tests.benchmarks import collisions, drawing, speed, stability
 from tests.benchmarks.ceiling import bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, mesh
 from tests.reference.scenes_of_discs import gas, packed
+from tests.stability.cases import damped
 
 
 @pytest.mark.parametrize("rods", [100, 1_000, 10_000])
@@ -67,3 +69,11 @@ def test_pymunk_is_given_the_same_discs() -> None:
     scene = gas(30, 0.1)
     _, bodies = collisions._pymunk(scene, 0.1, 1.0, 0.0)
     assert sum(body.velocity.length**2 for body in bodies) == pytest.approx(30)
+
+
+def test_the_map_of_stability_has_a_cell_for_every_integrator() -> None:
+    case = damped(0.1)
+    row = stability._row(case, lambda _: case, 100)
+    assert (row["varied"], row["value"]) == ("damping ratio", 0.1)
+    assert set(INTEGRATORS) < set(row)
+    assert float(row["dop853"]) < 1e-8
