@@ -36,7 +36,7 @@ def _by_share(share: float) -> Callable[[str], Case]:
 
 def _row(named: Case, case: Callable[[str], Case], most_steps: int) -> Row:
     cells = {name: _cell(follow(case(name), name, most_steps)) for name in INTEGRATORS}
-    return {"varied": named.varied, "value": named.value, **cells}
+    return {"varied": named.varied, "value": f"{named.value:g}", **cells}
 
 
 def _cell(found: Outcome) -> str:
