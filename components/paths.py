@@ -55,6 +55,9 @@ class Paths(Mapping[str, Any]):
             return [[None if number == math.inf else number for number in row] for row in values]
         return values
 
+    def __repr__(self) -> str:
+        return f"Paths({dict(self)!r})"
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Paths) and all(
             getattr(self, key).tobytes() == getattr(other, key).tobytes() for key in _KEYS

@@ -182,3 +182,20 @@ def test_work_of_an_edit_is_the_energy_that_it_gives() -> None:
     particle.force = (100.0, 0.0)
     session.simulation.advance(0)
     assert abs(session.energy.work - work) <= 1e-9 * kinetic
+
+
+def test_states_that_were_put_aside_come_back_with_the_paths_of_discs() -> None:
+    session = Session.open("collision_i")
+    session.history._memory = 0  # all go on the shelf
+    start = bits.columns(session.model)
+    for _ in range(3):
+        session.run(time=0.2)
+        session.particles[0].force = (0.0, 0.001)
+    session.run(time=0.2)
+    end = bits.columns(session.model)
+    while session.undo():
+        pass
+    assert bits.different(bits.columns(session.model), start) == []
+    while session.redo():
+        pass
+    assert bits.different(bits.columns(session.model), end) == []
