@@ -38,18 +38,25 @@ class Editing(RuleBasedStateMachine):
         if key not in ("return", "ctrl+o", "ctrl+s", "ctrl+n", "drag middle"):
             self.session.press(key)
 
+    def on_toolbar(self, at: tuple[float, float]) -> bool:
+        """Whether a point of the model lies behind the toolbar, where a click could leave the model for good."""
+        return self.session.view.strip.contains(self.session.point(*at))
+
     @rule(at=places, button=st.sampled_from(["click", "ctrl+click"]))
     def click(self, at: tuple[float, float], button: str) -> None:
-        self.session.click(*at, button)
+        if not self.on_toolbar(at):
+            self.session.click(*at, button)
 
     @rule(start=places, end=places, button=st.sampled_from(["click", "click", "ctrl+click"]))
     def drag(self, start: tuple[float, float], end: tuple[float, float], button: str) -> None:
-        self.session.drag(start, end, button)
+        if not self.on_toolbar(start):
+            self.session.drag(start, end, button)
 
     @rule(start=places, end=places)
     def grab(self, start: tuple[float, float], end: tuple[float, float]) -> None:
-        self.session.grab(*start)
-        self.session.drag_to(*end)
+        if not self.on_toolbar(start):
+            self.session.grab(*start)
+            self.session.drag_to(*end)
 
     @rule(count=st.integers(1, 4))
     def frames(self, count: int) -> None:
