@@ -377,8 +377,9 @@ def advance(
     """Take up to `steps` steps that end by `until` (s); returns (steps taken, StopReason).
 
     fresh: the forces are still those of the present state. total: all steps so far. first: steps since the
-    time origin. Checks happen 1, 2, 4, … steps after the origin, and whenever the total is a multiple of
-    CHECK_INTERVAL: at counts that do not depend on how the steps are divided into calls.
+    time origin, which moves with every step whose size is controlled. Checks happen after 1, 2, 4, … steps in
+    all, and whenever the total is a multiple of CHECK_INTERVAL: at counts that do not depend on how the steps
+    are divided into calls.
     """
     if not fresh:
         evaluate(
@@ -387,8 +388,7 @@ def advance(
         accelerate(force, resisting, work[0], *columns)
     taken = 0
     while taken < steps:
-        age = first + taken
-        wanted = min(steps - taken, steps_to_check(total + taken, age))
+        wanted = min(steps - taken, steps_to_check(total + taken, total + taken))
         done, good = integrate(
             wanted,
             first + taken,
@@ -416,15 +416,13 @@ def advance(
         taken += done
         if not good:
             return taken, 4
-        age += done
-        if done > 0 and (
-            (total + taken) % CHECK_INTERVAL == 0 or (age < CHECK_INTERVAL and age & (age - 1) == 0)
-        ):
+        now = total + taken
+        if done > 0 and (now % CHECK_INTERVAL == 0 or (now < CHECK_INTERVAL and now & (now - 1) == 0)):
             measure(displacement, velocity, force, resisting, measures, *columns)
             reason = judge(measures, account, control[STEP], SHADOW, 0.0, control[TIME] >= loads_end)
             if reason != 0:
                 return taken, reason
-        if done > 0 and (total + taken) % REVIEW_INTERVAL == 0:
+        if done > 0 and now % REVIEW_INTERVAL == 0:
             return taken, 1
         if done < wanted:
             break
