@@ -39,7 +39,7 @@ def derive_masses(world: World) -> None:
 
 
 def derive_limits(world: World) -> None:
-    """Strengths with "unlimited" (None or 0) as infinity."""
+    """Strengths with "unlimited" (None or 0) as infinity; a cable goes slack before any compression."""
     for limit, strength in [
         ("tension_limit", "tensile_strength"),
         ("compression_limit", "compressive_strength"),
@@ -47,6 +47,7 @@ def derive_limits(world: World) -> None:
         values = world.tables["rods"].column(strength)
         unlimited = np.isnan(values) | (values == 0.0)
         world.writable(f"rods.{limit}")[...] = np.where(unlimited, np.inf, values)
+    world.writable("rods.compression_limit")[world.tables["rods"].tension_only] = np.inf
 
 
 def derive_constant_force(world: World) -> None:
@@ -85,7 +86,7 @@ DERIVATIONS = (
     ),
     Derivation(
         ("rods.tension_limit", "rods.compression_limit"),
-        ("rods.tensile_strength", "rods.compressive_strength"),
+        ("rods.tensile_strength", "rods.compressive_strength", "rods.tension_only"),
         derive_limits,
     ),
     Derivation(

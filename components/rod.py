@@ -82,6 +82,12 @@ class Rod(Handle):
         doc="Strain per change of temperature; steel: 12·10⁻⁶/K.",
         shown=("10⁻⁶/K", 1e6),
     )
+    tension_only: Field[bool] = Field(
+        dtype=bool,
+        default=False,
+        title="tension only",
+        doc="A cable: slack, without force, where its ends are nearer than its length without force.",
+    )
     plastic_strain: Field[float] = Field(
         role=Role.STATE, title="plastic strain", doc="Permanent part of the strain."
     )
@@ -192,6 +198,11 @@ def _pair_codes(ends: NDArray[np.uint32]) -> NDArray[np.uint64]:
 def is_warm(world: World) -> bool:
     """True if the temperature of some rod has changed."""
     return bool(world.tables["rods"].temperature_change.any())
+
+
+def has_cables(world: World) -> bool:
+    """True if some rod bears tension only."""
+    return bool(world.tables["rods"].tension_only.any())
 
 
 def can_yield(world: World) -> bool:

@@ -14,7 +14,14 @@ from systems.physics.drivers import (
     ThesisTaylor,
     VelocityVerlet,
 )
-from systems.physics.system import AxialDamping, Drag, Elasticity, ElasticityAfterYielding
+from systems.physics.system import (
+    AxialDamping,
+    AxialDampingOfCables,
+    Drag,
+    Elasticity,
+    ElasticityAfterYielding,
+    Slackness,
+)
 from systems.plasticity.system import Strength, Yielding
 
 DRIVERS: dict[str, Driver] = {}
@@ -44,6 +51,8 @@ def step_systems() -> list[StepSystem]:
         Elasticity(),
         ElasticityAfterYielding(),
         AxialDamping(),
+        AxialDampingOfCables(),
+        Slackness(),
         Drag(),
         Strength(),
         Yielding(),

@@ -99,7 +99,7 @@ class Program:
         self._breaks = load_breaks(self.model)
         self._work = np.zeros((self.driver.particle_rows, particles, 2))
         self._rod_work = np.zeros((self.driver.rod_rows, rods))
-        self._marks = np.zeros((rods, MARKS * len(self._writer.commits)))
+        self._marks = np.zeros((rods, MARKS * len(self._writer.branching)))
         self._stage_power = np.zeros(len(ACCOUNTS))
         self._state_revision = -1
 

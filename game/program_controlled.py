@@ -10,7 +10,7 @@ from game.program_binding import Bound, bind
 from game.program_writer import Writer
 from systems.base import ACCOUNTS, Driver, StepSystem
 
-MARKS = 4  # per rod and commit: branch, margin and its slope at the start of the step, whether it is watched
+MARKS = 4  # per rod and system with branches: branch, margin and its slope at the start of the step, whether it is watched
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
 _STEADY = 1e-8  # a margin that changes less in a step is not watched
 
@@ -20,8 +20,7 @@ class ControlledWriter(Writer):
 
     def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver) -> None:
         super().__init__(model, systems, driver)
-        branching = [b.system for b in self.commits if getattr(b.system, "margin", "")]
-        self.events = [(bind(s, model, "branch"), bind(s, model, "margin")) for s in branching]
+        self.events = [(bind(s, model, "branch"), bind(s, model, "margin")) for s in self.branching]
         self.kernels |= {b.call: b.function for pair in self.events for b in pair} | {"lowest": _lowest()}
         self._add_columns(b for pair in self.events for b in pair)
 

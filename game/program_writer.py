@@ -46,6 +46,7 @@ class Writer:
         self.particle_laws = [b for b in of_particles if "particles_velocity" not in b.parameters]
         self.particle_rates = [b for b in of_particles if "particles_velocity" in b.parameters]
         self.loads = [b for b in laws if b.each == "loads"]
+        self.branching = [b.system for b in bound if getattr(b.system, "margin", "")]
         self.driver = driver
         self.kernels = {b.call: b.function for b in bound} | _of_energy()
         self.rates = bool(self.rod_rates or self.particle_rates)

@@ -115,11 +115,14 @@ class Law(StepSystem):
     each = "loads": `factor(time, values, first)`; `arrays` gives `<name>_on`, `_force`, `_values`, `_first`.
     account: where the energy goes that the law's force takes from the motion.
     elastic: a law of rods that stores this energy instead, N²L₀/2EA being part of the elastic energy.
+    branch, margin: of a law of rods, like a commit's.
     """
 
     each: ClassVar[str] = "rods"
     account: ClassVar[str] = "work"
     elastic: ClassVar[bool] = False
+    branch: ClassVar[str | Callable[..., Any]] = ""
+    margin: ClassVar[str | Callable[..., Any]] = ""
 
 
 class Commit(StepSystem):

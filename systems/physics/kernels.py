@@ -10,6 +10,7 @@ DIVERGENCE_SHARE = 0.2  # of all energy ever supplied; smaller: may stop good ru
 YIELDING_SHARE = 0.5  # of what yielding dissipated, which is of first order where a step passes the strength
 WOBBLE_SHARE = 10.0  # of all energy supplied; at stable steps of the thesis' scheme at most 8 is possible
 INSTABILITY_SHARE = 2.0  # of all energy ever supplied; at stable steps at most 1 is possible
+AT_TAUT = 1e-9  # elastic strain within which a cable's motion tells whether it is slack
 SMALLEST_ENERGY = 1e-24  # J, below which nothing is told from round-off
 
 
@@ -29,6 +30,37 @@ def elastic_after_yielding(elongation, rods_stiffness, rods_rest_length, rods_pl
 def axial_damper(rate, rods_damping):
     """Force of the axial damper, tension positive: C × rate of elongation."""
     return rods_damping * rate
+
+
+@compiled
+def taut_damper(rate, axial_force, rods_damping, rods_tension_only):
+    """The same, but of a cable none while it is slack, and at most what leaves no compression."""
+    force = rods_damping * rate
+    return max(force, -max(axial_force, 0.0)) * (axial_force > 0.0) if rods_tension_only else force
+
+
+@compiled
+def taut(axial_force, rods_tension_only):
+    """A cable bears no compression."""
+    return max(axial_force, 0.0) if rods_tension_only else axial_force
+
+
+@compiled
+def slack_branch(elongation, rate, rods_rest_length, rods_plastic_strain, rods_tension_only):
+    """1: a cable that is slack or about to be, 0: any other rod."""
+    strain = elongation / rods_rest_length - rods_plastic_strain
+    if rods_tension_only and (strain < -AT_TAUT or (strain <= AT_TAUT and rate <= 0.0)):
+        return 1.0
+    return 0.0
+
+
+@compiled
+def slack_margin(branch, elongation, rods_rest_length, rods_plastic_strain, rods_tension_only):
+    """Elastic strain up to which a cable stays taut, or slack."""
+    if not rods_tension_only:
+        return 1.0
+    strain = elongation / rods_rest_length - rods_plastic_strain
+    return -strain if branch != 0.0 else strain
 
 
 @compiled

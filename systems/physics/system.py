@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from components.rod import has_plastic_strain
+from components.rod import has_cables, has_plastic_strain
 from systems.base import Law
 
 if TYPE_CHECKING:
@@ -47,7 +47,35 @@ class AxialDamping(Law):
     account = "dissipated_damping"
 
     def needs(self, model: Model) -> bool:
-        return bool((model.rods.damping > 0.0).any())
+        return bool((model.rods.damping > 0.0).any()) and not has_cables(model)
+
+
+class Slackness(Law):
+    """Cables do not push: N ≥ 0. Where one goes slack or taut, drivers with events end a step."""
+
+    name = "physics.slackness"
+    kernel = "systems.physics.kernels:taut"
+    branch = "systems.physics.kernels:slack_branch"
+    margin = "systems.physics.kernels:slack_margin"
+    after = ("physics.elasticity", "physics.elasticity_after_yielding")
+    reads = ("rods.tension_only", "rods.rest_length", "rods.plastic_strain")
+    adds = ("rods.axial_force",)
+
+    def needs(self, model: Model) -> bool:
+        return has_cables(model)
+
+
+class AxialDampingOfCables(Law):
+    """Axial damping in a model with cables, whose dampers act while they are taut and never make them push."""
+
+    name = "physics.axial_damping_of_cables"
+    kernel = "systems.physics.kernels:taut_damper"
+    reads = ("rods.damping", "rods.tension_only")
+    adds = ("rods.axial_force",)
+    account = "dissipated_damping"
+
+    def needs(self, model: Model) -> bool:
+        return bool((model.rods.damping > 0.0).any()) and has_cables(model)
 
 
 class Drag(Law):

@@ -35,7 +35,8 @@ class Response:
     """What the rods do at some displacements, having yielded from a given plastic strain; shape (rods,).
 
     elastic_force: what the axial force would be without yielding from there. plastic_strain: after it.
-    axis: unit vectors from first to second end, (rods, 2). flowing: in the course of yielding.
+    axis: unit vectors from first to second end, (rods, 2). flowing: in the course of yielding. slack: cables
+    without force.
     """
 
     elongation: Array
@@ -46,6 +47,12 @@ class Response:
     axial_force: Array
     plastic_strain: Array
     flowing: Flags
+    slack: Flags
+
+    @property
+    def soft(self) -> Flags:
+        """Rods whose force does not change when their length does a little."""
+        return self.flowing | self.slack
 
 
 @dataclass(frozen=True)
@@ -68,6 +75,7 @@ class Structure:
     stiffness: Array
     tension_limit: Array
     compression_limit: Array
+    tension_only: Flags
     fixed: Flags
     unknown: Flags
     body: Rows
@@ -93,6 +101,7 @@ class Structure:
             stiffness=rods.stiffness.copy(),
             tension_limit=rods.tension_limit.copy() if yields else np.full(rods.count, np.inf),
             compression_limit=rods.compression_limit.copy() if yields else np.full(rods.count, np.inf),
+            tension_only=rods.tension_only.copy(),
             fixed=fixed,
             unknown=_held_by_rods(particles.count, ends) & ~fixed & ~_arbitrary(fixed, body),
             body=body,
@@ -169,8 +178,9 @@ class Structure:
         elongation = stretch + self.misfit
         strain = elongation / self.rest_length
         elastic = self.stiffness * (strain - plastic_strain)
-        force = np.clip(elastic, -self.compression_limit, self.tension_limit)
-        flowing = force != elastic
+        slack = self.tension_only & (elastic < 0.0)
+        force = np.where(slack, 0.0, np.clip(elastic, -self.compression_limit, self.tension_limit))
+        flowing = (force != elastic) & ~slack
         return Response(
             elongation=elongation,
             strain=strain,
@@ -180,6 +190,7 @@ class Structure:
             axial_force=force,
             plastic_strain=np.where(flowing, strain - force / self.stiffness, plastic_strain),
             flowing=flowing,
+            slack=slack,
         )
 
     def _stretch(self, change: Array) -> tuple[Array, Array, Array]:
@@ -228,8 +239,8 @@ class Structure:
     # --- tangent -------------------------------------------------------------------------------------
 
     def tangent(self, response: Response, flowing: Flags, *, geometric: bool = True) -> Matrix:
-        """dF/du over the unknowns: Σ EA/L₀ a aᵀ (not of flowing rods) + Σ N/L (1 − a aᵀ)."""
-        along = np.where(flowing, 0.0, self.stiffness / self.rest_length)
+        """dF/du over the unknowns: Σ EA/L₀ a aᵀ (not of flowing or slack rods) + Σ N/L (1 − a aᵀ)."""
+        along = np.where(flowing | response.slack, 0.0, self.stiffness / self.rest_length)
         across = np.zeros_like(along)
         if geometric and not self.linear:
             length = response.length

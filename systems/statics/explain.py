@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from components.model import Model
-from systems.statics.equations import Array, Rows
+from systems.statics.equations import Array, Flags, Rows
 
 NAMED = 5  # at most so many by name, then "and 7 more"
 DIRECTIONS = 3  # at most so many, then "and 7 more"
@@ -29,6 +29,23 @@ def rod_names(model: Model, rows: Rows) -> str:
     if all(name.startswith("rod ") for name in names):
         return listed(names)
     return ("rod " if len(names) == 1 else "rods ") + listed(names)
+
+
+def cables_named(model: Model) -> str:
+    """The subject and verb of a sentence about a model's cables: "Rods AC and BD act"."""
+    rows = np.flatnonzero(model.rods.tension_only)
+    names = rod_names(model, rows)
+    return f"{names[:1].upper()}{names[1:]} {'acts' if len(rows) == 1 else 'act'}"
+
+
+def slack_named(model: Model, slack: Flags) -> str:
+    """A sentence that names the slack cables, to follow another; "" if there are none."""
+    rows = np.flatnonzero(slack)
+    if not len(rows):
+        return ""
+    names = rod_names(model, rows)
+    verb, them = ("is", "it") if len(rows) == 1 else ("are", "them")
+    return f" {names[:1].upper()}{names[1:]} {verb} slack; tension {them} if that is not meant."
 
 
 def describe_motion(model: Model, modes: Array) -> str:

@@ -272,7 +272,7 @@ class Path:
             noise = structure.round_off(displacement) + 4.0 * ROUND_OFF * scale
             if size <= noise or (size >= 0.5 * before and size <= CONVERGED * scale + 64.0 * noise):
                 return self.after(start, displacement, t)
-            switched = flowing is not None and not np.array_equal(response.flowing, flowing)
+            switched = flowing is not None and not np.array_equal(response.soft, flowing)
             if (switched or iteration > PATIENCE) and size >= before and share > SMALLEST_SHARE:
                 share *= HALF  # other rods yield than the step reckoned with: take less of it
                 displacement, t = displacement - share * step, t - share * dt
@@ -281,7 +281,7 @@ class Path:
             if moved is None:
                 return None
             step, dt = structure.spread(moved[0]), moved[1]
-            before, share, flowing = size, 1.0, response.flowing
+            before, share, flowing = size, 1.0, response.soft
             displacement, t = displacement + step, t + dt
             change = structure.gather(displacement - start.displacement)
             if not structure.move(change, start.response.length) <= 2.0 * LARGEST_MOVE:

@@ -18,7 +18,7 @@ from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 from systems.statics.equations import Array, Structure
-from systems.statics.explain import describe_motion
+from systems.statics.explain import cables_named, describe_motion
 from systems.statics.external import external_forces
 from systems.statics.factor import Factor, soft_modes
 
@@ -176,6 +176,11 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     problem = incomputable(model)
     if problem:
         raise ForceMethodError(problem)
+    if model.rods.tension_only.any():
+        raise ForceMethodError(
+            f"{cables_named(model)} in tension only: superposition needs linear behaviour. Let slack cables go"
+            " and have taut ones bear compression too."
+        )
     for unknown in unknowns:
         _check_strains(model, unknown)
     load = external_forces(model).at(1.0)

@@ -10,7 +10,7 @@ import numpy as np
 from components.model import Model
 from systems.statics.equations import Array, Flags
 from systems.statics.events import Event, NoEquilibrium
-from systems.statics.explain import describe_motion, moved, rod_names
+from systems.statics.explain import describe_motion, moved, rod_names, slack_named
 from systems.statics.factor import SOFT, lowest_mode, regular, soft_modes
 from systems.statics.follow import Path, Point, Tangent
 from systems.statics.relax import RUNAWAY, relax
@@ -43,7 +43,14 @@ class Loading:
     mechanism: bool = field(init=False, default=False)
 
     def run(self) -> Point:
-        """The equilibrium at the end of the change. Raises NoEquilibrium; `point` is the last good one."""
+        """The equilibrium at the end of the change. Raises NoEquilibrium; `point` is the last good one.
+
+        Cables slacken and tighten wherever the structure happens to be, so that with them it is relaxed
+        under the whole load instead of being followed.
+        """
+        if self.path.structure.tension_only.any():
+            self._relax(1.0, None)
+            return self.point
         tangent = self._begin()
         increment = np.inf
         for _ in range(MOST_INCREMENTS):
@@ -205,7 +212,7 @@ class Loading:
         if relaxed.outcome == "equilibrium":
             self.point = relaxed.point
         elif relaxed.outcome == "gave up":
-            raise self._lost()
+            raise self._lost(relaxed.point)
         elif not (relaxed.point.plastic_strain != self.point.plastic_strain).any():
             raise self._mechanism(relaxed.point)
         else:
@@ -250,15 +257,15 @@ class Loading:
         message = (
             f"Mechanism: the load moves {describe_motion(self.model, motion[None])} and nothing resists."
             " Add rods or supports there."
-        )
+        ) + slack_named(self.model, away.response.slack)
         self.events.append(Event("mechanism", self.factor(self.point.t), message, motion=_unit(motion)))
         return NoEquilibrium("mechanism", message)
 
-    def _lost(self) -> NoEquilibrium:
+    def _lost(self, point: Point | None = None) -> NoEquilibrium:
         message = (
             f"The equilibrium could not be followed beyond the load factor {self.factor(self.point.t):.6g};"
             " the last one is kept. Run the model through time, or apply the load in other steps."
-        )
+        ) + (slack_named(self.model, point.response.slack) if point is not None else "")
         return NoEquilibrium("limit reached", message)
 
     # --- words -------------------------------------------------------------------------------------

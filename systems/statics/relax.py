@@ -101,7 +101,7 @@ def _implicit_step(path: Path, point: Point, residual: Array, penalty: float) ->
     structure = path.structure
     wanted = STEP_CONVERGED * float(np.abs(residual).max(initial=0.0))
     moved, step = np.zeros(structure.size), np.zeros(structure.size)
-    before, share, flowing = np.inf, 1.0, point.response.flowing
+    before, share, flowing = np.inf, 1.0, point.response.soft
     for _ in range(NEWTON_ITERATIONS):
         displacement = point.displacement + structure.spread(moved)
         response = structure.respond(displacement, point.plastic_strain)
@@ -110,7 +110,7 @@ def _implicit_step(path: Path, point: Point, residual: Array, penalty: float) ->
         size = float(np.abs(pull).max(initial=0.0))
         if size <= max(wanted, structure.round_off(displacement)):
             return displacement
-        if size >= before and share > SMALLEST_SHARE and not np.array_equal(response.flowing, flowing):
+        if size >= before and share > SMALLEST_SHARE and not np.array_equal(response.soft, flowing):
             share *= 0.5  # other rods yield than the step reckoned with: take less of it
             moved = moved - share * step
             continue
@@ -118,7 +118,7 @@ def _implicit_step(path: Path, point: Point, residual: Array, penalty: float) ->
         if not factor.definite:
             return None
         step = factor.solve(pull)
-        before, share, flowing = size, 1.0, response.flowing
+        before, share, flowing = size, 1.0, response.soft
         moved = moved + step
         if not structure.move(moved, point.response.length) <= 4.0 * LARGEST_MOVE:
             return None

@@ -18,7 +18,7 @@ from components.model import Model
 from systems.statics.bodies import loose_bodies, loose_event
 from systems.statics.equations import ROUND_OFF, Array, Flags, Structure
 from systems.statics.events import Event, NoEquilibrium
-from systems.statics.explain import describe_motion
+from systems.statics.explain import describe_motion, slack_named
 from systems.statics.external import external_forces
 from systems.statics.factor import lowest_mode
 from systems.statics.follow import Path, Point
@@ -211,7 +211,7 @@ class _Settling:
             message = (
                 f"Nearly a mechanism: moving {describe_motion(self.model, motion[None])} meets only"
                 f" {max(share, 0.0):.1g} of the rods' stiffness, so that about {digits} digits are certain."
-            )
+            ) + slack_named(self.model, self.point.response.slack)
             largest = np.hypot(*motion.T).max()
             self.events.append(Event("note", factor, message, motion=motion / largest))
 

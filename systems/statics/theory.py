@@ -12,7 +12,7 @@ from components.model import Model
 from systems.statics.bodies import loose_bodies, loose_event
 from systems.statics.equations import ROUND_OFF, Array, Matrix, Response, Structure
 from systems.statics.events import NoEquilibrium
-from systems.statics.explain import describe_motion
+from systems.statics.explain import cables_named, describe_motion
 from systems.statics.external import external_forces
 from systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes
 from systems.statics.settle import Start
@@ -61,6 +61,12 @@ def _internal(structure: Structure, response: Response) -> Array:
 
 def _deflection(model: Model, structure: Structure, load: Array) -> Array:
     """Displacements (n, 2) of the free directions under a load (n, 2). Raises NoEquilibrium."""
+    if structure.tension_only.any():
+        message = (
+            f"{cables_named(model)} in tension only, which is not linear; settle the model,"
+            " or let slack cables go and have taut ones bear compression too."
+        )
+        raise NoEquilibrium("limit reached", message)
     matrix, right = _stiffness(structure), structure.gather(load)
     factor = regular(matrix, structure.weight)
     solution = factor.solve(right)
