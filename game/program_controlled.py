@@ -10,7 +10,7 @@ from game.program_binding import Bound, bind
 from game.program_writer import Writer
 from systems.base import ACCOUNTS, Driver, StepSystem
 
-MARKS = 4  # per rod and system with branches: branch, margin and its slope at the start of the step, whether it is watched
+MARKS = 4  # per rod and branching system: branch, margin, its slope as the step starts, whether it is watched
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
 _STEADY = 1e-8  # a margin that changes less in a step is not watched
 
