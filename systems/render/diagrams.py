@@ -9,6 +9,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from components.load import CONSTANT
+from components.model import Model
 from components.tags import DiagramShown, Selected
 from systems.render.labels import FAINT, Label, half_size
 from systems.render.marks import Fills, Points, Stamps, Strokes
@@ -23,6 +25,7 @@ Places = list[tuple[float, float]]
 SMALLEST_FORCE = 1e-4  # kN; less is drawn as none
 _FEW_VALUES = 24  # up to which each carries its unit and keeps clear of rods
 _STEPS = (8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0)
+_TOO_FLAT, _ENLARGED = 0.05, 0.3  # of the room: loads (one point per kN) below which, up to which, to enlarge
 _SHORTEST_WITH_DIAGRAM = 6.0  # points
 _SHORTEST_WITH_VALUE = 24.0  # points; the values of shorter rods would only hide the structure
 _MANY_ARROWS = 200  # up to which all are drawn, though they may lie over each other
@@ -36,15 +39,28 @@ def written(force: float, decimals: int = 2) -> str:
 
 
 def scale_step(largest: float, scale: float, room: float) -> float:
-    """The largest of 1, 0.8, 0.6, 0.5, 0.4, 0.3, 0.2, 0.15, 0.1, … with `largest` × `scale` × it ≤ `room`.
+    """The largest of …, 2, 1.5, 1, 0.8, 0.6, 0.5, 0.4, 0.3, 0.2, 0.15, … with `largest` × `scale` × it ≤ `room`.
 
-    Shrinking all diagrams alike keeps them comparable; steps keep their scale steady while forces change.
+    Changing all diagrams alike keeps them comparable; steps keep their scale steady while forces change.
     """
-    if not largest * scale > room:
-        return 1.0
     decade = 10.0 ** math.floor(math.log10(room / (largest * scale)))
     enough = room * (1.0 + 1e-9)  # lest round-off in the logarithm leave no step
     return next(decade * step for step in _STEPS if largest * scale * decade * step <= enough)
+
+
+def diagram_factor(largest: float, loads: float, scale: float, room: float) -> float:
+    """What all diagrams are multiplied with, so that they can be seen and leave the structure readable.
+
+    largest: the largest axial force, kN; loads: the sum of what acts on the model, kN; scale: points per kN as
+    the person chose; room: points. 1 where that will do. The loads decide whether to enlarge, since they stand
+    still while the forces that they cause vibrate.
+    """
+    factor = 1.0
+    if SMALLEST_FORCE < loads < _TOO_FLAT * room:
+        factor = scale_step(loads, 1.0, _ENLARGED * room)
+    if largest * scale * factor > room:
+        factor = scale_step(largest, scale, room)
+    return factor
 
 
 def draw_rod_diagrams(sheet: Sheet) -> None:
@@ -60,11 +76,12 @@ def draw_rod_diagrams(sheet: Sheet) -> None:
         sheet.pushed = rows[force[rows] < -SMALLEST_FORCE]
         sheet.notes.append("zoom in to see force diagrams")
         return
-    scale = sheet.model.settings.diagram_scale * sheet.unit
-    factor = scale_step(float(np.abs(force).max()), scale, _room(sheet, start, end))
+    room = _room(sheet, start, end) / sheet.unit
+    largest = float(np.abs(force).max())
+    factor = diagram_factor(largest, _loads(sheet.model), sheet.model.settings.diagram_scale, room)
     if factor != 1.0:
         sheet.notes.append(f"diagrams ×{factor:g}")
-    height = np.abs(force[rows]) * scale * factor
+    height = np.abs(force[rows]) * (sheet.model.settings.diagram_scale * factor * sheet.unit)
     normal = _outward_normals(sheet, rows, start, end)
     values = force[rows]
     corners = np.empty((len(rows), 4, 2))
@@ -87,6 +104,13 @@ def _shown_rods(sheet: Sheet) -> tuple[NDArray[np.float64], Rows, Points, Points
     rows = sheet.rods[shown]
     force = np.nan_to_num(sheet.model.rods.axial_force) if len(rows) else np.empty(0)
     return force, rows, sheet.start[shown], sheet.end[shown]
+
+
+def _loads(model: Model) -> float:
+    """The sum of all external forces (kN), of varying ones the largest that they reach."""
+    constant, loads = model.particles.constant_force, model.loads
+    varying = [row for row, history in enumerate(loads.history) if history["kind"] != CONSTANT["kind"]]
+    return float(np.hypot(*constant.T).sum() + np.hypot(*loads.force[varying].T).sum())
 
 
 def _room(sheet: Sheet, start: Points, end: Points) -> float:

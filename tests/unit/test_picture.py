@@ -20,7 +20,7 @@ from components.tags import DiagramShown, Hovered, Selected
 from components.view import Status, View
 from components.world import Derivation
 from systems.render.clip import clip_segments
-from systems.render.diagrams import scale_step, written
+from systems.render.diagrams import diagram_factor, scale_step, written
 from systems.render.labels import half_size
 from systems.render.marks import Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
 from systems.render.overlays import written_length, written_speed, written_time
@@ -253,7 +253,7 @@ def test_diagram_heights_are_proportional_to_forces_and_shrink_together() -> Non
         (blue,) = marks_of(picture, Fills, LIGHT.compression)
         corners = np.concatenate([blue.corners, red.corners])
         heights = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
-        factor = scale_step(198.02746, scale, 0.15 * 600)
+        factor = diagram_factor(198.02746, 0.0, scale, 0.15 * 600)
         np.testing.assert_allclose(heights, np.array([28.34277, 198.02746, 20.0679]) * scale * factor)
         note = [text for text in picture.texts if "diagrams ×" in text]
         assert bool(note) == (factor != 1.0)
@@ -263,8 +263,30 @@ def test_diagram_heights_are_proportional_to_forces_and_shrink_together() -> Non
 @given(st.floats(1e-3, 1e9), st.floats(1e-3, 1e3), st.floats(1.0, 500.0))
 def test_scale_step_fits_and_wastes_no_more_than_a_step(largest: float, scale: float, room: float) -> None:
     factor = scale_step(largest, scale, room)
+    assert room / 2.001 < largest * scale * factor <= room * (1 + 1e-9)
+
+
+@given(st.floats(0.0, 1e9), st.floats(0.0, 1e9), st.floats(1e-3, 1e3), st.floats(10.0, 500.0))
+def test_diagrams_always_fit_and_keep_their_scale_where_it_will_do(
+    largest: float, loads: float, scale: float, room: float
+) -> None:
+    factor = diagram_factor(largest, loads, scale, room)
     assert largest * scale * factor <= room * (1 + 1e-9)
-    assert factor == 1.0 or largest * scale * factor > room / 2.001
+    if largest * scale <= room and not 1e-4 < loads < 0.05 * room:
+        assert factor == 1.0
+    if factor > 1.0:
+        assert loads * factor <= 0.3 * room * (1 + 1e-9)
+
+
+def test_diagrams_of_small_loads_are_enlarged_and_stay_so_while_the_forces_vibrate() -> None:
+    model = triangle()
+    fill(model, "particles.constant_force", [(0, 0), (0.12, -0.16), (0, 0)])
+    notes = []
+    for share in (1e-9, 0.5e-3, 1e-3):
+        fill(model, "rods.axial_force", np.array([-28.34277, -198.02746, 20.0679]) * share)
+        notes += [text for text in picture_of(model, all_diagrams=True).texts if "diagrams ×" in text]
+    assert len(notes) == 3
+    assert len(set(notes)) == 1
 
 
 def test_diagrams_stand_outside_of_the_structure() -> None:
