@@ -26,18 +26,14 @@ from game.program import Program
 from game.program_binding import ProgramError
 from game.program_writer import REVIEW_INTERVAL
 from game.schedule import Schedule
+from game.step_size import automatic_step, first_step, is_outgrown, step_limit
 from systems.base import Driver, StepSystem, StopReason
 from systems.collision.system import Collision, FreeFlight
-from systems.physics.automatic import SMALL, choose
+from systems.physics.automatic import choose
 from systems.physics.pace import natural_pace
 from systems.physics.spectrum import Spectrum, spectrum
 
-SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
-ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square
 SHOWN = 1.0 / 120.0  # s shown, at the natural pace, that one step may last
-FIRST_SHARE = 0.1  # of 1/ω, the step at which error control begins
-FREE_STEP = 1e-3  # s, where nothing limits the step
-DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
 MOST_RETRIES = 6  # times that an automatic step is halved before a run is given up
 DEFAULT_DRIVER = "velocity_verlet"
 FREE_FLIGHT = FreeFlight()
@@ -354,19 +350,14 @@ class Simulation:
         for name in ("step_limit", "step_error", "largest_displacement", "largest_speed"):
             model.writable(f"clock.{name}")[0] = 0.0
         if chosen is None and self.driver.estimates_error:
-            fastest = max(found.frequency, 2.0 * found.decay)
             self._limit_step()
-            first = FIRST_SHARE / fastest if fastest > 0.0 else FREE_STEP
-            self._begin_step_size(_rounded_down(min(first, model.clock.step_limit or math.inf)))
+            self._begin_step_size(first_step(found.frequency, found.decay, model.clock.step_limit))
         else:
             self._begin_step_size(chosen if chosen is not None else self._automatic_step(found.frequency))
 
     def _limit_step(self) -> None:
         """Where the error is controlled, stability and the eye limit the step."""
-        limit = SAFETY * self.stable_step
-        if self.smooth:
-            limit = min(limit, SHOWN * natural_pace(self.model))
-        self.model.writable("clock.step_limit")[0] = _rounded_down(limit) if limit < math.inf else 0.0
+        self.model.writable("clock.step_limit")[0] = step_limit(self.stable_step, self._longest_shown())
 
     def _review_step(self) -> None:
         """Change an automatic step size if the stable step changed much."""
@@ -377,17 +368,16 @@ class Simulation:
             self._limit_step()
             return
         wanted = self._automatic_step(found.frequency)
-        if not 0.5 * wanted <= self.model.clock.step_size <= min(1.5 * wanted, 0.95 * self.stable_step):
+        if is_outgrown(self.model.clock.step_size, wanted, self.stable_step):
             self._begin_step_size(wanted)
 
     def _automatic_step(self, frequency: float) -> float:
-        if self.stable_step == 0.0:
-            return _rounded_down(min(DOUBTFUL_STEP / frequency, FREE_STEP))
-        share = ACCURATE if self.model.rods.count <= SMALL else SAFETY
-        size = min(share * self.stable_step, FREE_STEP)
-        if self.smooth and self.driver is FREE_FLIGHT:
-            size = min(size, SHOWN * natural_pace(self.model))
-        return _rounded_down(size)
+        shown = self._longest_shown() if self.driver is FREE_FLIGHT else math.inf
+        return automatic_step(self.stable_step, frequency, self.model.rods.count, shown)
+
+    def _longest_shown(self) -> float:
+        """What one step may last (s) so that a person sees it."""
+        return SHOWN * natural_pace(self.model) if self.smooth else math.inf
 
     def _begin_step_size(self, size: float) -> None:
         """From now on steps have this size; the guard against divergence compares with this moment."""
@@ -571,9 +561,3 @@ class Simulation:
         self.observe()
         unbalanced, largest = self.program.measures[4:6].tolist()
         return float(unbalanced / largest) if largest > 0.0 else 0.0
-
-
-def _rounded_down(size: float) -> float:
-    """To three significant digits, so that the last bits of an eigenvalue do not matter."""
-    digits = 2 - math.floor(math.log10(size))
-    return math.floor(size * 10.0**digits) / 10.0**digits

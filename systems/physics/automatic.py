@@ -24,54 +24,61 @@ def choose(model: Model) -> str:
     """
     if model.rods.count > SMALL or model.settings.time_step is not None:
         return "velocity_verlet"
-    return "esdirk4" if stiffness(model) > STIFF else "dop853"
+    return suited_to(float(stiffnesses(model, np.array([model.environment.drag]))[0]))
 
 
-def stiffness(model: Model) -> float:
-    """Slowest time scale × fastest rate, in the original geometry; 0 if nothing is stiff."""
-    rods = model.rods
+def suited_to(stiffness: float) -> str:
+    """The integrator with error control for a small model of this stiffness."""
+    return "esdirk4" if stiffness > STIFF else "dop853"
+
+
+def stiffnesses(model: Model, drag: Array) -> Array:
+    """Slowest time scale × fastest rate of each of the equal disjoint blocks that a model consists of.
+
+    In the original geometry; 0 if nothing is stiff. The blocks are constrained alike. drag: the environment's
+    (1/s), one for each block.
+    """
+    rods, blocks = model.rods, len(drag)
     if rods.count == 0 or not (model.particles.mobility > 0.0).any():
-        return 0.0
-    matrix = _scaled_stiffness(model)
-    eigenvalues = np.asarray(np.linalg.eigvalsh(matrix), dtype=np.float64)
-    if not eigenvalues[-1] > 0.0:
-        return 0.0
-    dampers = RodOperator(model, rods.damping).gershgorin() + model.environment.drag
-    fastest = max(math.sqrt(float(eigenvalues[-1])), dampers)
-    return fastest * _slowest(model, eigenvalues)
+        return np.zeros(blocks)
+    eigenvalues = np.asarray(np.linalg.eigvalsh(_scaled_stiffness(model, blocks)), dtype=np.float64)
+    highest = np.maximum(eigenvalues[:, -1], 0.0)
+    dampers = RodOperator(model, rods.damping).gershgorin(blocks) + drag
+    fastest = np.maximum(np.sqrt(highest), dampers)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found: Array = np.where(highest > 0.0, fastest * _slowest(model, eigenvalues, drag), 0.0)
+    return found
 
 
-def _slowest(model: Model, eigenvalues: Array) -> float:
+def _slowest(model: Model, eigenvalues: Array, drag: Array) -> Array:
     """The slowest of the periods and creep times of modes, swinging of mechanisms, and the loading (s)."""
-    rods = model.rods
-    has_own = eigenvalues > _RIGID * eigenvalues[-1]
-    lowest = float(eigenvalues[has_own][0])
-    if not has_own.all():
-        pull = np.hypot(*(model.particles.constant_force * model.particles.mobility).T).max()
-        swinging = float(pull / rods.rest_length.max())
-        lowest = min(lowest, swinging) if swinging > 0.0 else lowest
-    creep = float((rods.damping * rods.rest_length / rods.stiffness).max())
+    rods, blocks = model.rods, len(drag)
+    has_own = eigenvalues > _RIGID * eigenvalues[:, -1:]
+    lowest = np.where(has_own, eigenvalues, math.inf).min(axis=1)
+    pull = np.hypot(*(model.particles.constant_force * model.particles.mobility).T).reshape(blocks, -1)
+    swinging = pull.max(axis=1) / rods.rest_length.reshape(blocks, -1).max(axis=1)
+    lowest = np.where(has_own.all(axis=1) | (swinging == 0.0), lowest, np.minimum(lowest, swinging))
+    creep = (rods.damping * rods.rest_length / rods.stiffness).reshape(blocks, -1).max(axis=1)
     end = loads_end(model)
-    return max(
-        2.0 * math.pi / math.sqrt(lowest),
-        creep,
-        model.environment.drag / lowest,
-        end if end < math.inf else 0.0,
-    )
+    times = [2.0 * math.pi / np.sqrt(lowest), creep, drag / lowest]
+    slowest: Array = np.maximum.reduce([*times, np.full(blocks, end if end < math.inf else 0.0)])
+    return slowest
 
 
-def _scaled_stiffness(model: Model) -> Array:
-    """M^-½ K M^-½ of the free directions in the original geometry (1/s²)."""
+def _scaled_stiffness(model: Model, blocks: int) -> Array:
+    """M^-½ K M^-½ of the free directions of each block in the original geometry (1/s²)."""
     particles, rods = model.particles, model.rods
-    ends = rods.between.astype(np.intp)
+    of_block, in_block = particles.count // blocks, rods.count // blocks
+    ends = rods.between.astype(np.intp) % of_block
     length = np.where(rods.original_length > 0.0, rods.original_length, 1.0)
     axis = rods.difference / length[:, None]
     rows = np.arange(rods.count)
-    compatibility = np.zeros((rods.count, particles.count, 2))
+    compatibility = np.zeros((rods.count, of_block, 2))
     compatibility[rows, ends[:, 1]] = axis
     compatibility[rows, ends[:, 0]] = -axis
-    compatibility *= np.sqrt(particles.mobility)
-    free = particles.mobility.ravel() > 0.0
-    scaled = compatibility.reshape(rods.count, -1)[:, free]
-    matrix: Array = scaled.T @ (scaled * (rods.stiffness / rods.rest_length)[:, None])
-    return matrix
+    root = np.sqrt(particles.mobility).reshape(blocks, 1, 2 * of_block)
+    scaled = compatibility.reshape(blocks, in_block, -1) * root
+    scaled = np.ascontiguousarray(scaled[:, :, particles.mobility[:of_block].ravel() > 0.0])
+    stiffness = (rods.stiffness / rods.rest_length).reshape(blocks, in_block, 1)
+    matrices: Array = scaled.transpose(0, 2, 1) @ (scaled * stiffness)
+    return matrices

@@ -55,54 +55,84 @@ class RodOperator:
             product[:, d] -= np.bincount(self._first, force, self.rows)
         return self._root * product
 
-    def gershgorin(self) -> float:
-        """An upper bound of the largest eigenvalue: the largest absolute row sum."""
+    def gershgorin(self, blocks: int = 1) -> Array:
+        """Upper bounds of the largest eigenvalues of so many equal blocks of rows: largest absolute row sums."""
         stiffness = np.maximum(self._along, self._across if self._across is not None else 0.0)
         worst = self._root.max(axis=1)
         reach = stiffness * (worst[self._first] + worst[self._second])
         sums = np.bincount(self._first, reach, self.rows) + np.bincount(self._second, reach, self.rows)
-        return float((worst * sums).max(initial=0.0))
+        bounds: Array = (worst * sums).reshape(blocks, -1).max(axis=1, initial=0.0)
+        return bounds
 
 
-def largest_eigenvalue(operator: Callable[[Array], Array], rows: int, bound: float) -> float:
-    """An upper bound of the largest eigenvalue of a symmetric operator by Lanczos' method.
+def largest_eigenvalues(operator: Callable[[Array], Array], rows: int, bounds: Array) -> Array:
+    """Upper bounds of the largest eigenvalues of equal blocks of a symmetric operator by Lanczos' method.
 
-    The Ritz value plus its residual, at most `bound`. The start vector is fixed, sums are in a fixed
-    order, so that the result (and with it the step size) is the same on every run. Its entries, k²φ mod 1,
-    differ differently from row to row: it must not be blind to a direction, as kφ is to that of (1, −1).
+    rows: of each block. bounds: what no result exceeds, one for each block. The result is the Ritz value
+    plus its residual. The start vector is fixed, sums are in a fixed order, so that the result (and with it
+    the step size) is the same on every run, and for a block alone. Its entries, k²φ mod 1, differ differently
+    from row to row: it must not be blind to a direction, as kφ is to that of (1, −1).
     """
+    blocks = len(bounds)
     start = np.modf(np.arange(1, 2 * rows + 1) ** 2 * 0.6180339887498949)[0] - 0.5
-    vector = start.reshape(rows, 2) / math.sqrt(float((start * start).sum()))
+    vector = np.tile(start / math.sqrt(float((start * start).sum())), (blocks, 1))
     basis: list[Array] = []
-    diagonal: list[float] = []
-    beside: list[float] = []
+    diagonal: list[Array] = []
+    beside: list[Array] = []
+    sizes = np.zeros(blocks, dtype=np.int64)
+    running = np.ones(blocks, dtype=bool)
     for _ in range(min(LANCZOS_STEPS, 2 * rows)):
         basis.append(vector)
-        product = operator(vector)
-        diagonal.append(float((product * vector).sum()))
+        product = operator(vector.reshape(-1, 2)).reshape(blocks, -1)
+        diagonal.append((product * vector).sum(axis=1))
         for known in basis:
-            product -= (product * known).sum() * known
-        norm = math.sqrt(float((product * product).sum()))
+            product -= (product * known).sum(axis=1)[:, None] * known
+        norm = np.sqrt((product * product).sum(axis=1))
         beside.append(norm)
-        if norm <= 1e-13 * bound:
+        sizes += running
+        running &= norm > 1e-13 * bounds
+        if not running.any():
             break
-        vector = product / norm
-    size = len(diagonal)
-    tridiagonal = np.diag(diagonal) + np.diag(beside[: size - 1], 1) + np.diag(beside[: size - 1], -1)
+        vector = product / np.where(running, norm, math.inf)[:, None]
+    found = np.empty(blocks)
+    for size in np.unique(sizes).tolist():
+        at = sizes == size
+        found[at] = _ritz_bounds(np.array(diagonal[:size])[:, at].T, np.array(beside[:size])[:, at].T)
+    return np.minimum(found, bounds)
+
+
+def _ritz_bounds(diagonal: Array, beside: Array) -> Array:
+    """Largest Ritz values plus their residuals of tridiagonal matrices, given by rows."""
+    size = diagonal.shape[1]
+    tridiagonal = np.zeros((len(diagonal), size, size))
+    here = np.arange(size)
+    tridiagonal[:, here, here] = diagonal
+    tridiagonal[:, here[1:], here[:-1]] = tridiagonal[:, here[:-1], here[1:]] = beside[:, :-1]
     values, vectors = np.linalg.eigh(tridiagonal)
-    return min(float(values[-1] + abs(beside[-1] * vectors[-1, -1])), bound)
+    bounds: Array = values[:, -1] + np.abs(beside[:, -1] * vectors[:, -1, -1])
+    return bounds
 
 
 def spectrum(model: Model, axial_force: Array) -> Spectrum:
     """The highest frequency in the present state under these axial forces (kN, shape (rods,))."""
-    rods = model.rods
-    decay = 0.5 * model.environment.drag
+    frequency, decay = spectra(model, axial_force, np.array([model.environment.drag]))
+    return Spectrum(float(frequency[0]), float(decay[0]))
+
+
+def spectra(model: Model, axial_force: Array, drag: Array) -> tuple[Array, Array]:
+    """Frequency and decay, as in Spectrum, of each of the equal disjoint blocks that a model consists of.
+
+    drag: the environment's (1/s), one for each block.
+    """
+    rods, blocks = model.rods, len(drag)
+    decay = 0.5 * drag
     if rods.count == 0 or not (model.particles.mobility > 0.0).any():
-        return Spectrum(0.0, decay)
+        return np.zeros(blocks), decay
     across = np.maximum(axial_force, 0.0) / rods.rest_length
     stiffness = RodOperator(model, rods.stiffness / rods.rest_length, across)
-    frequency = math.sqrt(largest_eigenvalue(stiffness, stiffness.rows, stiffness.gershgorin()))
+    rows = stiffness.rows // blocks
+    frequency = np.sqrt(largest_eigenvalues(stiffness, rows, stiffness.gershgorin(blocks)))
     if (rods.damping > 0.0).any():
         dampers = RodOperator(model, rods.damping)
-        decay += 0.5 * largest_eigenvalue(dampers, dampers.rows, dampers.gershgorin())
-    return Spectrum(frequency, decay)
+        decay = decay + 0.5 * largest_eigenvalues(dampers, rows, dampers.gershgorin(blocks))
+    return frequency, decay
