@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
+WIDER = 1.0 + 1e-9  # than it need be is the search by trees, whose round-off loses no pair then
+
 
 def near_pairs(place: Floats, reach: Floats) -> Rows:
     """Pairs i < j whose centres are at most reach[i] + reach[j] apart, in ascending order, shape (k, 2).
@@ -20,16 +22,17 @@ def near_pairs(place: Floats, reach: Floats) -> Rows:
     sizes = np.frexp(reach)[1]
     classes = np.unique(sizes)
     trees = {size: (rows := np.flatnonzero(sizes == size), cKDTree(place[rows])) for size in classes}
-    found = []
+    found = [np.zeros((0, 2), dtype=np.int64)]
     for size in classes:
         rows, tree = trees[size]
-        for other in classes[classes <= size]:
-            others, finer = trees[other]
-            within = reach[rows].max() + reach[others].max()
+        found.append(rows[tree.query_pairs(WIDER * 2.0 * reach[rows].max(), output_type="ndarray")])
+        for smaller in classes[classes < size]:
+            others, finer = trees[smaller]
+            within = WIDER * (reach[rows].max() + reach[others].max())
             pairs = tree.sparse_distance_matrix(finer, within, output_type="coo_matrix")
-            found.append(np.column_stack([rows[pairs.row], others[pairs.col]]))
-    pairs = np.concatenate(found) if found else np.zeros((0, 2), dtype=np.int64)
-    pairs = np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1).astype(np.int64)
-    apart = place[pairs[:, 1]] - place[pairs[:, 0]]
-    pairs = pairs[np.hypot(apart[:, 0], apart[:, 1]) <= reach[pairs[:, 0]] + reach[pairs[:, 1]]]
-    return np.unique(pairs, axis=0)
+            found.append(np.sort(np.column_stack([rows[pairs.row], others[pairs.col]]), axis=1))
+    first, second = np.concatenate(found).T
+    apart = place[second] - place[first]
+    near = np.hypot(apart[:, 0], apart[:, 1]) <= reach[first] + reach[second]
+    keys = np.sort((first * len(place) + second)[near])
+    return np.column_stack(np.divmod(keys, len(place)))

@@ -35,7 +35,8 @@ class Vicinity:
             return
         self._revision = revision
         particles, ends = self.model.particles, np.sort(self.model.rods.between.astype(np.int64), axis=1)
-        self._joined = np.sort(ends[:, 0] * particles.count + ends[:, 1])
+        joined = np.sort(ends[:, 0] * particles.count + ends[:, 1])
+        self._joined = np.append(joined, -1)  # what is looked up and would come last meets no pair
         self._node = np.zeros(particles.count, dtype=bool)
         self._node[ends.ravel()] = True
         self._moves: NDArray[np.bool_] = np.any(particles.mobility > 0.0, axis=1)
@@ -58,7 +59,8 @@ class Vicinity:
         near = near_pairs(self.position + displacement, self.radius + margin)
         may = np.logical_or(self._moves[near[:, 0]], self._moves[near[:, 1]])
         keys = near[:, 0] * len(self.position) + near[:, 1]
-        self.pairs: Rows = near[np.flatnonzero(may & ~np.isin(keys, self._joined))]
+        joined = self._joined[np.searchsorted(self._joined[:-1], keys)] == keys
+        self.pairs: Rows = near[np.flatnonzero(may & ~joined)]
         self._margin = margin
         self._listed = displacement.copy()
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
 from game import Session
 from systems.collision import vicinity
+from systems.collision.near import near_pairs
 from tests.benchmarks.models import lattice
 
 
@@ -24,3 +26,22 @@ def test_a_step_looks_up_nothing_and_an_edit_does(monkeypatch: pytest.MonkeyPatc
     session.particles[3].radius = 0.06
     session.step()
     assert looked
+
+
+@pytest.mark.parametrize("sizes", [(0.05,), (0.05, 0.3), (0.001, 0.02, 0.02, 0.4)])
+def test_all_pairs_within_reach_are_found_once_and_in_order(sizes: tuple[float, ...]) -> None:
+    random = np.random.default_rng(len(sizes))
+    place, reach = random.uniform(0.0, 2.0, (60, 2)), random.choice(sizes, 60)
+    place[:2], reach[:2] = [(0.1, 0.1), (0.4, 0.5)], 0.25  # these just touch
+    pairs = [
+        (i, j)
+        for i in range(60)
+        for j in range(i + 1, 60)
+        if np.hypot(*(place[j] - place[i])) <= reach[i] + reach[j]
+    ]
+    assert (0, 1) in pairs
+    assert near_pairs(place, reach).tolist() == [list(pair) for pair in pairs]
+
+
+def test_no_discs_are_near_no_discs() -> None:
+    assert near_pairs(np.zeros((0, 2)), np.zeros(0)).shape == (0, 2)
