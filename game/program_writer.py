@@ -94,7 +94,7 @@ class Writer:
             *self._for_driver(),
             self._measure(),
             self._observe(),
-            *(self._pasted(part, "compiled") for part in self.driver.parts),
+            *(self._pasted(part, "inlined") for part in self.driver.parts),
             self._pasted(f"{self.driver.kernel}=integrate", "compiled"),
             self._pasted(f"{self.driver.entry}=advance", "entry"),
             *([self._commit()] if self.commits else []),
@@ -121,6 +121,7 @@ class Writer:
             from numba import njit
 
             compiled = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+            inlined = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True)
             entry = njit(error_model="numpy", cache=True)
             RATES = {self.rates}
             POWERS = {self.powers}

@@ -9,9 +9,18 @@ from systems.base import Driver
 from systems.physics.tableaus import CLASSICAL, DORMAND_PRINCE_8, KENNEDY_CARPENTER_4, Tableau
 
 _RUNGE_KUTTA = "systems.physics.runge_kutta"
-_FIXED = ("systems.physics.integrators:steps_to_check",)
 _IMPLICIT = "systems.physics.implicit"
+_INTEGRATORS = "systems.physics.integrators"
 
+_CHECKS = (f"{_INTEGRATORS}:is_check_due", f"{_INTEGRATORS}:steps_to_check")
+_PLAIN = (*_CHECKS, f"{_INTEGRATORS}:enter_loads", f"{_INTEGRATORS}:enter_powers")
+_CONTROLLED = (
+    *_CHECKS,
+    *(
+        f"{_RUNGE_KUTTA}:{part}"
+        for part in ("extrapolate", "accelerate", "combine", "begin_search", "narrow", "follow")
+    ),
+)
 
 _CONTROL = ("TIME", "STEP", "ERROR", "LARGEST_X", "LARGEST_V", "TRIAL_X", "TRIAL_V")
 _SEARCH = ("NEAR", "FAR", "NEAR_GAP", "FAR_GAP", "MOVED", "ENDED", "LENGTH")
@@ -33,8 +42,8 @@ class VelocityVerlet(Integrator):
     """
 
     name = "physics.velocity_verlet"
-    parts = _FIXED
-    kernel = "systems.physics.integrators:velocity_verlet"
+    parts = _PLAIN
+    kernel = f"{_INTEGRATORS}:velocity_verlet"
     order: ClassVar[int] = 2
     guard = 1.0
 
@@ -52,8 +61,8 @@ class SemiImplicitEuler(Integrator):
 
     name = "physics.semi_implicit_euler"
     guard = 2.0
-    parts = _FIXED
-    kernel = "systems.physics.integrators:semi_implicit_euler"
+    parts = _PLAIN
+    kernel = f"{_INTEGRATORS}:semi_implicit_euler"
     order: ClassVar[int] = 1
 
     @staticmethod
@@ -69,8 +78,8 @@ class ThesisTaylor(Integrator):
     """
 
     name = "physics.taylor2"
-    parts = _FIXED
-    kernel = "systems.physics.integrators:taylor2"
+    parts = _PLAIN
+    kernel = f"{_INTEGRATORS}:taylor2"
     order: ClassVar[int] = 1
 
     @staticmethod
@@ -122,12 +131,7 @@ class RungeKutta4(Integrator):
     kernel = f"{_RUNGE_KUTTA}:controlled"
     entry = f"{_RUNGE_KUTTA}:advance"
     parts = (
-        *_FIXED,
-        f"{_RUNGE_KUTTA}:accelerate",
-        f"{_RUNGE_KUTTA}:combine",
-        f"{_RUNGE_KUTTA}:begin_search",
-        f"{_RUNGE_KUTTA}:narrow",
-        f"{_RUNGE_KUTTA}:follow",
+        *_CONTROLLED,
         f"{_RUNGE_KUTTA}:explicit_stages=stages",
         f"{_RUNGE_KUTTA}:attempt",
     )
@@ -172,12 +176,7 @@ class ImplicitRungeKutta4(Integrator):
     kernel = f"{_RUNGE_KUTTA}:controlled"
     entry = f"{_RUNGE_KUTTA}:advance"
     parts = (
-        *_FIXED,
-        f"{_RUNGE_KUTTA}:accelerate",
-        f"{_RUNGE_KUTTA}:combine",
-        f"{_RUNGE_KUTTA}:begin_search",
-        f"{_RUNGE_KUTTA}:narrow",
-        f"{_RUNGE_KUTTA}:follow",
+        *_CONTROLLED,
         f"{_IMPLICIT}:relax",
         f"{_IMPLICIT}:precondition",
         f"{_IMPLICIT}:multiply",

@@ -40,16 +40,9 @@ def implicit_stages(
     by_x = by_v * by_v
     for s in range(1, STAGES):
         acceleration = work[s]
+        extrapolate(s, dt, displacement, velocity, work, known_x, known_v)
         for i in range(displacement.shape[0]):
             for d in range(2):
-                p = 0.0
-                q = 0.0
-                for j in range(s):
-                    p += STAGE_V[s, j] * work[j, i, d]
-                    q += STAGE_X[s, j] * work[j, i, d]
-                v = velocity[i, d]
-                known_v[i, d] = v + dt * p
-                known_x[i, d] = displacement[i, d] + dt * (NODES[s] * v + dt * q)
                 acceleration[i, d] = work[s - 1, i, d]
         before = math.inf
         for iteration in range(MOST_CORRECTIONS + 1):

@@ -63,8 +63,7 @@ def velocity_verlet(
                 predicted[i, 0] = vx + dt * ax
                 predicted[i, 1] = vy + dt * ay
         if LOADS:
-            before = load_power(origin + (first + step - 1) * dt, velocity, *columns)
-            account[0] += 500.0 * dt * (before + load_power(time, velocity, *columns))
+            enter_loads(origin + (first + step - 1) * dt, time, dt, velocity, account, *columns)
         accept(time, dt, displacement, predicted, force, resisting, direction, account, *columns)
         for i in range(displacement.shape[0]):
             ax = force[i, 0]
@@ -75,10 +74,9 @@ def velocity_verlet(
             velocity[i, 0] += half * (ax * particles_mobility[i, 0])
             velocity[i, 1] += half * (ay * particles_mobility[i, 1])
         if POWERS:
-            resist(time, dt, displacement, velocity, resisting, direction, gained, *columns)
-            for k in range(power.shape[0]):
-                account[k] += 500.0 * dt * (power[k] + gained[k])
-                power[k] = gained[k]
+            enter_powers(
+                time, dt, displacement, velocity, resisting, direction, power, gained, account, *columns
+            )
 
 
 def taylor2(
@@ -114,8 +112,7 @@ def taylor2(
             displacement[i, 0] += dt * velocity[i, 0]
             displacement[i, 1] += dt * velocity[i, 1]
         if LOADS:
-            before = load_power(origin + (first + step - 1) * dt, velocity, *columns)
-            account[0] += 500.0 * dt * (before + load_power(time, velocity, *columns))
+            enter_loads(origin + (first + step - 1) * dt, time, dt, velocity, account, *columns)
         for i in range(displacement.shape[0]):
             ax = force[i, 0]
             ay = force[i, 1]
@@ -126,10 +123,9 @@ def taylor2(
             velocity[i, 1] += half * (ay * particles_mobility[i, 1])
         accept(time, dt, displacement, velocity, force, resisting, direction, account, *columns)
         if POWERS:
-            resist(time, dt, displacement, velocity, resisting, direction, gained, *columns)
-            for k in range(power.shape[0]):
-                account[k] += 500.0 * dt * (power[k] + gained[k])
-                power[k] = gained[k]
+            enter_powers(
+                time, dt, displacement, velocity, resisting, direction, power, gained, account, *columns
+            )
 
 
 def semi_implicit_euler(
@@ -164,18 +160,35 @@ def semi_implicit_euler(
             displacement[i, 0] += dt * velocity[i, 0]
             displacement[i, 1] += dt * velocity[i, 1]
         if LOADS:
-            before = load_power(origin + (first + step - 1) * dt, velocity, *columns)
-            account[0] += 500.0 * dt * (before + load_power(time, velocity, *columns))
+            enter_loads(origin + (first + step - 1) * dt, time, dt, velocity, account, *columns)
         accept(time, dt, displacement, velocity, force, resisting, direction, account, *columns)
         if POWERS:
-            resist(time, dt, displacement, velocity, resisting, direction, gained, *columns)
-            for k in range(power.shape[0]):
-                account[k] += 500.0 * dt * (power[k] + gained[k])
-                power[k] = gained[k]
+            enter_powers(
+                time, dt, displacement, velocity, resisting, direction, power, gained, account, *columns
+            )
+
+
+def enter_loads(before, after, dt, velocity, account, *columns):
+    """The work of varying loads from a time to another, `dt` later (s), at the step's mean velocity."""
+    power = load_power(before, velocity, *columns)
+    account[0] += 500.0 * dt * (power + load_power(after, velocity, *columns))
+
+
+def enter_powers(time, dt, displacement, velocity, resisting, direction, power, gained, account, *columns):
+    """What each account gains in the step that ends here, by the trapezoidal rule; dampers and drag anew."""
+    resist(time, dt, displacement, velocity, resisting, direction, gained, *columns)
+    for k in range(power.shape[0]):
+        account[k] += 500.0 * dt * (power[k] + gained[k])
+        power[k] = gained[k]
+
+
+def is_check_due(total, age):
+    """Whether a state is checked: at every multiple of CHECK_INTERVAL, before it at powers of 2."""
+    return total % CHECK_INTERVAL == 0 or (age < CHECK_INTERVAL and age & (age - 1) == 0)
 
 
 def steps_to_check(total, age):
-    """Steps to the next check, at most: to a multiple of CHECK_INTERVAL, or to the next power of 2."""
+    """Steps to the next state that is checked, at most."""
     if age >= CHECK_INTERVAL:
         return CHECK_INTERVAL - total % CHECK_INTERVAL
     doubled = 1
@@ -255,7 +268,7 @@ def advance(
             continue
         taken += done
         age += done
-        if (total + taken) % CHECK_INTERVAL == 0 or (age < CHECK_INTERVAL and age & (age - 1) == 0):
+        if is_check_due(total + taken, age):
             measure(displacement, velocity, force, resisting, measures, *columns)
             ahead = 0.0
             if LOADS:

@@ -39,22 +39,27 @@ def explicit_stages(
     """Accelerations of the stages after the first; True, for it always succeeds."""
     trial, speed = work[STAGES], work[STAGES + 1]
     for s in range(1, STAGES):
-        for i in range(displacement.shape[0]):
-            for d in range(2):
-                p = 0.0
-                q = 0.0
-                for j in range(s):
-                    p += STAGE_V[s, j] * work[j, i, d]
-                    q += STAGE_X[s, j] * work[j, i, d]
-                v = velocity[i, d]
-                speed[i, d] = v + dt * p
-                trial[i, d] = displacement[i, d] + dt * (NODES[s] * v + dt * q)
+        extrapolate(s, dt, displacement, velocity, work, trial, speed)
         evaluate(time + NODES[s] * dt, dt, trial, speed, force, resisting, direction, stage_power, *columns)
         accelerate(force, resisting, work[s], *columns)
         if POWERS or LOADS:
             for k in range(gained.shape[0]):
                 gained[k] += RESULT_V[0, s] * stage_power[k]
     return True
+
+
+def extrapolate(s, dt, displacement, velocity, work, trial, speed):
+    """What the stages before stage `s` make of displacement and velocity there."""
+    for i in range(displacement.shape[0]):
+        for d in range(2):
+            p = 0.0
+            q = 0.0
+            for j in range(s):
+                p += STAGE_V[s, j] * work[j, i, d]
+                q += STAGE_X[s, j] * work[j, i, d]
+            v = velocity[i, d]
+            speed[i, d] = v + dt * p
+            trial[i, d] = displacement[i, d] + dt * (NODES[s] * v + dt * q)
 
 
 def accelerate(force, resisting, acceleration, *columns):
@@ -417,7 +422,7 @@ def advance(
         if not good:
             return taken, 4
         now = total + taken
-        if done > 0 and (now % CHECK_INTERVAL == 0 or (now < CHECK_INTERVAL and now & (now - 1) == 0)):
+        if done > 0 and is_check_due(now, now):
             measure(displacement, velocity, force, resisting, measures, *columns)
             reason = judge(measures, account, control[STEP], SHADOW, 0.0, control[TIME] >= loads_end)
             if reason != 0:
