@@ -35,8 +35,8 @@ class Response:
     """What the rods do at some displacements, having yielded from a given plastic strain; shape (rods,).
 
     elastic_force: what the axial force would be without yielding from there. plastic_strain: after it.
-    axis: unit vectors from first to second end, (rods, 2). flowing: in the course of yielding. slack: cables
-    without force.
+    axis: unit vectors from first to second end, (rods, 2). flowing: in the course of yielding. slack:
+    one-sided rods without force.
     """
 
     elongation: Array
@@ -56,6 +56,23 @@ class Response:
 
 
 @dataclass(frozen=True)
+class Branches:
+    """Where rods are in their laws, which are linear piece by piece; shape (rods,).
+
+    force: elastic of slack rods, else axial (kN). low, high: the forces at which the present piece ends.
+    outward: the sense of elongation, 1 or −1, in which a rod that is at such an end leaves its piece; 0: it is
+    not. slack: one-sided rods without force, those excluded that are about to bear some.
+    """
+
+    force: Array
+    low: Array
+    high: Array
+    outward: Array
+    slack: Flags
+    verge: Flags
+
+
+@dataclass(frozen=True)
 class Structure:
     """The rods of a model and the directions in which its particles are free, as arrays.
 
@@ -63,6 +80,7 @@ class Structure:
     unknown: the free directions that are solved for, (n, 2): those of particles with rods, less one of
         every body that nothing holds along an axis (its translation is arbitrary).
     body: number of the connected body that each particle belongs to, (n,).
+    sense: of one-sided rods 1 (a cable, tension only) or −1 (compression only), else 0.
     linear: first-order theory, in which elongations and equilibrium are those of the original positions.
     """
 
@@ -75,7 +93,7 @@ class Structure:
     stiffness: Array
     tension_limit: Array
     compression_limit: Array
-    tension_only: Flags
+    sense: Array
     fixed: Flags
     unknown: Flags
     body: Rows
@@ -101,7 +119,7 @@ class Structure:
             stiffness=rods.stiffness.copy(),
             tension_limit=rods.tension_limit.copy() if yields else np.full(rods.count, np.inf),
             compression_limit=rods.compression_limit.copy() if yields else np.full(rods.count, np.inf),
-            tension_only=rods.tension_only.copy(),
+            sense=rods.tension_only.astype(np.float64),
             fixed=fixed,
             unknown=_held_by_rods(particles.count, ends) & ~fixed & ~_arbitrary(fixed, body),
             body=body,
@@ -178,7 +196,7 @@ class Structure:
         elongation = stretch + self.misfit
         strain = elongation / self.rest_length
         elastic = self.stiffness * (strain - plastic_strain)
-        slack = self.tension_only & (elastic < 0.0)
+        slack = self.sense * elastic < 0.0
         force = np.where(slack, 0.0, np.clip(elastic, -self.compression_limit, self.tension_limit))
         flowing = (force != elastic) & ~slack
         return Response(
@@ -231,6 +249,23 @@ class Structure:
         pressed = np.isfinite(compression) & (force <= slack - compression * (1.0 - AT_LIMIT))
         return pulled | pressed
 
+    def branches(self, response: Response, scale: float) -> Branches:
+        """The pieces of their laws that the rods are on; scale: force (kN) of which a share AT_LIMIT is nothing."""
+        nothing = AT_LIMIT * scale + ROUND_OFF * 4.0 * self.stiffness * np.abs(response.strain)
+        verge = (self.sense != 0.0) & (np.abs(response.elastic_force) <= nothing)
+        slack = response.slack & ~verge
+        low = np.where(self.sense > 0.0, 0.0, -self.compression_limit)
+        high = np.where(self.sense < 0.0, 0.0, self.tension_limit)
+        outward = np.where(self.at_limit(response), np.sign(response.axial_force), 0.0)
+        return Branches(
+            force=np.where(slack, response.elastic_force, response.axial_force),
+            low=np.where(slack, np.where(self.sense > 0.0, -np.inf, 0.0), low),
+            high=np.where(slack, np.where(self.sense > 0.0, 0.0, np.inf), high),
+            outward=np.where(verge, -self.sense, outward),
+            slack=slack,
+            verge=verge,
+        )
+
     def round_off(self, displacement: Array) -> float:
         """Force (kN) below which a residual is rounding of the displacements."""
         size = np.abs(self.gather(displacement))
@@ -238,9 +273,9 @@ class Structure:
 
     # --- tangent -------------------------------------------------------------------------------------
 
-    def tangent(self, response: Response, flowing: Flags, *, geometric: bool = True) -> Matrix:
-        """dF/du over the unknowns: Σ EA/L₀ a aᵀ (not of flowing or slack rods) + Σ N/L (1 − a aᵀ)."""
-        along = np.where(flowing | response.slack, 0.0, self.stiffness / self.rest_length)
+    def tangent(self, response: Response, soft: Flags, *, geometric: bool = True) -> Matrix:
+        """dF/du over the unknowns: Σ EA/L₀ a aᵀ (not of soft rods) + Σ N/L (1 − a aᵀ)."""
+        along = np.where(soft, 0.0, self.stiffness / self.rest_length)
         across = np.zeros_like(along)
         if geometric and not self.linear:
             length = response.length

@@ -17,7 +17,7 @@ RESTS = 1e-9  # of the largest motion: less is none
 class Event:
     """Something that happened on the way to a load factor.
 
-    kind: "yield", "plastic mechanism", "snap-through", "bifurcation", "collapse", "mechanism",
+    kind: "yield", "slack", "taut", "plastic mechanism", "snap-through", "bifurcation", "collapse", "mechanism",
         "free body" or "note"; of a simulation beside it "overshoot" or "other equilibrium".
     load_factor: at which it happened. rods: names of those concerned.
     motion: of all particles, (n, 2), the largest of them 1 long; None if nothing moves.

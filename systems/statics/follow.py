@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from systems.statics.complementarity import yielding_set
-from systems.statics.equations import ROUND_OFF, Array, Flags, Response, Structure
+from systems.statics.equations import ROUND_OFF, Array, Branches, Flags, Response, Structure
 from systems.statics.factor import Factor, regular
 
 LARGEST_MOVE = 0.1  # of a rod's length, in one increment; larger: fewer increments, less sure of the branch
@@ -53,15 +53,21 @@ class Point:
 class Tangent:
     """The direction of a path at a point.
 
-    rate: du/dt of the unknowns. flowing: rods that yield on the way. sense: +1 if t grows along the path.
-    consistent: False if no set of flowing rods agrees with the motion it leads to.
+    rate: du/dt of the unknowns. flowing: rods that yield on the way, slack: that bear nothing. sense: +1 if t
+    grows along the path. consistent: False if no set of soft rods agrees with the motion it leads to.
     """
 
     rate: Array
     flowing: Flags
+    slack: Flags
     factor: Factor
     sense: float
     consistent: bool = True
+
+    @property
+    def soft(self) -> Flags:
+        """Rods whose force does not change on the way."""
+        return self.flowing | self.slack
 
     @property
     def stable(self) -> bool:
@@ -115,67 +121,78 @@ class Path:
         dissipated = start.dissipated + 1000.0 * float(spent @ self.structure.rest_length)
         return Point(displacement, response.plastic_strain, t, response, dissipated)
 
+    def branches(self, response: Response) -> Branches:
+        """The pieces of their laws that the rods are on."""
+        scale = max(self.scale, float(np.abs(response.axial_force).max(initial=0.0)))
+        return self.structure.branches(response, scale)
+
     # --- directions --------------------------------------------------------------------------------
 
     def tangent(self, point: Point, onward: Array | None = None, before: Tangent | None = None) -> Tangent:
         """The direction in which the path goes on from a point.
 
-        onward: how the unknowns changed so far; before: the tangent then. Of the rods at a strength those
-        flow whose elongation goes on in that direction.
+        onward: how the unknowns changed so far; before: the tangent then. Of the rods at the end of a piece
+        of their law those give way whose elongation goes on outward.
         """
-        limited = self.structure.at_limit(point.response)
-        nothing = np.zeros_like(limited)
-        kept = before.flowing & limited if before is not None else nothing
-        found = self._direction(point.response, kept, onward)
-        if self._agrees(point.response, found, limited) and (found.factor.definite or self.passes_limits):
+        response, branches = point.response, self.branches(point.response)
+        limited = branches.outward != 0.0
+        kept = before.soft & limited if before is not None else np.zeros_like(limited)
+        found = self._direction(response, branches, kept, onward)
+        if self._agrees(response, branches, found) and (found.factor.definite or self.passes_limits):
             return found
         if self.passes_limits:
-            found = self._direction(point.response, limited, onward)
-            return replace(found, consistent=self._agrees(point.response, found, limited))
-        return self._stable_tangent(point.response, limited, kept, onward)
+            found = self._direction(response, branches, limited, onward)
+            if not self._agrees(response, branches, found):
+                found = self._soften_by_trial(response, branches, kept, onward)
+            return replace(found, consistent=self._agrees(response, branches, found))
+        return self._stable_tangent(response, branches, kept, onward)
 
     def _stable_tangent(
-        self, response: Response, limited: Flags, guess: Flags, onward: Array | None
+        self, response: Response, branches: Branches, guess: Flags, onward: Array | None
     ) -> Tangent:
         """The direction in which t grows and the equilibria are stable, if there is one."""
-        elastic = self._direction(response, np.zeros_like(limited), onward)
+        elastic = self._direction(response, branches, np.zeros_like(guess), onward)
         if not elastic.stable:
             return elastic
-        growth = self._growth(response, elastic)
-        grows = limited & (growth > 0.0)
-        if not grows.any():
+        growth = self._growth(response, branches, elastic)
+        if not (growth > 0.0).any():
             return elastic
         if not self.exact_events:
-            return self._flow_by_trial(response, limited, grows, onward)
-        flowing = self._flow_exactly(response, limited, growth, elastic.factor, guess)
-        if flowing is not None:
-            return self._direction(response, flowing, onward)
-        return replace(self._direction(response, grows, onward), consistent=False)
+            return self._soften_by_trial(response, branches, growth > 0.0, onward)
+        soft = self._soften_exactly(response, branches, growth, elastic.factor, guess)
+        if soft is not None:
+            return self._direction(response, branches, soft, onward)
+        return replace(self._direction(response, branches, growth > 0.0, onward), consistent=False)
 
-    def _direction(self, response: Response, flowing: Flags, onward: Array | None) -> Tangent:
+    def _direction(
+        self, response: Response, branches: Branches, giving: Flags, onward: Array | None
+    ) -> Tangent:
+        """The direction if these of the rods at the end of a piece give way."""
         structure = self.structure
-        factor = regular(structure.tangent(response, flowing), structure.weight)
+        flowing, slack = giving & ~branches.verge, branches.slack | (giving & branches.verge)
+        factor = regular(structure.tangent(response, flowing | slack), structure.weight)
         rate = factor.solve(self.push) if factor.exists else np.zeros(structure.size)
         forward = factor.definite or onward is None or float(rate @ onward) >= 0.0
-        return Tangent(rate, flowing, factor, 1.0 if forward else -1.0)
+        return Tangent(rate, flowing, slack, factor, 1.0 if forward else -1.0)
 
-    def _growth(self, response: Response, tangent: Tangent) -> Array:
-        """How fast rods elongate along the path, in the direction of their force."""
+    def _growth(self, response: Response, branches: Branches, tangent: Tangent) -> Array:
+        """How fast rods at the end of a piece elongate outward along the path."""
         rate = self.structure.elongation_rate(tangent.sense * tangent.rate, response)
-        growth: Array = rate * np.sign(response.axial_force)
+        growth: Array = rate * branches.outward
         return growth
 
-    def _agrees(self, response: Response, tangent: Tangent, limited: Flags) -> bool:
-        """True if of the rods at a strength just those that flow go on growing."""
-        grows = limited & (self._growth(response, tangent) > 0.0)
-        return tangent.factor.exists and np.array_equal(grows, tangent.flowing)
+    def _agrees(self, response: Response, branches: Branches, tangent: Tangent) -> bool:
+        """True if of the rods at the end of a piece just those that give way go on outward."""
+        grows = self._growth(response, branches, tangent) > 0.0
+        return tangent.factor.exists and np.array_equal(grows, tangent.soft & ~branches.slack)
 
-    def _flow_exactly(
-        self, response: Response, limited: Flags, growth: Array, elastic: Factor, guess: Flags
+    def _soften_exactly(
+        self, response: Response, branches: Branches, growth: Array, elastic: Factor, guess: Flags
     ) -> Flags | None:
-        """Of the rods at a strength those that flow, or None if there is no such set."""
+        """Of the rods at the end of a piece those that give way, or None if there is no such set."""
         structure = self.structure
-        sign = np.sign(response.axial_force)[limited]
+        limited: Flags = branches.outward != 0.0
+        sign = branches.outward[limited]
         stiffness = (structure.stiffness / structure.rest_length)[limited]
         pull = structure.compatibility(response, np.flatnonzero(limited)).toarray() * sign[:, None]
         softening = pull @ elastic.solve(np.ascontiguousarray(pull.T))
@@ -183,25 +200,24 @@ class Path:
         chosen = yielding_set(0.5 * (matrix + matrix.T), stiffness * growth[limited], guess[limited])
         if chosen is None:
             return None
-        flowing = np.zeros_like(limited)
-        flowing[limited] = chosen
-        return flowing
+        limited[limited] = chosen
+        return limited
 
-    def _flow_by_trial(
-        self, response: Response, limited: Flags, flowing: Flags, onward: Array | None
+    def _soften_by_trial(
+        self, response: Response, branches: Branches, soft: Flags, onward: Array | None
     ) -> Tangent:
-        """In a large structure: let rods flow and stop until the set stays, or nearly."""
+        """In a large structure, or beyond a limit point: let rods give way and resist until the set stays, or nearly."""
         for _ in range(ACTIVE_SET_ROUNDS):
-            found = self._direction(response, flowing, onward)
-            grows = limited & (self._growth(response, found) > 0.0)
-            if np.array_equal(grows, flowing):
+            found = self._direction(response, branches, soft, onward)
+            grows = self._growth(response, branches, found) > 0.0
+            if np.array_equal(grows, soft):
                 break
-            flowing = grows
+            soft = grows
         return found
 
-    def stable_without(self, point: Point, flowing: Flags) -> bool:
-        """True if the point is stable when only these rods flow."""
-        matrix = self.structure.tangent(point.response, flowing)
+    def stable_without(self, point: Point, soft: Flags) -> bool:
+        """True if the point is stable when only these rods are soft."""
+        matrix = self.structure.tangent(point.response, soft)
         return regular(matrix, self.structure.weight).definite
 
     def stretch(self, tangent: Tangent) -> float:
@@ -215,7 +231,7 @@ class Path:
     def advance(self, point: Point, tangent: Tangent, increment: float) -> Step | None:
         """Go at most one increment on; None if the path is lost.
 
-        An increment ends where a rod begins to yield; one that fails is halved.
+        An increment ends where a rod begins to yield, slackens or tightens; one that fails is halved.
         """
         far = LARGEST_MOVE / max(self.structure.move(tangent.rate, point.response.length), 1e-300)
         nearest = min(self._until_event(point, tangent), 0.99 * far * self.stretch(tangent))
@@ -252,8 +268,8 @@ class Path:
         if self._reversed(tangent, found, following, increment):
             return HALF
         fine = self._went_along(point, tangent, found, following, predicted, change)
-        yielded = not np.array_equal(found.response.flowing, tangent.flowing)
-        coarse = not self.exact_events and yielded and abs(dt) <= RESOLUTION
+        switched = not np.array_equal(found.response.soft, tangent.soft)
+        coarse = not self.exact_events and switched and abs(dt) <= RESOLUTION
         return (found, following) if fine or coarse else HALF
 
     def correct(self, start: Point, guess: Array, t: float, across: Tangent | None) -> Point | None:
@@ -261,7 +277,7 @@ class Path:
         structure = self.structure
         normal = across.rate / self.reference**2 if across is not None and self.reference > 0.0 else None
         displacement, step = guess, np.zeros_like(guess)
-        before, dt, share, flowing = math.inf, 0.0, 1.0, None
+        before, dt, share, soft = math.inf, 0.0, 1.0, None
         for iteration in range(NEWTON_ITERATIONS):
             response = structure.respond(displacement, start.plastic_strain)
             residual = structure.gather(self.load(t) - structure.internal(response))
@@ -272,16 +288,16 @@ class Path:
             noise = structure.round_off(displacement) + 4.0 * ROUND_OFF * scale
             if size <= noise or (size >= 0.5 * before and size <= CONVERGED * scale + 64.0 * noise):
                 return self.after(start, displacement, t)
-            switched = flowing is not None and not np.array_equal(response.soft, flowing)
+            switched = soft is not None and not np.array_equal(response.soft, soft)
             if (switched or iteration > PATIENCE) and size >= before and share > SMALLEST_SHARE:
-                share *= HALF  # other rods yield than the step reckoned with: take less of it
+                share *= HALF  # other rods are soft than the step reckoned with: take less of it
                 displacement, t = displacement - share * step, t - share * dt
                 continue
             moved = self._newton_step(response, residual, normal)
             if moved is None:
                 return None
             step, dt = structure.spread(moved[0]), moved[1]
-            before, share, flowing = size, 1.0, response.soft
+            before, share, soft = size, 1.0, response.soft
             displacement, t = displacement + step, t + dt
             change = structure.gather(displacement - start.displacement)
             if not structure.move(change, start.response.length) <= 2.0 * LARGEST_MOVE:
@@ -292,7 +308,7 @@ class Path:
         self, response: Response, residual: Array, normal: Array | None
     ) -> tuple[Array, float] | None:
         """Changes of the unknowns and of t, the latter such that normal · du + dt = 0."""
-        factor = regular(self.structure.tangent(response, response.flowing), self.structure.weight)
+        factor = regular(self.structure.tangent(response, response.soft), self.structure.weight)
         if not factor.exists:
             return None
         if normal is None:
@@ -317,43 +333,44 @@ class Path:
             return False
         if structure.move(change - predicted, length) > MISS * size + 64.0 * ROUND_OFF:
             return False
-        if not np.array_equal(following.flowing, tangent.flowing):
+        if not np.array_equal(following.soft, tangent.soft):
             return True
         before = tangent.sense / self.stretch(tangent) * tangent.rate
         after = following.sense / self.stretch(following) * following.rate
         largest = max(structure.move(before, length), structure.move(after, length))
         return structure.move(after - before, length) <= TURN * largest
 
-    # --- yielding ----------------------------------------------------------------------------------
+    # --- yielding, slackening, tightening ------------------------------------------------------------
 
     def _until_event(self, point: Point, tangent: Tangent) -> float:
-        """Increment after which the next rod yields, judged from the tangent."""
+        """Increment after which the next rod comes to the end of a piece of its law, judged from the tangent."""
         if not self.exact_events:
             return math.inf
-        structure, response = self.structure, point.response
-        rate = structure.elongation_rate(tangent.sense * tangent.rate, response)
+        structure, branches = self.structure, self.branches(point.response)
+        rate = structure.elongation_rate(tangent.sense * tangent.rate, point.response)
         growth = rate * structure.stiffness / structure.rest_length
         with np.errstate(divide="ignore", invalid="ignore"):
-            up = (structure.tension_limit - response.axial_force) / growth
-            down = (-structure.compression_limit - response.axial_force) / growth
+            up = (branches.high - branches.force) / growth
+            down = (branches.low - branches.force) / growth
         wait = np.where(growth > 0.0, up, np.where(growth < 0.0, down, np.inf))
-        wait[structure.at_limit(response)] = np.inf
+        wait[branches.outward * growth > 0.0] = np.inf
         return float(wait.min(initial=np.inf)) * self.stretch(tangent)
 
     def _kink(self, point: Point, tangent: Tangent, found: Point, dt: float) -> float:
-        """Share of an increment after which the first rod yielded in it; 1 if at its end or not at all.
+        """Share of an increment after which the first rod left its piece in it; 1 if at its end or not at all.
 
         The force on the way is taken as quadratic, from its values at both ends and its rate at the start.
         """
-        structure, before, after = self.structure, point.response, found.response
-        new = after.flowing & ~tangent.flowing & ~structure.at_limit(before)
+        structure, branches, after = self.structure, self.branches(point.response), found.response
+        above = (after.elastic_force > branches.high) & (branches.outward <= 0.0)
+        new = above | ((after.elastic_force < branches.low) & (branches.outward >= 0.0))
         if not self.exact_events or not new.any():
             return 1.0
-        sign = np.sign(after.axial_force[new])
+        edge, sign = np.where(above, branches.high, branches.low), np.where(above, 1.0, -1.0)[new]
         stiffness = (structure.stiffness / structure.rest_length)[new]
-        margin = sign * (after.axial_force - before.axial_force)[new]
-        linear = sign * stiffness * structure.elongation_rate(dt * tangent.rate, before)[new]
-        quadratic = sign * (after.elastic_force - before.axial_force)[new] - linear
+        margin = sign * (edge - branches.force)[new]
+        linear = sign * stiffness * structure.elongation_rate(dt * tangent.rate, point.response)[new]
+        quadratic = sign * (after.elastic_force - branches.force)[new] - linear
         root = np.sqrt(np.maximum(linear**2 + 4.0 * quadratic * margin, 0.0))
         share = np.where(
             linear >= 0.0,

@@ -29,7 +29,7 @@ class Loading:
 
     factors: load factors at its start and end. total: Σ |force| at the load factor 1 (kN).
     unstressed: nothing acts at the start, so that whatever moves there is a mechanism.
-    events: what happened so far; `run` adds to them.
+    events: what happened so far; `run` adds to them. slack: cables known to be.
     """
 
     model: Model
@@ -39,26 +39,24 @@ class Loading:
     unstressed: bool
     events: list[Event]
     point: Point
+    slack: Flags
     stalls: int = field(init=False, default=0)
     mechanism: bool = field(init=False, default=False)
 
     def run(self) -> Point:
-        """The equilibrium at the end of the change. Raises NoEquilibrium; `point` is the last good one.
-
-        Cables slacken and tighten wherever the structure happens to be, so that with them it is relaxed
-        under the whole load instead of being followed.
-        """
-        if self.path.structure.tension_only.any():
-            self._relax(1.0, None)
-            return self.point
+        """The equilibrium at the end of the change. Raises NoEquilibrium; `point` is the last good one."""
         tangent = self._begin()
         increment = np.inf
         for _ in range(MOST_INCREMENTS):
             if self.point.t >= 1.0:
                 return self.point
+            self._note_cables(tangent)
             tangent, increment = self._increment(tangent, increment)
             if np.abs(self.point.displacement).max() > RUNAWAY * self.path.structure.extent:
-                raise self._collapse(tangent.flowing, self.path.structure.spread(tangent.rate))
+                motion = self.path.structure.spread(tangent.rate)
+                if not tangent.flowing.any():
+                    raise self._mechanism(motion, tangent.slack)
+                raise self._collapse(tangent.flowing, motion)
         raise self._lost()
 
     # --- the start ---------------------------------------------------------------------------------
@@ -70,7 +68,7 @@ class Loading:
         before = self.point
         modes = np.zeros((structure.size, 0))
         if self.unstressed:
-            matrix = structure.tangent(before.response, tangent.flowing)
+            matrix = structure.tangent(before.response, tangent.soft)
             modes = soft_modes(matrix, structure.weight, tangent.factor)
         self.mechanism = modes.shape[1] > 0
         if not path.push.any():
@@ -92,11 +90,13 @@ class Loading:
             self.point = found
 
     def _note_mechanism(self, modes: Array, before: Point) -> None:
-        fields = np.array([self.path.structure.spread(mode) for mode in modes.T])
+        path = self.path
+        fields = np.array([path.structure.spread(mode) for mode in modes.T])
         motion = describe_motion(self.model, fields)
         message = f"First-order mechanism: without load nothing resists moving {motion}."
-        if self.point is before:
+        if np.array_equal(self.point.displacement, before.displacement):
             message += " Add rods or supports there if that is not meant."
+            message += slack_named(self.model, path.branches(before.response).slack)
         else:
             where = moved(self.model, before.displacement, self.point.displacement)
             message += f" It gives way until the load is held in another shape: {where}."
@@ -117,10 +117,10 @@ class Loading:
         if step is None:
             return self._jump(tangent), np.inf
         found, following = step.point, step.tangent
-        kept = path.stable_without(found, tangent.flowing) if not following.stable else True
+        kept = path.stable_without(found, tangent.soft) if not following.stable else True
         if (following.stable and not self._unresisted(following)) or (kept and found.t >= 1.0):
             self._note_yields(tangent, found, following)
-        elif kept and not np.array_equal(following.flowing, tangent.flowing):
+        elif kept and not np.array_equal(following.soft, tangent.soft):
             self._note_yields(tangent, found, following)
             self.point = found
             return self._jump(following), np.inf
@@ -148,12 +148,24 @@ class Loading:
         rods = tuple(str(names[row]) for row in np.flatnonzero(new))
         self.events.append(Event("yield", self.factor(found.t), _sentence(message), rods))
 
+    def _note_cables(self, tangent: Tangent) -> None:
+        """Report the cables that go slack, or tighten again."""
+        for kind, verbs, rows in [
+            ("slack", ("goes slack", "go slack"), np.flatnonzero(tangent.slack & ~self.slack)),
+            ("taut", ("tightens", "tighten"), np.flatnonzero(self.slack & ~tangent.slack)),
+        ]:
+            if len(rows):
+                message = f"{rod_names(self.model, rows)} {verbs[len(rows) > 1]} {self._at(self.point.t)}."
+                names = self._rods(np.isin(np.arange(len(self.slack)), rows))
+                self.events.append(Event(kind, self.factor(self.point.t), _sentence(message), names))
+        self.slack = tangent.slack
+
     def _note_plastic_mechanism(self, tangent: Tangent, following: Tangent) -> None:
         """Report that only the rods' forces, not their stiffness, still hold the structure."""
         structure = self.path.structure
         if self.mechanism or not (following.flowing & ~tangent.flowing).any():
             return
-        matrix = structure.tangent(self.point.response, following.flowing, geometric=False)
+        matrix = structure.tangent(self.point.response, following.soft, geometric=False)
         if regular(matrix, structure.weight, -SOFT).definite:
             return
         self.mechanism = True
@@ -170,7 +182,7 @@ class Loading:
     def _jump(self, beyond: Tangent) -> Tangent:
         """From the last stable point go on to the next stable equilibrium, and report what happened."""
         path, critical = self.path, self.point
-        plastic = bool(beyond.flowing.any()) and path.stable_without(critical, np.zeros_like(beyond.flowing))
+        plastic = bool(beyond.flowing.any()) and path.stable_without(critical, beyond.slack)
         mode = self._mode(beyond)
         if self.mechanism and critical.t < FIRST_LOAD and not plastic:
             self._relax(FIRST_LOAD, mode)
@@ -198,7 +210,7 @@ class Loading:
         structure, response = self.path.structure, self.point.response
         if beyond.factor.definite and beyond.flowing.any():
             return beyond.rate
-        _, mode = lowest_mode(structure.tangent(response, beyond.flowing), structure.weight)
+        _, mode = lowest_mode(structure.tangent(response, beyond.soft), structure.weight)
         flow = structure.elongation_rate(mode, response) * np.sign(response.axial_force) * beyond.flowing
         pushed = float(mode @ self.path.push)
         lean = float(flow.sum()) if np.abs(flow).max(initial=0.0) > 0.0 else pushed
@@ -214,7 +226,8 @@ class Loading:
         elif relaxed.outcome == "gave up":
             raise self._lost(relaxed.point)
         elif not (relaxed.point.plastic_strain != self.point.plastic_strain).any():
-            raise self._mechanism(relaxed.point)
+            away = relaxed.point
+            raise self._mechanism(away.displacement - self.point.displacement, away.response.slack)
         else:
             motion = relaxed.point.displacement - self.point.displacement
             if plastic is not None and nudge is not None:
@@ -251,13 +264,12 @@ class Loading:
         self.events.append(Event("collapse", factor, message, self._rods(flowing), _unit(motion)))
         return NoEquilibrium("collapse", message)
 
-    def _mechanism(self, away: Point) -> NoEquilibrium:
+    def _mechanism(self, motion: Array, slack: Flags) -> NoEquilibrium:
         """In first-order theory a mechanism that the load moves never comes to rest."""
-        motion = away.displacement - self.point.displacement
         message = (
             f"Mechanism: the load moves {describe_motion(self.model, motion[None])} and nothing resists."
             " Add rods or supports there."
-        ) + slack_named(self.model, away.response.slack)
+        ) + slack_named(self.model, slack)
         self.events.append(Event("mechanism", self.factor(self.point.t), message, motion=_unit(motion)))
         return NoEquilibrium("mechanism", message)
 

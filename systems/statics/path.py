@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from components.model import Model
 from systems.statics.equations import Array, Structure
-from systems.statics.explain import cables_named
 from systems.statics.external import External, external_forces
 from systems.statics.follow import Path, Point, Step, Tangent
 from systems.statics.settle import StaticState, settle
@@ -49,10 +48,6 @@ def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DE
     Raises ValueError if nothing is to be scaled, or if there is no equilibrium at the factor 0.
     """
     structure, external = Structure.of(model), external_forces(model)
-    if structure.tension_only.any():
-        raise ValueError(
-            f"{cables_named(model)} in tension only, which curves cannot follow; settle at load factors instead."
-        )
     unloaded = settle(model, (0.0,)).final
     if unloaded.status != "equilibrium":
         raise ValueError(f"There is no equilibrium to start from. {unloaded.message}")

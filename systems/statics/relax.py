@@ -42,7 +42,7 @@ def relax(path: Path, start: Point, nudge: Array | None = None) -> Relaxed:
     for _ in range(STEPS):
         residual = structure.gather(path.load(point.t) - structure.internal(point.response))
         scale = max(path.scale, float(np.abs(point.response.axial_force).max(initial=0.0)))
-        stable = regular(structure.tangent(point.response, point.response.flowing), structure.weight).definite
+        stable = regular(structure.tangent(point.response, point.response.soft), structure.weight).definite
         if stable:
             rested = path.correct(point, point.displacement, point.t, None)
             if rested is not None and _is_stable(path, rested):
@@ -66,12 +66,12 @@ def relax(path: Path, start: Point, nudge: Array | None = None) -> Relaxed:
 
 
 def _is_stable(path: Path, point: Point) -> bool:
-    matrix = path.structure.tangent(point.response, point.response.flowing)
+    matrix = path.structure.tangent(point.response, point.response.soft)
     return regular(matrix, path.structure.weight).definite
 
 
 def _way_down(path: Path, point: Point) -> Array:
-    matrix = path.structure.tangent(point.response, point.response.flowing)
+    matrix = path.structure.tangent(point.response, point.response.soft)
     return lowest_mode(matrix, path.structure.weight)[1]
 
 
@@ -101,7 +101,7 @@ def _implicit_step(path: Path, point: Point, residual: Array, penalty: float) ->
     structure = path.structure
     wanted = STEP_CONVERGED * float(np.abs(residual).max(initial=0.0))
     moved, step = np.zeros(structure.size), np.zeros(structure.size)
-    before, share, flowing = np.inf, 1.0, point.response.soft
+    before, share, soft = np.inf, 1.0, point.response.soft
     for _ in range(NEWTON_ITERATIONS):
         displacement = point.displacement + structure.spread(moved)
         response = structure.respond(displacement, point.plastic_strain)
@@ -110,15 +110,15 @@ def _implicit_step(path: Path, point: Point, residual: Array, penalty: float) ->
         size = float(np.abs(pull).max(initial=0.0))
         if size <= max(wanted, structure.round_off(displacement)):
             return displacement
-        if size >= before and share > SMALLEST_SHARE and not np.array_equal(response.soft, flowing):
-            share *= 0.5  # other rods yield than the step reckoned with: take less of it
+        if size >= before and share > SMALLEST_SHARE and not np.array_equal(response.soft, soft):
+            share *= 0.5  # other rods are soft than the step reckoned with: take less of it
             moved = moved - share * step
             continue
-        factor = regular(structure.tangent(response, response.flowing), structure.weight, penalty)
+        factor = regular(structure.tangent(response, response.soft), structure.weight, penalty)
         if not factor.definite:
             return None
         step = factor.solve(pull)
-        before, share, flowing = size, 1.0, response.soft
+        before, share, soft = size, 1.0, response.soft
         moved = moved + step
         if not structure.move(moved, point.response.length) <= 4.0 * LARGEST_MOVE:
             return None

@@ -148,6 +148,7 @@ class _Settling:
         self.point = at_rest.start(start.displacement, start.plastic_strain)
         self.largest = float(np.abs(self.point.response.axial_force).max(initial=0.0))
         self.load = self._holding()
+        self.slack = at_rest.branches(self.point.response).slack
 
     @property
     def _nothing(self) -> Array:
@@ -184,9 +185,8 @@ class _Settling:
         total = float(np.hypot(*self.external.scaled.T).sum())
         start = self.point
         fresh = Point(start.displacement, start.plastic_strain, 0.0, start.response, start.dissipated)
-        loading = Loading(
-            self.model, path, (self.factor, factor), total, not self.load.any(), self.events, fresh
-        )
+        way = (self.factor, factor)
+        loading = Loading(self.model, path, way, total, not self.load.any(), self.events, fresh, self.slack)
         try:
             self.point = loading.run()
             self.load, self.factor = target, factor
@@ -194,6 +194,8 @@ class _Settling:
             self.point = loading.point
             self.load, self.factor = path.load(loading.point.t), loading.factor(loading.point.t)
             raise
+        finally:
+            self.slack = loading.slack
 
     def _note_softness(self, factor: float) -> None:
         """Report a motion that is resisted so little that few digits are certain."""
@@ -202,7 +204,7 @@ class _Settling:
         if structure.size == 0 or known or self.soft:
             self.soft = True
             return
-        matrix = structure.tangent(self.point.response, self.point.response.flowing)
+        matrix = structure.tangent(self.point.response, self.point.response.soft)
         share, mode = lowest_mode(matrix, structure.weight)
         if share < NEARLY_SOFT:
             self.soft = True

@@ -61,7 +61,7 @@ def _internal(structure: Structure, response: Response) -> Array:
 
 def _deflection(model: Model, structure: Structure, load: Array) -> Array:
     """Displacements (n, 2) of the free directions under a load (n, 2). Raises NoEquilibrium."""
-    if structure.tension_only.any():
+    if structure.sense.any():
         message = (
             f"{cables_named(model)} in tension only, which is not linear; settle the model,"
             " or let slack cables go and have taut ones bear compression too."

@@ -40,7 +40,7 @@ def vibrations(model: Model, state: StaticState | None = None, count: int | None
     """The lowest natural modes of small undamped vibrations, K φ = ω² M φ; rods do not yield in them.
 
     state: the equilibrium that they are about, whose axial forces stiffen or soften the structure; None: the
-    original positions, without axial forces. count: how many; None: all of a small structure, 10 of a
+    original positions, without axial forces and with taut cables. count: how many; None: all of a small structure, 10 of a
     large one.
     """
     structure = Structure.of(model).with_translations()
@@ -61,11 +61,11 @@ def vibrations(model: Model, state: StaticState | None = None, count: int | None
 
 
 def _stiffness(structure: Structure, state: StaticState | None) -> Matrix:
-    elastic = np.zeros(len(structure.ends), dtype=bool)
     if state is not None:
-        return structure.tangent(structure.respond(state.displacement, state.plastic_strain), elastic)
-    unmoved = structure.respond(np.zeros(structure.unknown.shape), np.zeros(len(elastic)))
-    return structure.tangent(unmoved, elastic, geometric=False)
+        response = structure.respond(state.displacement, state.plastic_strain)
+        return structure.tangent(response, response.slack)
+    unmoved = structure.respond(np.zeros(structure.unknown.shape), np.zeros(len(structure.ends)))
+    return structure.tangent(unmoved, np.zeros(len(structure.ends), dtype=bool), geometric=False)
 
 
 def _lowest(matrix: csc_matrix, count: int) -> tuple[Array, Array]:

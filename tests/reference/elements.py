@@ -43,6 +43,7 @@ class Rod:
     damping: float  # kN·s/m
     density: float  # kg/m
     plastic_strain: float
+    tension_only: bool
 
 
 @dataclass(frozen=True)
@@ -150,6 +151,7 @@ def _read_rod(document: Document, particles: list[Document], number: dict[str, i
         damping=float(document.get("damping", 100.0)),
         density=float(document.get("density", 6.15)),
         plastic_strain=float(document.get("plastic_strain", 0.0)),
+        tension_only=bool(document.get("tension_only", False)),
     )
 
 

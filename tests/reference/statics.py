@@ -11,6 +11,7 @@ from 0 to 1 along with the first factor and then stay.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -71,6 +72,36 @@ def direct_stiffness(model: Model) -> Document:
         axial_forces[index] += rod.stiffness / rod.rest_length * float(along @ ends)
     plastic_strain = [rod.plastic_strain for rod in elements.rods]
     return _by_names(elements, 1.0, u, axial_forces, reaction, plastic_strain)
+
+
+def direct_stiffness_of_cables(model: Model) -> Document:
+    """Return the linear elastic solution of a model with cables: of all choices of slack ones the right one.
+
+    It leaves no taut cable in compression and no slack one longer than it is without force. There is one at
+    most, as the energy is convex. Raises ValueError if every choice that would do is a mechanism.
+    """
+    cables = [rod["name"] for rod in model["rods"] if rod.get("tension_only")]
+    for slack in (set(chosen) for k in range(len(cables) + 1) for chosen in combinations(cables, k)):
+        others = model | {"rods": [rod for rod in model["rods"] if rod["name"] not in slack]}
+        free = ~np.array([particle.get("fixed", (False, False)) for particle in model["particles"]]).ravel()
+        if np.linalg.cond(stiffness_matrix(others)[np.ix_(free, free)]) > 1e10:
+            continue
+        state = direct_stiffness(others)
+        forces = state["axial_force"]
+        small = 1e-12 * max(abs(n) for n in forces.values())
+        stretched = any(_elongation(model, name, state["displacement"]) > 0.0 for name in slack)
+        if not stretched and all(forces[name] >= -small for name in cables if name not in slack):
+            return state | {"slack": slack}
+    raise ValueError("No choice of slack cables leaves the others in tension.")
+
+
+def _elongation(model: Model, name: str, displacement: Document) -> float:
+    """First-order elongation [m] of a rod that fits."""
+    rod = next(rod for rod in model["rods"] if rod["name"] == name)
+    at = {particle["name"]: np.array(particle["position"]) for particle in model["particles"]}
+    start, end = rod["between"]
+    change = np.subtract(displacement[end], displacement[start])
+    return float((at[end] - at[start]) @ change) / math.dist(at[start], at[end])
 
 
 def solve(model: Model, factors: Sequence[float] = (1.0,), geometry: str = "exact") -> list[Document]:
@@ -174,7 +205,8 @@ class _Path:
             elongation, along, length = self.kinematics(rod.span, rod.free_length, u[freedoms])
             strain = elongation / rod.rest_length
             trial = rod.stiffness * (strain - committed)
-            n = min(max(trial, -rod.compressive_strength), rod.tensile_strength)
+            slack = rod.tension_only and trial < 0.0
+            n = 0.0 if slack else min(max(trial, -rod.compressive_strength), rod.tensile_strength)
             material = rod.stiffness / rod.rest_length if n == trial else 0.0
             block = material * np.outer(along, along)
             if self.exact:
@@ -182,7 +214,7 @@ class _Path:
             internal[freedoms] += n * np.concatenate([-along, along])
             tangent[np.ix_(freedoms, freedoms)] += np.block([[block, -block], [-block, block]])
             axial_forces.append(n)
-            plastic_strains.append(committed if n == trial else strain - n / rod.stiffness)
+            plastic_strains.append(committed if n == trial or slack else strain - n / rod.stiffness)
         return _Response(internal, tangent, axial_forces, plastic_strains)
 
     def kinematics(
