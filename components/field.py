@@ -264,9 +264,16 @@ class Field(Generic[T]):
             raise FieldError(
                 f"{self.title}: {len(items)} values for {rows} elements; give each one, or all the same."
             )
+        if self._is_any_text and set(map(type, items)) == {str}:
+            column[:] = items
+            return column
         for row, item in enumerate(items):
             column[row] = self.stored(self.check(item, where(row)))
         return column
+
+    @property
+    def _is_any_text(self) -> bool:
+        return self.dtype is str and self.choices is None and self.checker is None
 
     def _plain(self, values: Any) -> Column | None:
         """`values` as an array, if they are of the right type already; NaN is None."""

@@ -178,10 +178,8 @@ def _check_ends(table: Table[Any], rows: NDArray[np.intp]) -> None:
     ends = table.between[rows]
     for row in ends[ends[:, 0] == ends[:, 1], 0][:1].tolist():
         raise FieldError(f"A rod needs two different particles; both ends are {names[row]}.")
-    codes = _pair_codes(table.between)
-    alike = codes[np.isin(codes, codes[rows])]
-    pairs, times = np.unique(alike, return_counts=True)
-    for code in pairs[times > 1][:1].tolist():
+    codes = np.sort(_pair_codes(table.between))
+    for code in codes[1:][codes[1:] == codes[:-1]][:1].tolist():
         first, second = names[[code >> 32, code & 0xFFFFFFFF]]
         raise FieldError(
             f"There is a rod between {first} and {second} already; two particles share at most one."

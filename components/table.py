@@ -119,12 +119,14 @@ class Table(Generic[H]):
         self._versions[name] = self.world.next_revision()
         return self._columns[name][: self.count]
 
-    def free_names(self, count: int) -> list[str]:
-        """The `count` names of the form "rod n" with the smallest n that are not used."""
-        numbered = ((n, f"{self.kind.noun} {n}") for n in itertools.count(self._lowest_number))
-        free = list(itertools.islice((pair for pair in numbered if pair[1] not in self._by_name), count))
-        self._lowest_number = free[0][0] if free else self._lowest_number
-        return [name for _, name in free]
+    def free_names(self, count: int, besides: Iterable[str] = ()) -> list[str]:
+        """The `count` names of the form "rod n" with the smallest n that neither are used nor among `besides`."""
+        while count and f"{self.kind.noun} {self._lowest_number}" in self._by_name:
+            self._lowest_number += 1
+        others = set(besides)
+        numbered = (f"{self.kind.noun} {n}" for n in itertools.count(self._lowest_number))
+        free = (name for name in numbered if name not in self._by_name and name not in others)
+        return list(itertools.islice(free, count))
 
     def renamed(self, rows: NDArray[np.intp], old: Column) -> None:
         """Keep the index of names in step after these rows had the names `old`."""

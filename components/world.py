@@ -460,12 +460,14 @@ class World:
     def tag_only(self, handles: Iterable[Handle], tag: type) -> None:
         """Let exactly these entities carry a mark."""
         self.activate()
-        wanted = {handle.entity for handle in handles if handle.exists}
+        entities = np.array([handle.entity for handle in handles], dtype=np.int64)
+        wanted = set(entities[self.row_of_entity[entities] >= 0].tolist())
         present = {entity for entity, _ in esper.get_component(tag)}
         for entity in present - wanted:
             esper.remove_component(entity, tag)
+        mark = tag()
         for entity in wanted - present:
-            esper.add_component(entity, tag())
+            esper.add_component(entity, mark)
         if wanted != present:
             self.tags_revision = self.next_revision()
 
@@ -485,8 +487,9 @@ class World:
         at, rows = self._tagged.get(tag, (None, {}))
         if at != now:
             self.activate()
-            marked = np.array([entity for entity, _ in esper.get_component(tag)], dtype=np.int64)
-            rows = {t.name: np.flatnonzero(np.isin(t.entities, marked)) for t in self.tables.values()}
+            marked = np.zeros(len(self.row_of_entity), dtype=bool)
+            marked[[entity for entity, _ in esper.get_component(tag)]] = True
+            rows = {t.name: np.flatnonzero(marked[t.entities]) for t in self.tables.values()}
             self._tagged[tag] = (now, rows)
         return rows[table]
 

@@ -38,6 +38,7 @@ from systems.render.theme import load_theme
 FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points
 SMALLEST_SIZE = (320, 240)
+SELDOM = 200_000  # objects more than before, for the garbage collector to look through what is new
 
 Points = NDArray[np.float64]
 Colours = NDArray[np.uint8]
@@ -97,6 +98,7 @@ class App:
             raise NoDisplay(str(error)) from None
         self.window.minimum_size = SMALLEST_SIZE
         pygame.key.set_repeat(400, 40)
+        gc.set_threshold(SELDOM)  # else it does many times while 10 000 elements are copied or saved
         self.input = PygameInput()
         raster = preparation.raster if preparation else load_raster
         self.render = PygameRender(self.window.get_surface(), raster)

@@ -1,8 +1,9 @@
-"""Clipboard: elements as a model of their own, as the text of its document, and back."""
+"""Clipboard: a part of a model as data, as the text of a document, and back."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import msgspec
@@ -16,63 +17,58 @@ from components.particle import Particle
 from components.rod import Rod
 from components.table import Table
 from components.world import Handle
-from game.document import ModelError, document, parse
+from game.document import ModelError, document_of, parse
 from game.models import laid_out
 from systems.edit.moving import movable, rows_of
 from systems.edit.refusal import Refusal
 
 Rows = NDArray[np.int64]
+Kind = type[Handle]
+Chosen = Mapping[Kind, Rows]  # of particles first, then of rods and loads
+
+REFERENCES = {"between", "on"}  # Fields that refer to particles
 
 
-def part(model: Model, handles: Iterable[Handle]) -> Model:
-    """A model of the selected particles and rods, the ends of those rods, and the loads on them.
+@dataclass(frozen=True)
+class Part:
+    """Some particles, with rods between and loads on them, that belong to no model.
+
+    columns: by kind, what they hold, by Field; particles are referred to by their place among these.
+    foreign: by kind and place, what belongs to mods that are not loaded.
+    """
+
+    columns: Mapping[Kind, Mapping[str, Any]]
+    foreign: Mapping[tuple[Kind, int], dict[str, Any]]
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """Original positions of the particles (m), shape (n, 2)."""
+        position: NDArray[np.float64] = self.columns[Particle]["position"]
+        return position
+
+
+def chosen(model: Model, handles: Iterable[Handle]) -> Chosen:
+    """Rows of the selected particles and rods, of the ends of those rods, and of the loads on them.
 
     Raises Refusal if there are none.
     """
-    chosen = list(handles)
-    particles = rows_of(model, movable(model, chosen))
+    selected = list(handles)
+    particles = rows_of(model, movable(model, selected))
     if not len(particles):
         raise Refusal("Nothing is selected that can be copied; click a particle or a rod first.")
-    rods = rows_of(model, [handle for handle in chosen if isinstance(handle, Rod)])
-    loads = np.flatnonzero(np.isin(model.loads.on, particles))
-    new_row = np.zeros(model.particles.count, dtype=np.int64)
-    new_row[particles] = np.arange(len(particles))
-    made = Model()
-    for kind, rows in ((Particle, particles), (Rod, rods), (Load, loads)):
-        made.create(kind, len(rows), **_columns(model, kind, rows, new_row))
-        _keep_foreign(made, model, kind, rows)
-    return made
+    rods = rows_of(model, [handle for handle in selected if isinstance(handle, Rod)])
+    return {Particle: particles, Rod: rods, Load: np.flatnonzero(np.isin(model.loads.on, particles))}
 
 
-def paste(model: Model, source: Model, offset: Vector) -> list[Handle]:
-    """New particles, rods and loads like those of `source`, moved by an offset (m), as one edit.
-
-    Names that are taken are replaced by free ones. Returns the particles and rods.
-    """
-    made: list[Handle] = []
-    new_row = model.particles.count + np.arange(source.particles.count)
-    with model.transaction("paste"):
-        for kind in (Particle, Rod, Load):
-            rows = np.arange(source.tables[kind.table].count)
-            columns = _columns(source, kind, rows, new_row)
-            columns["name"] = _free_names(model.tables[kind.table], columns["name"])
-            if kind is Particle:
-                columns["position"] = columns["position"] + offset
-            new = model.create(kind, len(rows), **columns)
-            _keep_foreign(model, source, kind, rows)
-            made += new if kind is not Load else []
-    return made
-
-
-def written(part: Model) -> str:
-    """A part as the text of a model document."""
+def written(model: Model, rows: Chosen) -> str:
+    """These rows as the text of a model document. Raises Refusal if they cannot be written."""
     try:
-        return laid_out(document(part), depth=2)
+        return laid_out(document_of(model, rows), depth=2)
     except ModelError as error:
         raise Refusal(f"This cannot be copied: {error}") from None
 
 
-def parsed(text: str) -> Model:
+def parsed(text: str) -> Part:
     """The part that such a text describes. Raises Refusal if it is none."""
     try:
         source = parse(msgspec.json.decode(text))
@@ -80,31 +76,53 @@ def parsed(text: str) -> Model:
         source = Model()
     if not source.particles.count:
         raise Refusal("The clipboard holds no particles or rods; select some and copy them with Ctrl+C.")
-    return source
+    return taken(source, {kind: np.arange(source.tables[kind.table].count) for kind in (Particle, Rod, Load)})
 
 
-def _columns(model: Model, kind: type[Handle], rows: Rows, new_row: Rows) -> dict[str, Any]:
-    """What some rows hold, by Field; references to particles renumbered."""
+def taken(model: Model, rows: Chosen) -> Part:
+    """What these rows hold."""
+    place = np.zeros(model.particles.count, dtype=np.int64)
+    place[rows[Particle]] = np.arange(len(rows[Particle]))
+    foreign: dict[tuple[Kind, int], dict[str, Any]] = {}
+    for kind in rows if model.foreign else ():
+        entities = enumerate(model.tables[kind.table].entities[rows[kind]].tolist())
+        foreign |= {(kind, n): model.foreign[entity] for n, entity in entities if entity in model.foreign}
+    return Part({kind: _columns(model, kind, rows[kind], place) for kind in rows}, foreign)
+
+
+def paste(model: Model, part: Part, offset: Vector) -> list[Handle]:
+    """New particles, rods and loads like those of a part, moved by an offset (m), as one edit.
+
+    Names that are taken are replaced by free ones. Returns the particles and rods.
+    """
+    first, made = model.particles.count, {}
+    with model.transaction("paste"):
+        for kind, held in part.columns.items():
+            columns = {**held, "name": _free_names(model.tables[kind.table], held["name"])}
+            if kind is Particle:
+                columns["position"] = columns["position"] + offset
+            for reference in columns.keys() & REFERENCES:
+                columns[reference] = first + columns[reference]
+            made[kind] = model.create(kind, len(columns["name"]), **columns)
+        for (kind, place), kept in part.foreign.items():
+            model.foreign[made[kind][place].entity] = kept
+    return [*made[Particle], *made[Rod]]
+
+
+def _columns(model: Model, kind: Kind, rows: Rows, place: Rows) -> dict[str, Any]:
+    """What some rows hold, by Field; particles that are referred to renumbered."""
     table = model.tables[kind.table]
     columns: dict[str, Any] = {
         field.name: table.column(field.name)[rows] for field in table.fields_in(Role.DOCUMENT, Role.STATE)
     }
-    for reference in columns.keys() & {"between", "on"}:
-        columns[reference] = new_row[columns[reference]]
+    for reference in columns.keys() & REFERENCES:
+        columns[reference] = place[columns[reference]]
     columns["name"] = columns["name"].tolist()
     return columns
 
 
 def _free_names(table: Table[Any], names: list[str]) -> list[str]:
     """The names, those that are taken replaced by new ones."""
-    wanted = set(names)
-    fresh = (name for name in table.free_names(2 * len(names)) if name not in wanted)
-    return [next(fresh) if name in table else name for name in names]
-
-
-def _keep_foreign(model: Model, source: Model, kind: type[Handle], rows: Rows) -> None:
-    """What belongs to mods goes along with the copies, which are the last of their table."""
-    originals, copies = source.tables[kind.table].handles, model.tables[kind.table].handles
-    for row, copy in zip(rows.tolist(), copies[len(copies) - len(rows) :], strict=True):
-        if originals[row].entity in source.foreign:
-            model.foreign[copy.entity] = source.foreign[originals[row].entity]
+    taken = [name in table for name in names]
+    fresh = iter(table.free_names(sum(taken), besides=names))
+    return [next(fresh) if is_taken else name for name, is_taken in zip(names, taken, strict=True)]

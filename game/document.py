@@ -375,7 +375,7 @@ def document(model: Model) -> dict[str, Any]:
     made: dict[str, Any] = {"format": FORMAT, "version": VERSION}
     made |= {key: text for key in ("title", "description") if (text := getattr(model, key))}
     for name, kind in SECTIONS.items():
-        elements = _elements(model, kind)
+        elements = _elements(model, kind, slice(None))
         if not kind.single:
             made |= {name: elements} if elements else {}
         elif elements[0] or kind is not Clock:
@@ -383,34 +383,36 @@ def document(model: Model) -> dict[str, Any]:
     return made
 
 
-def _elements(model: Model, kind: type[Handle]) -> list[dict[str, Any]]:
-    """One object per entity, without the facts that are as by default (settings and the like: with all)."""
+def document_of(model: Model, parts: Mapping[type[Handle], NDArray[np.int64]]) -> dict[str, Any]:
+    """The document of some rows alone, by kind, among them those that they refer to. Raises ModelError."""
+    made: dict[str, Any] = {"format": FORMAT, "version": VERSION}
+    return made | {kind.table: _elements(model, kind, rows) for kind, rows in parts.items() if len(rows)}
+
+
+def _elements(model: Model, kind: type[Handle], chosen: Any) -> list[dict[str, Any]]:
+    """One object per chosen row, without the facts that are as by default (settings and the like: with all)."""
     table = model.tables[kind.table]
     always = {"name", *REQUIRED.get(kind.table, ())}
-    elements: list[dict[str, Any]] = [{} for _ in range(table.count)]
+    entities = table.entities[chosen]
+    elements: list[dict[str, Any]] = [{} for _ in entities]
     for field in _saved_fields(kind):
-        column = table.column(field.name)
-        _refuse_non_finite(model, kind, field, column)
+        column = table.column(field.name)[chosen]
+        _refuse_non_finite(model, entities, field, column)
         if not field.component and (field.key in always or (kind.single and field.role is Role.DOCUMENT)):
-            rows = list(range(table.count))
+            parts = elements
         else:
             rows = np.flatnonzero(_differs_from_default(field, column)).tolist()
-            column = column[rows]
-        for row, value in zip(rows, _json_values(model, field, column), strict=True):
-            _part_for(elements[row], field)[field.key] = value
-    for handle, element in zip(table.handles, elements, strict=True):
-        if handle.entity in model.foreign:
-            kept = _copied(model.foreign[handle.entity], model.describe(handle))
+            parts, column = [elements[row] for row in rows], column[rows]
+        if field.component:
+            parts = [part.setdefault(FOREIGN, {}).setdefault(field.component, {}) for part in parts]
+        key = field.key
+        for part, value in zip(parts, _json_values(model, field, column), strict=True):
+            part[key] = value
+    for entity, element in zip(entities.tolist(), elements, strict=True) if model.foreign else ():
+        if entity in model.foreign:
+            kept = _copied(model.foreign[entity], model.describe(model.handle(entity)))
             element[FOREIGN] = dict(sorted({**element.pop(FOREIGN, {}), **kept}.items()))
     return elements
-
-
-def _part_for(element: dict[str, Any], field: Field[Any]) -> dict[str, Any]:
-    """The object that holds a field's value: the element, or its part for a mod's component."""
-    if not field.component:
-        return element
-    part: dict[str, Any] = element.setdefault(FOREIGN, {}).setdefault(field.component, {})
-    return part
 
 
 def _differs_from_default(field: Field[Any], column: Column) -> NDArray[np.bool_]:
@@ -434,12 +436,12 @@ def _json_values(model: Model, field: Field[Any], column: Column) -> list[Any]:
     return values
 
 
-def _refuse_non_finite(model: Model, kind: type[Handle], field: Field[Any], column: Column) -> None:
+def _refuse_non_finite(model: Model, entities: NDArray[np.int64], field: Field[Any], column: Column) -> None:
     if field.dtype is not float:
         return
     finite = np.isfinite(column) | (np.isnan(column) if field.nullable else False)
     for row in np.argwhere(~finite)[:1, 0].tolist():
-        element, value = model.tables[kind.table][row], field.loaded(column[row])
+        element, value = model.handle(int(entities[row])), field.loaded(column[row])
         raise ModelError(
             f"{model.describe(element)}: {field.title} is {value}, which no file can hold;"
             " rewind or undo to a state before it."

@@ -48,6 +48,7 @@ from systems.input.bindings import PANELS as FORMS
 from systems.physics.pace import natural_pace
 
 if TYPE_CHECKING:
+    from game.clipboard import Part
     from systems.statics.events import Event
     from systems.statics.path import Curve
     from systems.statics.verify import Comparison
@@ -132,6 +133,7 @@ class Session:
         self.view: View = view or View()
         self.gesture: Gesture | None = None
         self._clipboard = ""
+        self.copied: tuple[str, Part] | None = None  # what was put on the clipboard last, as text and as data
         self.notice = ""
         self.window: Window | None = None
         self.on_press: Callable[[str, Vector | None], None] | None = None  # a recorder listens here

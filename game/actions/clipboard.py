@@ -9,7 +9,7 @@ import numpy as np
 from components.field import Vector
 from components.world import Handle
 from game.actions.registry import action
-from game.clipboard import parsed, part, paste, written
+from game.clipboard import Part, chosen, parsed, paste, taken, written
 from systems.edit.placing import snapped
 from systems.edit.rods import delete
 
@@ -21,13 +21,13 @@ BESIDE = 30.0  # points to the right and down, where a duplicate appears
 
 @action("copy")
 def _copy(session: Session, pixel: Vector) -> None:
-    session.clipboard = written(part(session.model, session.selected))
+    _take_along(session)
     session.notice = "Copied; Ctrl+V pastes it at the pointer."
 
 
 @action("cut")
 def _cut(session: Session, pixel: Vector) -> None:
-    session.clipboard = written(part(session.model, session.selected))
+    _take_along(session)
     delete(session.model, session.selected)
     session.notice = "Cut; Ctrl+V pastes it at the pointer."
 
@@ -37,8 +37,8 @@ def _paste(session: Session, pixel: Vector) -> None:
     """With the middle at the pointer, from the toolbar in the middle; the first particle snaps to the grid."""
     if session.view.strip.contains(pixel):
         pixel = session.view.canvas.middle
-    source = parsed(session.clipboard)
-    position = source.particles.position
+    source = _taken_along(session)
+    position = source.position
     middle = 0.5 * (position.min(axis=0) + position.max(axis=0))
     x, y = (position[0] + session.view.camera.to_model(pixel) - middle).tolist()
     offset = np.subtract(snapped(session.model, session.view, (x, y)), position[0]).tolist()
@@ -49,8 +49,20 @@ def _paste(session: Session, pixel: Vector) -> None:
 def _duplicate(session: Session, pixel: Vector) -> None:
     view = session.view
     beside = BESIDE * view.pixel_ratio / view.camera.scale
-    source = part(session.model, session.selected)
+    source = taken(session.model, chosen(session.model, session.selected))
     _show(session, paste(session.model, source, snapped(session.model, view, (beside, -beside))), "Duplicated")
+
+
+def _take_along(session: Session) -> None:
+    rows = chosen(session.model, session.selected)
+    session.clipboard = text = written(session.model, rows)
+    session.copied = text, taken(session.model, rows)
+
+
+def _taken_along(session: Session) -> Part:
+    """What is on the clipboard; it is read only if it is not what was copied here last."""
+    text, copied = session.clipboard, session.copied
+    return copied[1] if copied is not None and copied[0] == text else parsed(text)
 
 
 def _show(session: Session, made: list[Handle], done: str) -> None:

@@ -80,7 +80,9 @@ class Sheet:
 
     def chosen(self, wanted: Rows, rows: Rows) -> NDArray[np.bool_]:
         """For each of `rows`, whether it is among `wanted`."""
-        return np.isin(rows, wanted) if len(wanted) else np.zeros(len(rows), dtype=bool)
+        marked = np.zeros(1 + max(rows.max(initial=-1), wanted.max(initial=-1)), dtype=bool)
+        marked[wanted] = True
+        return marked[rows]
 
     def colours_of(
         self, rows: Rows, layers: Iterable[tuple[Rows, Colour]], otherwise: Colour

@@ -87,11 +87,13 @@ def _dashed(start: Points, end: Points, dash: float) -> tuple[Points, Points]:
 
 
 def draw_halos(sheet: Sheet) -> None:
-    """A soft glow around what is selected and around what a click would hit."""
+    """A soft glow around what is selected, unless that is very much, and around what a click would hit."""
     theme, u = sheet.theme, sheet.unit
     for tag, colour, opacity in ((Selected, theme.selected, 0.16), (Hovered, theme.hover, 0.22)):
         glow = faded(colour, opacity)
         rods = sheet.chosen(sheet.tagged(tag, "rods"), sheet.rods)
+        if rods.sum() > MANY:
+            continue
         if rods.any():
             sheet.marks.append(Strokes(sheet.start[rods], sheet.end[rods], 11.0 * u, glow))
         chosen = sheet.chosen(sheet.tagged(tag, "particles"), sheet.particles)
@@ -162,10 +164,11 @@ def _draw_large_circles(
 
 
 def label_names(sheet: Sheet) -> None:
-    """Names of the selected and hovered elements, and of all where there are few."""
+    """Names of the selected elements, and of all, where there are few; of what a click would hit always."""
     all_of_them = sheet.model.particles.count + sheet.model.rods.count <= FEW
     for table, rows in (("particles", sheet.particles), ("rods", sheet.rods)):
-        marked = np.union1d(sheet.tagged(Selected, table), sheet.tagged(Hovered, table))
+        selected = sheet.tagged(Selected, table)
+        marked = np.append(selected if len(selected) <= FEW else [], sheet.tagged(Hovered, table)).astype(int)
         wanted = np.arange(len(rows)) if all_of_them else np.flatnonzero(sheet.chosen(marked, rows))
         for index in wanted[:FEW].tolist():
             row = int(rows[index])
