@@ -9,6 +9,7 @@ import re
 import shutil
 import uuid
 from collections.abc import Iterable, Mapping
+from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -19,7 +20,7 @@ import msgspec
 from components.model import Model
 from game.document import ModelError, document, parse
 
-__all__ = ["ModelError", "bundled", "document", "laid_out", "load", "parse", "replace", "save"]
+__all__ = ["ModelError", "bundled", "document", "laid_out", "load", "parse", "replace", "save", "told"]
 
 
 FOLDERS: list[Path] = []  # of mods, with models that are opened by name
@@ -38,6 +39,22 @@ def _bundled_files() -> Iterable[Traversable]:
 
 
 # --- reading ---------------------------------------------------------------------------------------
+
+
+class Told(msgspec.Struct):
+    """What a model file says about itself."""
+
+    title: str = ""
+    description: str = ""
+
+
+@cache
+def told(name: str) -> Told:
+    """What a bundled model says about itself, without reading the rest of it."""
+    try:
+        return msgspec.json.decode(_found(name).read_bytes(), type=Told)
+    except (OSError, msgspec.DecodeError):  # which is explained to who opens it
+        return Told()
 
 
 def load(source: str | Path | Mapping[str, Any]) -> Model:

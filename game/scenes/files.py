@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from components.box import FILE_NAME, Box
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 SAVED = "Saved models"
 LARGEST_PICTURED = 4 * 2**20  # bytes of a file that is read for its picture
+READING = 0.012  # s of each frame, or one picture if that takes longer
 
 
 class FileScene(FormScene):
@@ -40,7 +41,7 @@ class FileScene(FormScene):
         rows = list(tiles)
         if rows:
             form.create(Tile, len(rows), **{key: [row[key] for row in rows] for key in rows[0]})
-        self._unread = [tile for tile in form.tiles if isinstance(tile.source, Path)]
+        self._unread = [tile for tile in form.tiles if tile.picture is None and not tile.symbol]
         return form
 
     @property
@@ -94,12 +95,14 @@ class FileScene(FormScene):
         return self._next_unread(session) is not None
 
     def advance(self, session: Session, elapsed: float) -> None:
-        """Read the next picture that is looked for, one a frame so that typing stays fluent."""
+        """Read the next pictures that are looked for, few in a frame so that typing stays fluent."""
         super().advance(session, elapsed)
-        tile = self._next_unread(session)
-        if tile is not None:
+        until = time.perf_counter() + READING
+        while (tile := self._next_unread(session)) is not None:
             self._unread.remove(tile)
             _read_picture(tile)
+            if time.perf_counter() >= until:
+                break
 
     def _next_unread(self, session: Session) -> Tile | None:
         if not self._unread:
@@ -144,7 +147,9 @@ def example(name: str) -> Model:
 
 def _read_picture(tile: Tile) -> None:
     try:
-        if tile.source.stat().st_size <= LARGEST_PICTURED:
+        if isinstance(tile.source, str):
+            tile.picture = example(tile.source)
+        elif tile.source.stat().st_size <= LARGEST_PICTURED:
             tile.picture = models.load(tile.source)
             tile.explanation = tile.picture.description or tile.picture.title
         else:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from components.form import Form, Tile
 from game import library, models
 from game.desk import ModelFile
-from game.scenes.files import FileScene, example, saved_tiles, tile
+from game.scenes.files import FileScene, saved_tiles, tile
 from game.spares import spare_name
 
 if TYPE_CHECKING:
@@ -119,9 +119,8 @@ def _left_behind(session: Session) -> list[dict[str, Any]]:
 
 
 def _examples() -> list[dict[str, Any]]:
-    names = sorted(models.bundled(), key=lambda name: example(name).title)
+    """Tiles of the bundled models, their pictures to be read later."""
+    names = sorted(models.bundled(), key=lambda name: models.told(name).title)
     names.sort(key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
-    shown = [(name, example(name)) for name in names]
-    return [
-        tile(EXAMPLES, model.title or name, name, name, name, model.description, model) for name, model in shown
-    ]
+    shown = [(name, models.told(name)) for name in names]
+    return [tile(EXAMPLES, told.title or name, name, name, name, told.description) for name, told in shown]

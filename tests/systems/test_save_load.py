@@ -16,6 +16,7 @@ from components.camera import Viewport
 from components.field import same
 from components.form import Tile
 from game import Session, library, models
+from game.scenes import files
 from game.scenes.files import FileScene
 from game.scenes.load import Load
 from systems.render.marks import Text
@@ -407,7 +408,10 @@ def test_ages_are_written_in_words(tmp_path: Path, seconds: float, text: str) ->
     assert library.written_age(tmp_path / "gone") == ""
 
 
-def test_pictures_are_read_one_a_frame_and_only_where_they_are_seen(session: Session, data: Path) -> None:
+def test_pictures_are_read_few_a_frame_and_only_where_they_are_seen(
+    session: Session, data: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(files, "READING", 0.0)  # which is time enough for one
     (data / "models").mkdir(parents=True)
     content = json.dumps(triangle()).encode()
     for number in range(60):
@@ -481,7 +485,12 @@ def test_examples_are_pictured_and_said_what_they_are(session: Session) -> None:
     session.press("d")
     examples = [tile for tile in scene_of(session).form.tiles if isinstance(tile.source, str)]
     assert sorted(tile.source for tile in examples) == models.bundled()
-    assert all(tile.picture is not None and tile.explanation for tile in examples)
+    assert all(tile.explanation for tile in examples)
+    while session.busy:
+        session.frame(0.01)
+    seen = [place.item for place in scene_of(session).layout(session).places]
+    assert all(tile.picture is not None for tile in examples if tile in seen)
+    assert any(tile in seen for tile in examples)
     assert len({tile.title for tile in examples}) == len(examples)
     first = [tile.source for tile in itertools.islice(examples, 2)]
     assert first == ["isostatic", "hyperstatic"]
