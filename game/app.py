@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import sys
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -39,6 +40,8 @@ FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points
 SMALLEST_SIZE = (320, 240)
 SELDOM = 200_000  # objects more than before, for the garbage collector to look through what is new
+DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")  # where Linux says what to draw on
+UNSEEN = ("offscreen", "dummy")  # drivers of SDL whose windows nobody sees
 
 Points = NDArray[np.float64]
 Colours = NDArray[np.uint8]
@@ -79,6 +82,17 @@ def _spares() -> SpareKeeper | None:
         return None
 
 
+def _find_display() -> None:
+    """Get ready for a window that somebody can see, or one as SDL_VIDEODRIVER says. Raises NoDisplay, pygame.error."""
+    chosen = "SDL_VIDEODRIVER" in os.environ
+    if not chosen and sys.platform.startswith("linux") and not any(map(os.environ.get, DISPLAYS)):
+        raise NoDisplay(f"neither {' nor '.join(DISPLAYS)} is set")
+    pygame.display.init()
+    if not chosen and pygame.display.get_driver() in UNSEEN:  # the last resort of SDL
+        pygame.display.quit()
+        raise NoDisplay("the display cannot be reached")
+
+
 class App:
     """The window and its session; without a preparation it stands still while something is compiled."""
 
@@ -92,7 +106,7 @@ class App:
     ) -> None:
         os.environ.setdefault("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
         try:
-            pygame.display.init()
+            _find_display()
             self.window = pygame.Window("Pinjoint", FIRST_SIZE, resizable=True, allow_high_dpi=True)
         except pygame.error as error:
             raise NoDisplay(str(error)) from None
