@@ -293,7 +293,7 @@ def controlled(
             time,
             end,
             tolerance,
-            SMALLEST_SHARE * min(step, end - time),
+            max(SMALLEST_SHARE * min(step, end - time), np.nextafter(time, math.inf) - time),
             control,
             search,
             displacement,

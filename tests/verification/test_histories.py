@@ -92,6 +92,20 @@ def test_the_largest_response_to_a_pulse(session: Session) -> None:
     assert at(session, PULSE / 2.0 + PERIOD / 4.0, "pulse") == pytest.approx(expected, rel=2e-4)
 
 
+@pytest.mark.parametrize("integrator", ["dop853", "esdirk4"])
+def test_a_load_may_jump_while_everything_is_at_rest(integrator: str) -> None:
+    """The same response as above, later; no displacement tells yet what an error is relative to."""
+    start = 0.7
+    document = oscillators()
+    document["settings"] = {"integrator": integrator}
+    document["particles"], document["rods"] = document["particles"][6:8], document["rods"][3:4]
+    document["loads"] = [document["loads"][3] | {"history": HISTORIES["pulse"] | {"start": start}}]
+    late = Session.open(document)
+    assert late.run(time=start + PULSE / 2.0 + PERIOD / 4.0) == "time reached", late.message
+    expected = 2.0 * math.sin(math.pi * PULSE / PERIOD)
+    assert late.particles["pulse"].displacement[0] / STATIC == pytest.approx(expected, rel=1e-7)
+
+
 def test_the_steady_response_to_a_sine(session: Session) -> None:
     """Amplitude 1/√((1 − r²)² + (2ξr)²), phase atan(2ξr / (1 − r²)) behind the load."""
     r = 2.0 * math.pi * FREQUENCY / OMEGA
