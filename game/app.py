@@ -15,16 +15,18 @@ import pygame
 from numpy.typing import NDArray
 
 from components.camera import Camera, Viewport
+from components.field import Vector
 from components.model import Model
 from components.toolbar import Toolbar
 from components.view import MARGIN, Plot, View, drawn_positions
 from game.desk import Desk, ModelFile
+from game.performance import FOOTER, LARGER, Performance
 from game.preferences import DEFAULT_THEME, preferred_theme, remember_theme
 from game.preparation import Preparation
 from game.raster_program import load_raster
 from game.scenes.load import Load
-from game.script import Recorder
-from game.session import Session
+from game.script import Failure, Recorder, Script
+from game.session import Frame, Session
 from game.spares import SpareKeeper
 from systems.base import System
 from systems.edit.hover import Hover
@@ -54,24 +56,27 @@ class NoDisplay(RuntimeError):
 def open_window(
     model: Model,
     file: ModelFile,
-    record: tuple[str | None, Any] = (None, None),
     theme: str | None = None,
-) -> None:
+    *,
+    record: tuple[str | None, Any] = (None, None),
+    lesson: Script | None = None,
+) -> list[Failure]:
     """Show a model until the person closes the window; a model without a name: what there is. Raises NoDisplay.
 
-    record: the file to write what the person does to, if any, and the model as the script names it.
-    theme: the name of its colours; None: those that the person chose last.
+    theme: the name of its colours; None: those that the person chose last. record: the file to write what the
+    person does to, if any, and the model as the script names it. lesson: a script to play first; what it
+    expected in vain is returned.
     """
     path, source = record
     app = App(model, file, _spares(), theme or preferred_theme(), Preparation())
+    app.session.lesson = lesson
     if path is not None:
         with open(path, "w", encoding="utf-8") as script:
             Recorder(app.session, script, source)
-            app.run()
-        return
-    if not file.name:
+            return app.run()
+    if not file.name and lesson is None:
         app.welcome()
-    app.run()
+    return app.run()
 
 
 def _spares() -> SpareKeeper | None:
@@ -124,25 +129,26 @@ class App:
         self.session.spares = self.spares = spares
         self.session.preparation = self.preparation = preparation
         self._theme = theme
+        self._clock, self._before = pygame.time.Clock(), time.perf_counter()
         self._follow_size()
         self.session.view.fit(model)
         self._full_screen = False
         self._desk: Desk | None = None
 
-    def run(self) -> None:
-        """Frames at 60 Hz until the window is closed."""
-        clock = pygame.time.Clock()
-        before = time.perf_counter()
+    def run(self) -> list[Failure]:
+        """Frames at 60 Hz until the window is closed; returns what played scripts expected in vain."""
+        failures: list[Failure] = []
         while not self.input.closed:
-            now = time.perf_counter()
-            self.frame(now - before)
-            before = now
-            clock.tick(FRAME_RATE)
+            self.next_frame()
+            if self.session.lesson is not None:
+                lesson, self.session.lesson = self.session.lesson, None
+                failures += Performance(self, lesson).play()
         if self.spares is not None:
             self.spares.close(self.session.desks)
         if self.preparation is not None:
             self.preparation.close()
         pygame.display.quit()
+        return failures
 
     def welcome(self) -> None:
         """Begin with a choice of models."""
@@ -151,25 +157,38 @@ class App:
         load.welcome = True
         self.session.act("load")
 
-    def frame(self, elapsed: float) -> None:
+    def next_frame(self, *, wait: bool = True) -> Frame:
+        """A frame when it is time for it, or at once."""
+        if wait:
+            self._clock.tick(FRAME_RATE)
+        now, before = time.perf_counter(), self._before
+        self._before = now
+        return self.frame(now - before)
+
+    def frame(self, elapsed: float) -> Frame:
         """One frame: input, steps and picture."""
         self._follow_size()
         self._follow_title()
-        self.session.frame(elapsed)
+        frame = self.session.frame(elapsed)
         self._follow_theme()
         if self.render.drawn:
             self.window.flip()
         elif not self.session.busy:
             self._clean_up()
+        return frame
 
     def _follow_size(self) -> None:
         """Let the viewport and the size of type follow the window, and the display's pixel density."""
         surface = self.window.get_surface()
         self.render.surface = surface
-        size, ratio = surface.get_size(), surface.get_width() / max(self.window.size[0], 1)
-        view = self.session.view
-        if (Viewport(0, 0, *size), ratio) != (view.camera.viewport, view.pixel_ratio):
-            self.session.resize(*size, ratio)
+        (width, height), ratio = surface.get_size(), surface.get_width() / max(self.window.size[0], 1)
+        view, footer = self.session.view, self.session.footer
+        if footer is not None:
+            low = min(round(FOOTER * ratio), height - 1)
+            height -= low
+            footer.camera.viewport, footer.pixel_ratio = Viewport(0, height, width, low), LARGER * ratio
+        if (Viewport(0, 0, width, height), ratio) != (view.camera.viewport, view.pixel_ratio):
+            self.session.resize(width, height, ratio)
 
     def _follow_title(self) -> None:
         """Let the window's title name the model, with a dot while it has unsaved work."""
@@ -195,6 +214,12 @@ class App:
         if self.session.view.theme != self._theme:
             self._theme = self.session.view.theme
             remember_theme(self._theme)
+
+    def point(self, pixel: Vector) -> None:
+        """Take the pointer to a pixel."""
+        view = self.session.view
+        view.pointer = pixel
+        pygame.mouse.set_pos(pixel[0] / view.pixel_ratio, pixel[1] / view.pixel_ratio)
 
     def copied(self) -> str:
         """The text on the system's clipboard."""

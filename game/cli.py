@@ -9,9 +9,10 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from components.field import FieldError
+from components.model import Model
 from components.settings import INTEGRATORS
 from game import __version__, bench, models, script
 from game.curve import as_csv as as_curve
@@ -94,21 +95,29 @@ def _open(words: Sequence[str]) -> int:
     source = options.model or script.EMPTY
     model, file = models.load(source), file_of(source)
     try:
+        _in_window(model, file, options.theme, record=(options.record, source))
+    except OSError as error:
+        raise Refusal(
+            f"{options.record} cannot be written: {error.strerror}. Choose another --record."
+        ) from None
+    return ANSWERED
+
+
+def _in_window(model: Model, file: ModelFile, theme: str | None = None, **further: Any) -> list[script.Failure]:
+    """Show a model until the window is closed; returns what a script that was played expected in vain."""
+    try:
         from game.app import NoDisplay, open_window
     except ImportError as error:
         raise Refusal(f"The window needs pygame-ce, which cannot be imported: {error}.", NO_DISPLAY) from None
     try:
         with in_use():
-            open_window(model, file, (options.record, source), options.theme)
-    except OSError as error:
-        raise Refusal(
-            f"{options.record} cannot be written: {error.strerror}. Choose another --record."
-        ) from None
+            return open_window(model, file, theme, **further)
     except NoDisplay as error:
         raise Refusal(
-            f"No window can be opened: {error}. Without a display, use: pinjoint run MODEL", NO_DISPLAY
+            f"No window can be opened: {error}. Without a display, use: pinjoint run MODEL,"
+            " or pinjoint play SCRIPT without --window.",
+            NO_DISPLAY,
         ) from None
-    return ANSWERED
 
 
 # --- running without a window ------------------------------------------------------------------------------
@@ -380,33 +389,26 @@ def _force_method(words: Sequence[str]) -> int:
 
 
 def _play(words: Sequence[str]) -> int:
-    parser = Parser(prog="pinjoint play", description="Play a recorded or written session in the real program.")
-    parser.add_argument("script", metavar="SCRIPT")
-    parser.add_argument("--window", action="store_true", help="show it in a window while it plays")
+    parser = Parser(
+        prog="pinjoint play",
+        description="Play a recorded or written session, or a lesson, in the real program.",
+        epilog=f"lessons: {', '.join(script.lessons())}",
+    )
+    parser.add_argument("script", metavar="SCRIPT", help="a file of JSON lines, or the name of a lesson")
+    parser.add_argument(
+        "--window", action="store_true", help="show it in a window, at a pace to follow, and go on from there"
+    )
     options = parser.parse_args(words)
     loaded = script.Script(options.script)
-    session = _shown(loaded) if options.window else loaded.open()
-    failures = loaded.play(session)
+    if options.window:
+        failures = _in_window(models.load(loaded.source), file_of(loaded.source), lesson=loaded)
+    else:
+        failures = loaded.play(loaded.open())
     for failure in failures:
         print(f"{options.script} {failure}", file=sys.stderr)
-    played = f"{len(loaded.lines) - 1} lines"
-    print(
-        f"{options.script}: {played}, {len(failures)} expectations failed"
-        if failures
-        else f"{options.script}: {played}, all as expected"
-    )
+    found = f"{len(failures)} expectations failed" if failures else "all as expected"
+    print(f"{options.script}: {len(loaded.lines) - 1} lines, {found}")
     return NOT_ANSWERED if failures else ANSWERED
-
-
-def _shown(loaded: script.Script) -> Session:
-    from game.app import App, NoDisplay
-
-    try:
-        app = App(loaded.open().model, ModelFile(None, loaded.path.stem))
-    except NoDisplay as error:
-        raise Refusal(f"No window can be opened: {error}. Leave --window out.", NO_DISPLAY) from None
-    app.session.on_press = lambda key, pixel: app.frame(1.0 / 60.0)
-    return app.session
 
 
 # --- pictures ----------------------------------------------------------------------------------------------

@@ -1,8 +1,8 @@
 """Scripted sessions: JSON lines that play a session through the real scenes and keys, and record one.
 
 The first line is a header, {"format": "pinjoint session", "version": 1, "model": "isostatic"} (a bundled
-name, a path relative to the script, or a whole document; left out: an empty model). Every further line
-does one thing:
+name, a path relative to the script, or a whole document; left out: an empty model), perhaps with a "title" and
+a "description". Every further line does one thing:
 
     {"press": "space"}                          a key; "over": [x, y] first moves the pointer there (m)
     {"click": [1.0, 1.0]}                       at a point of the model (m); "button": "ctrl+click"
@@ -15,6 +15,7 @@ does one thing:
     {"expect": "rods.AB.axial_force ≈ -28.34 ± 0.01"}   also =, <, >; scene, time, message, energy.…
     {"input": "click", "pixel": [512, 300]}     what a window recorded
     {"resize": [1280, 800, 2]}                  the window's pixels, and pixels per point
+    {"say": "Press Space."}                     told to who watches it in a window; else nothing
 
 "clipboard" says what was on the clipboard then.
 
@@ -27,13 +28,17 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from importlib.resources import files
+from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from components.field import Vector
 from game.expectation import check
 from game.overrides import apply_override
-from game.session import Session
+
+if TYPE_CHECKING:
+    from game.session import Session
 
 HEADER = {"format": "pinjoint session", "version": 1}
 EMPTY = {"format": "pinjoint model", "version": 1}
@@ -55,20 +60,37 @@ class Failure:
         return f"line {self.line}: expected {self.expected}, got {self.got}"
 
 
-class Script:
-    """A script read from a file, ready to be played in a session."""
+def lessons() -> list[str]:
+    """Names of the scripts that come with the program, in the order in which they are to be seen."""
+    names = sorted(entry.name for entry in files("assets").joinpath("lessons").iterdir())
+    return [name.removesuffix(".jsonl") for name in names if name.endswith(".jsonl")]
 
-    def __init__(self, path: str | Path) -> None:
-        self.path = Path(path)
+
+def _found(source: str | Path) -> Path | Traversable:
+    """The lesson of that name, or else a file."""
+    if isinstance(source, str) and source in lessons():
+        return files("assets").joinpath("lessons", f"{source}.jsonl")
+    return Path(source)
+
+
+class Script:
+    """A script read from a file, or a lesson by its name, ready to be played in a session.
+
+    title, description: what its header says of it, or "".
+    """
+
+    def __init__(self, source: str | Path) -> None:
+        self.path = _found(source)
         self.lines = list(self._read())
         if not self.lines or self.lines[0][1].get("format") != HEADER["format"]:
             raise ScriptError(
-                f"{path}: its first line must be like {json.dumps({**HEADER, 'model': 'isostatic'})}."
+                f"{source}: its first line must be like {json.dumps({**HEADER, 'model': 'isostatic'})}."
             )
         if self.lines[0][1].get("version") != HEADER["version"]:
             raise ScriptError(
-                f"{path}: version {self.lines[0][1].get('version')} is not known; update Pinjoint."
+                f"{source}: version {self.lines[0][1].get('version')} is not known; update Pinjoint."
             )
+        self.title, self.description = (str(self.lines[0][1].get(key, "")) for key in ("title", "description"))
 
     def _read(self) -> Iterator[tuple[int, dict[str, Any]]]:
         try:
@@ -86,22 +108,30 @@ class Script:
                 raise ScriptError(f'{self.path} line {number}: write an object, such as {{"press": "space"}}.')
             yield number, entry
 
+    @property
+    def source(self) -> Any:
+        """What the header names as the model to begin with."""
+        source = self.lines[0][1].get("model", EMPTY)
+        beside = self.path.parent / source if isinstance(self.path, Path) and isinstance(source, str) else None
+        return beside if beside is not None and beside.is_file() else source
+
     def open(self) -> Session:
         """The session that the header asks for. Raises ModelError."""
-        source = self.lines[0][1].get("model", EMPTY)
-        beside = self.path.parent / source if isinstance(source, str) else None
-        return Session.open(beside if beside is not None and beside.is_file() else source)
+        from game.session import Session  # whose scenes know scripts
+
+        return Session.open(self.source)
 
     def play(self, session: Session) -> list[Failure]:
         """Play all lines; returns the expectations that did not hold. Raises ScriptError."""
-        failures = []
-        for number, entry in self.lines[1:]:
-            try:
-                failures += [Failure(number, *wrong) for wrong in perform(session, entry)]
-            except (ValueError, LookupError, TypeError) as error:
-                reason = error.args[0] if error.args else error
-                raise ScriptError(f"{self.path} line {number}: {reason}") from error
-        return failures
+        return [failure for number, entry in self.lines[1:] for failure in self.perform(session, number, entry)]
+
+    def perform(self, session: Session, number: int, entry: Mapping[str, Any]) -> list[Failure]:
+        """Do what one of the lines says; returns the expectations that did not hold. Raises ScriptError."""
+        try:
+            return [Failure(number, *wrong) for wrong in perform(session, entry)]
+        except (ValueError, LookupError, TypeError) as error:
+            reason = error.args[0] if error.args else error
+            raise ScriptError(f"{self.path} line {number}: {reason}") from error
 
 
 def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
@@ -150,6 +180,7 @@ _VERBS: dict[str, Callable[[Session, Any], Any]] = {
     "action": lambda session, name: session.act(name),
     "run": _run,
     "steps": lambda session, count: session.run(steps=int(count)),
+    "say": lambda session, text: None,
     "resize": lambda session, size: session.resize(int(size[0]), int(size[1]), float(size[2])),
 }
 

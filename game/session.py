@@ -49,6 +49,7 @@ from systems.physics.pace import natural_pace
 
 if TYPE_CHECKING:
     from game.clipboard import Part
+    from game.script import Script
     from systems.statics.events import Event
     from systems.statics.path import Curve
     from systems.statics.verify import Comparison
@@ -140,7 +141,13 @@ class Session:
         self.on_resize: Callable[[], None] | None = None  # and here
         self.spares: Spares | None = None  # unsaved work is kept in them, in a window
         self.preparation: Prepares | None = None  # compiles ahead of need, in a window
+        self.performing = (
+            False  # a script is shown in a window: input is not for the scenes, no time passes by itself
+        )
+        self.footer: View | None = None  # what stands below the picture meanwhile
+        self.lesson: Script | None = None  # that a person asked for
         self._awaited: Simulation | None = None  # something could not be done without its step program
+        self._blank = Model()  # what the footer is drawn over
         self._keyed = ""  # the scene in which a key was pressed last
         self.faults_told = len(FAULTS)  # of mods; the others are shown
         self._offer_tools()
@@ -615,7 +622,7 @@ class Session:
         """One frame: input → actions → transition → fixed steps → events → picture."""
         frame = Frame(self, elapsed)
         self._phase(Phase.INPUT, frame)
-        for key, pixel in frame.pressed:
+        for key, pixel in frame.pressed if not self.performing else ():
             if not key.startswith(TEXT):
                 self._keyed = self.scene
             elif self._keyed != self.scene:  # the key that led here; it is not meant for a box
@@ -623,7 +630,8 @@ class Session:
             self.press(key, pixel)
         self.scenes.apply(self)
         self._phase(Phase.EDIT, frame)
-        self.scenes.active.advance(self, elapsed)
+        if not (self.performing and self.scene == "simulation"):
+            self.scenes.active.advance(self, elapsed)
         self._phase(Phase.EVENTS, frame)
         self.update_view()
         self._phase(Phase.RENDER, frame)
@@ -664,7 +672,11 @@ class Session:
     def stages(self) -> Sequence[Stage]:
         """What the active scene shows: models, each in its view, and the toolbar if it has one."""
         stages = list(self.scenes.active.stages(self))
-        return stages if self.scene in FORMS else [*stages, (self.view.toolbar, self.view)]
+        if self.scene not in FORMS:
+            stages.append((self.view.toolbar, self.view))
+        if self.footer is not None:
+            stages.append((self._blank, self.footer))
+        return stages
 
     @property
     def busy(self) -> bool:

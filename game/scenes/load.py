@@ -8,6 +8,7 @@ from components.form import Form, Tile
 from game import library, models
 from game.desk import ModelFile
 from game.scenes.files import FileScene, saved_tiles, tile
+from game.script import Script, lessons
 from game.spares import spare_name
 
 if TYPE_CHECKING:
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
 WELCOME = "Welcome to Pinjoint. What would you like to begin with?"
 NEW = "New, empty model"
+LESSONS = "Begin here"
 EXAMPLES = "Examples"
 LEFT_BEHIND = "Unsaved work, recovered"
 DISCARD = "discard what was recovered"  # what a tile stands for that opens nothing
@@ -38,10 +40,17 @@ class Load(FileScene):
 
     def make_form(self, session: Session) -> Form:
         self._asked = False
-        saved, examples = saved_tiles(), _examples()
-        beside = saved[0] if saved else examples[0]
-        new = tile(beside["section"], NEW, "draw your own", "", None, "An empty plane to draw on.", symbol="+")
-        tiles = [*_left_behind(session), new, *saved, *examples]
+        saved = saved_tiles()
+        new = tile(
+            saved[0]["section"] if saved else LESSONS,
+            NEW,
+            "draw your own",
+            "",
+            None,
+            "An empty plane to draw on.",
+            symbol="+",
+        )
+        tiles = [*_left_behind(session), new, *saved, *_lessons(), *_examples()]
         form = self.new_form(WELCOME if self.welcome else "Load", "", tiles)
         form.boxes[0].note = "type to search, or click a picture"
         return form
@@ -84,7 +93,10 @@ class Load(FileScene):
 
     def _open(self, session: Session, source: Any) -> None:
         try:
-            if session.spares is not None and source in session.spares.left():
+            if isinstance(source, Script):
+                session.open_here(source.source)
+                session.lesson = source
+            elif session.spares is not None and source in session.spares.left():
                 session.adopt(models.load(source), ModelFile(None, spare_name(source)))
                 session.spares.take_over(source, session.desk)
             else:
@@ -116,6 +128,13 @@ def _left_behind(session: Session) -> list[dict[str, Any]]:
     ]
     discard = tile(LEFT_BEHIND, "Discard", "what was recovered", "", DISCARD, symbol="×")
     return [*tiles, discard] if tiles else []
+
+
+def _lessons() -> list[dict[str, Any]]:
+    scripts = [(name, Script(name)) for name in lessons()]
+    return [
+        tile(LESSONS, s.title, "a lesson to watch", name, s, s.description, symbol="▶") for name, s in scripts
+    ]
 
 
 def _examples() -> list[dict[str, Any]]:

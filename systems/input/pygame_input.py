@@ -63,7 +63,7 @@ class PygameInput(System):
     def process(self, frame: Any) -> None:
         """Collect the events since the last frame; sleep a little where nothing can happen without one."""
         events = pygame.event.get()
-        if not events and not frame.session.busy:
+        if not events and not (frame.session.busy or frame.session.performing):
             events = _awaited()
         for event in events:
             self._handle(event, frame)

@@ -13,7 +13,7 @@ from components.field import Role
 from game import Session
 from game.cli import main
 from game.library import DATA_VARIABLE
-from game.script import Recorder, Script, ScriptError
+from game.script import Recorder, Script, ScriptError, lessons
 
 SCRIPTS = sorted(Path(__file__).parent.glob("*.jsonl"))
 
@@ -23,6 +23,14 @@ def test_session(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setenv(DATA_VARIABLE, str(tmp_path))
     script = Script(path)
     assert [str(failure) for failure in script.play(script.open())] == []
+
+
+@pytest.mark.parametrize("name", lessons())
+def test_lesson(name: str) -> None:
+    lesson = Script(name)
+    assert [str(failure) for failure in lesson.play(lesson.open())] == []
+    assert lesson.title
+    assert lesson.description
 
 
 def test_an_expectation_that_fails_says_what_where_expected_and_got(

@@ -19,6 +19,7 @@ from game import Session, library, models
 from game.scenes import files
 from game.scenes.files import FileScene
 from game.scenes.load import Load
+from game.script import lessons
 from systems.render.marks import Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
@@ -249,7 +250,7 @@ def test_typing_filters_by_title_and_name(session: Session) -> None:
     saved_as(session, "my tower")
     session.press("ctrl+o")
     everything = shown_tiles(session)
-    assert len(everything) == len(models.bundled()) + 2
+    assert len(everything) == len(models.bundled()) + len(lessons()) + 2
     session.type("TOWER")
     assert shown_tiles(session) == ["my tower", "Lattice tower in the wind"]
     session.type(" wind")

@@ -1,0 +1,177 @@
+"""Performance: a scripted session played in a window, at a pace to follow."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from components.field import Vector
+from components.view import Page, Status, View
+from game.program_writer import REVIEW_INTERVAL
+from game.script import Failure, Script
+
+if TYPE_CHECKING:
+    from game.app import App
+
+FOOTER, LARGER = (
+    112.0,
+    1.25,
+)  # height (points) and type, relative to all other, of what is said below the picture
+RATE = 60.0  # pictures a second of a run
+BEAT = 0.7  # s between what is done, so that each can be seen
+REACH = 0.4  # s that the pointer takes to where something is done
+READING = 1.2, 0.055  # s that a sentence stays: at least, and more for each character
+PATIENCE = 6.0  # s of a run that are shown at its natural pace; then it goes faster and faster
+HURRY = ("space", "return", "right", "click")
+DONE = "That was it. Go on from here as you like; Ctrl+Z goes back through all of it."
+
+_UNSEEN = {"expect", "resize", "window"}  # what takes no time to watch
+
+
+class Performance:
+    """Plays a script in a window; keys go on at once (Space) or end it (Esc), and else do nothing.
+
+    pace: 1 for people; 0 waits for nobody.
+    """
+
+    def __init__(self, app: App, script: Script, pace: float = 1.0) -> None:
+        self._app = app
+        self._script = script
+        self._pace = pace
+        self._hurried = self._ended = False
+        self._running_since: float | None = None
+        self._natural = 0.0  # simulated seconds per second shown of what runs
+
+    def play(self) -> list[Failure]:
+        """Play all lines, or until the person ends it; returns what was expected in vain. Raises ScriptError."""
+        session, failures = self._app.session, []
+        session.performing, session.footer = True, View()
+        self._grow(1)
+        self._say(self._script.title)
+        try:
+            for number, entry in self._script.lines[1:]:
+                self._hurried = False
+                self._lead_to(entry)
+                if self._ended:
+                    break
+                failures += self._perform(number, entry)
+                self._watch_what_came(entry)
+        finally:
+            session.performing, session.footer = False, None
+            self._grow(-1)
+        if not self._ended:
+            session.notice = DONE
+        return failures
+
+    # --- one line ------------------------------------------------------------------------------------
+
+    def _perform(self, number: int, entry: Mapping[str, Any]) -> list[Failure]:
+        session = self._app.session
+        self._wait_for_program()
+        self._running_since = None
+        session.simulation.watch = self._watch_time
+        try:
+            if set(entry) == {"type"}:  # letter by letter
+                return [f for letter in entry["type"] for f in self._typed(number, letter)]
+            return self._script.perform(session, number, entry)
+        finally:
+            session.simulation.watch = None
+
+    def _typed(self, number: int, letter: str) -> list[Failure]:
+        failures = self._script.perform(self._app.session, number, {"type": letter})
+        self._wait(0.12)
+        return failures
+
+    def _lead_to(self, entry: Mapping[str, Any]) -> None:
+        """Take the pointer to where the next thing is done."""
+        target = self._target(entry)
+        if target is None:
+            return
+        view = self._app.session.view
+        start = view.pointer or view.camera.middle
+        began, share = time.monotonic(), 0.0
+        while share < 1.0 and not self._skipping:
+            share = min((time.monotonic() - began) / (REACH * self._pace), 1.0)
+            ease = share * share * (3.0 - 2.0 * share)
+            self._app.point(
+                (start[0] + ease * (target[0] - start[0]), start[1] + ease * (target[1] - start[1]))
+            )
+            self._frame()
+
+    def _target(self, entry: Mapping[str, Any]) -> Vector | None:
+        """The pixel where a line does something, if it does it anywhere."""
+        if isinstance(pixel := entry.get("pixel"), list):
+            return float(pixel[0]), float(pixel[1])
+        at = entry.get("over") or entry.get("click") or (entry.get("drag") or [None])[0]
+        if not isinstance(at, list) or len(at) != 2:
+            return None
+        x, y = self._app.session.focus[1].camera.to_pixels((float(at[0]), float(at[1]))).tolist()
+        return x, y
+
+    def _watch_what_came(self, entry: Mapping[str, Any]) -> None:
+        if "resize" in entry:
+            width, height, ratio = (*entry["resize"], 1.0)[:3]
+            self._app.window.size = round(width / ratio), round(height / ratio + FOOTER)
+        if "say" in entry:
+            self._say(str(entry["say"]))
+        elif not _UNSEEN & set(entry):
+            self._wait(BEAT if "input" not in entry else 0.1 * BEAT)
+
+    def _say(self, text: str) -> None:
+        footer = self._app.session.footer
+        if text and footer is not None:
+            footer.page = Page((text,))
+            footer.status = Status(time=None, state="Lesson", hint="Space goes on     Esc ends it")
+            least, each = READING
+            self._wait(max(least, each * len(text)))
+
+    # --- time ------------------------------------------------------------------------------------------
+
+    @property
+    def _skipping(self) -> bool:
+        return self._hurried or self._ended or self._pace == 0.0
+
+    def _wait(self, seconds: float) -> None:
+        """Frames for so long; one at least."""
+        began = time.monotonic()
+        self._frame()
+        while not self._skipping and time.monotonic() - began < seconds * self._pace:
+            self._frame()
+
+    def _wait_for_program(self) -> None:
+        """Let the picture go on while what the model needs is compiled."""
+        session = self._app.session
+        while not self._ended and not session.has_program(session.simulation):
+            self._frame()
+
+    def _watch_time(self) -> int:
+        """Show what a run has come to; returns the steps that it may take until the next picture."""
+        simulation = self._app.session.simulation
+        if self._running_since is None:
+            self._running_since, self._natural = time.monotonic(), self._app.session.pace
+        if self._skipping:
+            return REVIEW_INTERVAL
+        simulation.watch = None  # the picture is of the run as it is
+        self._frame()
+        simulation.watch = self._watch_time
+        shown = time.monotonic() - self._running_since
+        faster = 2.0 ** max(shown - PATIENCE * self._pace, 0.0)
+        step = simulation.model.clock.step_size
+        steps = faster * self._natural / (RATE * step) if step > 0.0 else 1.0
+        return math.ceil(min(steps, REVIEW_INTERVAL))
+
+    def _frame(self) -> None:
+        """A picture, and a look at what the person wants."""
+        app = self._app
+        pointer = app.session.view.pointer
+        pressed = [key for key, _ in app.next_frame(wait=self._pace > 0.0).pressed]
+        app.session.view.pointer = pointer  # the mouse leads nobody astray
+        self._hurried |= any(key in HURRY for key in pressed)
+        self._ended |= "escape" in pressed or app.input.closed
+
+    def _grow(self, sign: int) -> None:
+        """Make room for the footer below the picture, or take it away."""
+        width, height = self._app.window.size
+        self._app.window.size = width, round(height + sign * FOOTER)

@@ -1,0 +1,100 @@
+"""A script that is played in a window comes to what it comes to without one, and a person can end it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
+
+import pygame
+import pytest
+
+from components.model import Model
+from game import Session, models
+from game.app import App
+from game.desk import ModelFile
+from game.performance import Performance
+from game.scenes.load import LESSONS
+from game.script import Script, lessons
+from tests.reference.bits import columns, different
+
+
+@pytest.fixture
+def app() -> Iterator[App]:
+    window = App(Model(), ModelFile(None, "anything"))
+    window.frame(0.0)
+    yield window
+    pygame.display.quit()
+
+
+def opened(app: App, script: Script) -> Performance:
+    app.session.open_here(script.source)
+    return Performance(app, script, pace=0.0)
+
+
+@pytest.mark.parametrize("name", lessons())
+def test_a_lesson_comes_to_the_same_bits_as_without_a_window(app: App, name: str) -> None:
+    script = Script(name)
+    assert opened(app, script).play() == []
+    headless = script.open()
+    script.play(headless)
+    assert different(columns(app.session.model), columns(headless.model)) == []
+
+
+def test_room_for_what_is_said_is_made_and_taken_away(app: App, monkeypatch: pytest.MonkeyPatch) -> None:
+    viewport, size = app.session.view.camera.viewport, tuple(app.window.size)
+    said: list[str] = []
+    heights: set[int] = set()
+    frame = app.frame
+
+    def watched(elapsed: float) -> object:
+        result = frame(elapsed)
+        footer = app.session.footer
+        if footer is not None and footer.page is not None:
+            said.extend(footer.page.lines)
+            heights.add(app.session.view.camera.viewport.height)
+            assert footer.camera.viewport.top == app.session.view.camera.viewport.height
+        return result
+
+    monkeypatch.setattr(app, "frame", watched)
+    opened(app, Script("3_force_method")).play()
+    assert any("K begins the force method" in text for text in said)
+    assert heights == {viewport.height}
+    app.frame(0.0)
+    assert app.session.footer is None
+    assert app.session.view.camera.viewport == viewport
+    assert tuple(app.window.size) == size
+
+
+def test_escape_ends_a_lesson_and_the_person_goes_on(app: App) -> None:
+    pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_ESCAPE, mod=0, unicode=""))
+    performance = opened(app, Script("1_draw_a_truss"))
+    assert performance.play() == []
+    assert app.session.particles.count == 0
+    app.session.press("p", (400.0, 300.0))
+    assert app.session.particles.count == 1
+
+
+def test_keys_pressed_meanwhile_do_nothing_to_the_model(app: App) -> None:
+    for key in (pygame.K_p, pygame.K_DELETE, pygame.K_SPACE):
+        pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=key, mod=0, unicode=""))
+    script = Script("1_draw_a_truss")
+    assert opened(app, script).play() == []
+    assert app.session.particles.count == 3
+
+
+def test_a_lesson_is_chosen_from_the_pictures() -> None:
+    session = Session(models.load("isostatic"))
+    session.act("load")
+    tiles = [tile for tile in session.scenes.active.form.tiles if tile.section == LESSONS]  # type: ignore[attr-defined]
+    assert [tile.source.title for tile in tiles[-len(lessons()) :]] == [
+        Script(name).title for name in lessons()
+    ]
+    session.type("two in")
+    session.press("down")
+    session.press("return")
+    assert session.scene == "pause"
+    assert session.lesson is not None
+    assert session.lesson.title.startswith("Two in")
+    assert session.particles.count == models.load("newtons_cradle").particles.count
