@@ -483,6 +483,7 @@ def test_arrows_reach_every_picture_and_show_it(session: Session, size: tuple[in
 
 
 def test_examples_are_pictured_and_said_what_they_are(session: Session) -> None:
+    session.view.camera.viewport = Viewport(0, 0, 1000, 900)
     session.press("d")
     examples = [tile for tile in scene_of(session).form.tiles if isinstance(tile.source, str)]
     assert sorted(tile.source for tile in examples) == models.bundled()
