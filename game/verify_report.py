@@ -98,6 +98,7 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
         "status": NOT_VERIFIED,
         "message": "",
         "indeterminacy": asdict(indeterminacy(model)),
+        "cables": [name for name, cable in zip(rods, model.rods.tension_only, strict=True) if cable],
         "mechanisms": [
             {"description": describe_motion(model, motion[None]), "motion": _by_particle(model, motion)}
             for motion in moving
@@ -195,6 +196,7 @@ def _verify_lines(found: Found) -> Iterator[str]:
     yield (
         f"statically indeterminate to degree {degrees['static']} (internal {degrees['internal']},"
         f" external {degrees['external']}), {degrees['mechanisms'] or 'no'} mechanism{'s' if count != 1 else ''}"
+        + (", all cables counted as taut" if found["cables"] else "")
     )
     for mechanism in found["mechanisms"][:SHOWN]:
         yield f"mechanism: {mechanism['description']}"

@@ -90,7 +90,8 @@ def draw_rod_diagrams(sheet: Sheet) -> None:
         rise = normal[:, axis] * height
         corners[:, 1, axis], corners[:, 2, axis] = start[:, axis] + rise, end[:, axis] + rise
     pulled, pushed = values > SMALLEST_FORCE, values < -SMALLEST_FORCE
-    for name, mask in (("tension", pulled), ("compression", pushed), ("zero", ~(pulled | pushed))):
+    nothing = ~(pulled | pushed | sheet.model.rods.tension_only[rows])  # a slack cable stays dashed
+    for name, mask in (("tension", pulled), ("compression", pushed), ("zero", nothing)):
         if mask.any():
             _draw_rectangles(sheet, name, corners[mask])
     _label_rods(sheet, rows, values, (start + end) / 2, normal, height)

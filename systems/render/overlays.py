@@ -8,6 +8,7 @@ import numpy as np
 
 from systems.render.marks import Mark, Panel, Rectangles, Stamps, Strokes, Text
 from systems.render.sheet import Sheet
+from systems.render.symbols import dashed
 from systems.render.theme import Colour, faded
 from systems.render.typography import line_height, shortened, text_width, wrapped
 
@@ -229,6 +230,7 @@ _MEANINGS = {
     "tension": "tension (kN)",
     "compression": "compression (kN)",
     "yielding": "yielding",
+    "slack": "slack cable",
     "force": "external force (kN)",
 }
 
@@ -275,13 +277,16 @@ def _rows(widths: list[float], gap: float, room: float) -> list[tuple[int, int]]
 
 
 def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:
-    """The thing itself, small: a diagram, a yielding rod, an arrow."""
-    u, colour = sheet.unit, getattr(sheet.theme, name)
+    """The thing itself, small: a diagram, a yielding rod, a slack cable, an arrow."""
+    u, theme = sheet.unit, sheet.theme
+    colour = theme.ink if name == "slack" else getattr(theme, name)
     ends = np.array([[x, y]]), np.array([[x + width, y]])
     if name == "force":
         return [Stamps("arrow", ends[0], width, u, colour, colour)]
     if name == "yielding":
         return [Strokes(*ends, 3.0 * u, colour)]
+    if name == "slack":
+        return [Strokes(*dashed(*ends, width / 5), 1.25 * u, colour)]
     return [
         Panel(x, y - 5.0 * u, width, 10.0 * u, 1.0 * u, faded(colour, 0.18), colour),
     ]

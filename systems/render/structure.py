@@ -12,10 +12,12 @@ from systems.render.clip import bounds, clip_segments
 from systems.render.labels import FAINT, STRONG, Label, half_size
 from systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
 from systems.render.sheet import FEW, MANY, Rows, Sheet, typical_length
-from systems.render.symbols import LARGEST_STAMP, RIM, circle
+from systems.render.symbols import LARGEST_STAMP, RIM, circle, dashed
 from systems.render.theme import Colour, faded
 
 _CLOSEST_LINES = 8.0  # points between grid lines
+_CABLE = 0.5  # width of a cable, of that of another rod
+_DASH = 5.0  # points
 _GHOST_FROM = 4.0  # points of displacement
 _LARGEST_FILLED = 10_000.0  # pixels, well within 16 bits, which is what polygons are filled with
 
@@ -71,19 +73,8 @@ def draw_ghost(sheet: Sheet) -> None:
     start, end, _ = clip_segments(original[ends[:, 0]], original[ends[:, 1]], *bounds(sheet.viewport))
     if len(start):
         sheet.occupancy.line(start, end, FAINT)
-        dashes = _dashed(start, end, 5.0 * sheet.unit)
+        dashes = dashed(start, end, _DASH * sheet.unit)
         sheet.marks.append(Strokes(*dashes, sheet.unit, sheet.theme.ghost))
-
-
-def _dashed(start: Points, end: Points, dash: float) -> tuple[Points, Points]:
-    """Segments cut into dashes and gaps of about that length, a dash at both ends."""
-    step = end - start
-    count = np.maximum(np.round((np.hypot(*step.T) / dash - 1.0) / 2.0), 0.0).astype(np.int64) + 1
-    of = np.repeat(np.arange(len(start)), count)
-    index = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
-    share = (1.0 / (2 * count - 1))[of]
-    first, last = (2 * index * share)[:, None], ((2 * index + 1) * share)[:, None]
-    return start[of] + first * step[of], start[of] + last * step[of]
 
 
 def draw_halos(sheet: Sheet) -> None:
@@ -101,7 +92,10 @@ def draw_halos(sheet: Sheet) -> None:
 
 
 def draw_rods(sheet: Sheet) -> None:
-    """A line between the drawn positions of the ends: red if selected, violet while yielding."""
+    """A line between the drawn positions of the ends: red if selected, violet while yielding.
+
+    Cables are thin, and dashed while they are slack.
+    """
     rods, theme = sheet.model.rods, sheet.theme
     yielding = sheet.rods[:0]
     if (
@@ -116,10 +110,28 @@ def draw_rods(sheet: Sheet) -> None:
     layers += [(yielding, theme.yielding), (selected, theme.selected)]
     for colour, mask in sheet.colours_of(sheet.rods, layers, theme.ink):
         wider = 1.35 if colour in (theme.yielding, theme.selected) else 1.0
-        sheet.marks.append(Strokes(sheet.start[mask], sheet.end[mask], width * wider, colour))
+        _draw_lines(sheet, mask, width * wider, colour)
     named = {**by_force, "yielding": yielding}
     sheet.legend += [name for name, wanted in named.items() if len(wanted)]
     sheet.occupancy.line(sheet.start, sheet.end, STRONG)
+
+
+def _draw_lines(sheet: Sheet, mask: NDArray[np.bool_] | slice, width: float, colour: Colour) -> None:
+    """The lines of some rods, of one colour."""
+    rods, start, end = sheet.model.rods, sheet.start[mask], sheet.end[mask]
+    cables = rods.tension_only[sheet.rods[mask]]
+    if not cables.any():
+        sheet.marks.append(Strokes(start, end, width, colour))
+        return
+    thin, slack = _CABLE * width, np.zeros_like(cables)
+    if sheet.view.forces_known:
+        slack = cables & (rods.axial_force[sheet.rods[mask]] <= 0.0)
+    if slack.any():
+        sheet.marks.append(Strokes(*dashed(start[slack], end[slack], _DASH * sheet.unit), thin, colour))
+        sheet.legend.append("slack")
+    for kind, thick in ((~cables, width), (cables & ~slack, thin)):
+        if kind.any():
+            sheet.marks.append(Strokes(start[kind], end[kind], thick, colour))
 
 
 def draw_particles(sheet: Sheet) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from systems.render.icons import ICONS, STROKE
+from systems.render.marks import Points
 
 Polygon = NDArray[np.float64]
 Parts = list[tuple[str, Polygon]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
@@ -117,3 +118,14 @@ _SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
     "roller": _roller,
     "pinned": _pinned,
 }
+
+
+def dashed(start: Points, end: Points, dash: float) -> tuple[Points, Points]:
+    """Segments cut into dashes and gaps of about that length, a dash at both ends."""
+    step = end - start
+    count = np.maximum(np.round((np.hypot(*step.T) / dash - 1.0) / 2.0), 0.0).astype(np.int64) + 1
+    of = np.repeat(np.arange(len(start)), count)
+    index = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    share = (1.0 / (2 * count - 1))[of]
+    first, last = (2 * index * share)[:, None], ((2 * index + 1) * share)[:, None]
+    return start[of] + first * step[of], start[of] + last * step[of]

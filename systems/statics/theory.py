@@ -111,7 +111,7 @@ class Indeterminacy:
 
 
 def indeterminacy(model: Model) -> Indeterminacy:
-    """Counted from the rank r of the compatibility matrix, with supports and without.
+    """Counted from the rank r of the compatibility matrix, with supports and without; cables as if taut.
 
     m rods between particles with f free directions have m − r states of self-stress and f − r mechanisms.
     """

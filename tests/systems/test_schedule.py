@@ -142,6 +142,7 @@ PLANS = {
     "hanging_net": DAMPED + DRAG,
     "tower": YIELDING + RAMP,
     "warren_bridge": YIELDING + RAMP,
+    "braced_portal": ("physics.elasticity", "physics.slackness", "physics.axial_damping_of_cables", *RAMP),
     "ball_on_truss": DAMPED,
     "billiards_break": (),
     "galperin_pi": (),

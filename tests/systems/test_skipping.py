@@ -37,8 +37,11 @@ def needed(model: dict[str, Any]) -> set[str]:
     )
     if yields:
         systems |= {"plasticity.strength", "plasticity.yielding"}
+    cables = any(rod.get("tension_only") for rod in rods)
+    if cables:
+        systems.add("physics.slackness")
     if any(rod.get("damping", Rod.damping.default) for rod in rods):
-        systems.add("physics.axial_damping")
+        systems.add("physics.axial_damping_of_cables" if cables else "physics.axial_damping")
     if model.get("environment", {}).get("drag", Environment.drag.default):
         systems.add("physics.drag")
     if model.get("settings", {}).get("collisions", True) and can_meet(model):

@@ -154,6 +154,23 @@ def test_selection_hovering_and_yielding_show() -> None:
     np.testing.assert_allclose(ring.at, [a])
 
 
+def test_cables_are_thin_and_slack_ones_dashed() -> None:
+    model = triangle()
+    model.rods["BC"].tension_only = model.rods["CA"].tension_only = True
+    fill(model, "rods.axial_force", [-1.0, 2.0, 0.0])
+    view = view_of(model)
+    a, b, c = view.camera.to_pixels(model.particles.position)
+    dashes, bars, cables = [s for s in marks_of(picture_of(model), Strokes) if s.colour == LIGHT.ink][:3]
+    np.testing.assert_allclose([bars.start[0], bars.end[0]], [a, b])
+    np.testing.assert_allclose([cables.start[0], cables.end[0]], [b, c])
+    assert cables.width < bars.width
+    np.testing.assert_allclose([dashes.start[0], dashes.end[-1]], [c, a])
+    gaps = np.hypot(*(dashes.start[1:] - dashes.end[:-1]).T)
+    assert len(gaps) > 3
+    assert (gaps > 2.0).all()
+    assert "slack cable" in picture_of(model).texts
+
+
 def test_derived_columns_are_read_only_when_needed() -> None:
     model = triangle()
 

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from game import Session, models
+from game.cli import main
 from systems.statics.events import NoEquilibrium
 from systems.statics.force_method import ForceMethodError, solve
 from systems.statics.path import Goal, load_path
@@ -248,3 +249,16 @@ def test_linear_theories_refuse_cables_by_name() -> None:
         linear(opened)
     with pytest.raises(ForceMethodError, match="Rods AC and BD act in tension only"):
         solve(opened, ())
+
+
+def test_the_braced_portal_does_what_its_description_says(capsys: pytest.CaptureFixture[str]) -> None:
+    """Prestressed by about 20 kN, BD slack from 30.6 kN on, 62.6 kN in AC under the whole wind."""
+    before = settle(models.load("braced_portal"), [0.0]).final
+    assert before.axial_force[3:] == pytest.approx([20.0, 20.0], abs=0.6)
+    found = settle(models.load("braced_portal"))
+    (event,) = found.events
+    assert (event.kind, event.rods) == ("slack", ("BD",))
+    assert event.load_factor * 50.0 == pytest.approx(30.6, abs=0.05)
+    assert found.final.axial_force[3:] == pytest.approx([62.6, 0.0], abs=0.05)
+    assert main(["verify", "braced_portal"]) == 0
+    assert "all cables counted as taut" in capsys.readouterr().out
