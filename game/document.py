@@ -375,7 +375,7 @@ def document(model: Model) -> dict[str, Any]:
     made: dict[str, Any] = {"format": FORMAT, "version": VERSION}
     made |= {key: text for key in ("title", "description") if (text := getattr(model, key))}
     for name, kind in SECTIONS.items():
-        elements = _elements(model, kind, slice(None))
+        elements = _elements(model, kind)
         if not kind.single:
             made |= {name: elements} if elements else {}
         elif elements[0] or kind is not Clock:
@@ -389,28 +389,29 @@ def document_of(model: Model, parts: Mapping[type[Handle], NDArray[np.int64]]) -
     return made | {kind.table: _elements(model, kind, rows) for kind, rows in parts.items() if len(rows)}
 
 
-def _elements(model: Model, kind: type[Handle], chosen: Any) -> list[dict[str, Any]]:
-    """One object per chosen row, without the facts that are as by default (settings and the like: with all)."""
+def _elements(model: Model, kind: type[Handle], rows: NDArray[np.int64] | None = None) -> list[dict[str, Any]]:
+    """One object per row (None: all), without the facts that are as by default (settings and the like: with all)."""
     table = model.tables[kind.table]
     always = {"name", *REQUIRED.get(kind.table, ())}
-    entities = table.entities[chosen]
-    elements: list[dict[str, Any]] = [{} for _ in entities]
+    chosen = np.arange(table.count) if rows is None else rows
+    handles = [table.handles[row] for row in chosen.tolist()]
+    elements: list[dict[str, Any]] = [{} for _ in handles]
     for field in _saved_fields(kind):
         column = table.column(field.name)[chosen]
-        _refuse_non_finite(model, entities, field, column)
+        _refuse_non_finite(model, handles, field, column)
         if not field.component and (field.key in always or (kind.single and field.role is Role.DOCUMENT)):
             parts = elements
         else:
-            rows = np.flatnonzero(_differs_from_default(field, column)).tolist()
-            parts, column = [elements[row] for row in rows], column[rows]
+            special = np.flatnonzero(_differs_from_default(field, column))
+            parts, column = [elements[place] for place in special.tolist()], column[special]
         if field.component:
             parts = [part.setdefault(FOREIGN, {}).setdefault(field.component, {}) for part in parts]
         key = field.key
         for part, value in zip(parts, _json_values(model, field, column), strict=True):
             part[key] = value
-    for entity, element in zip(entities.tolist(), elements, strict=True) if model.foreign else ():
-        if entity in model.foreign:
-            kept = _copied(model.foreign[entity], model.describe(model.handle(entity)))
+    for handle, element in zip(handles, elements, strict=True) if model.foreign else ():
+        if handle.entity in model.foreign:
+            kept = _copied(model.foreign[handle.entity], model.describe(handle))
             element[FOREIGN] = dict(sorted({**element.pop(FOREIGN, {}), **kept}.items()))
     return elements
 
@@ -436,12 +437,12 @@ def _json_values(model: Model, field: Field[Any], column: Column) -> list[Any]:
     return values
 
 
-def _refuse_non_finite(model: Model, entities: NDArray[np.int64], field: Field[Any], column: Column) -> None:
+def _refuse_non_finite(model: Model, handles: Sequence[Handle], field: Field[Any], column: Column) -> None:
     if field.dtype is not float:
         return
     finite = np.isfinite(column) | (np.isnan(column) if field.nullable else False)
     for row in np.argwhere(~finite)[:1, 0].tolist():
-        element, value = model.handle(int(entities[row])), field.loaded(column[row])
+        element, value = handles[row], field.loaded(column[row])
         raise ModelError(
             f"{model.describe(element)}: {field.title} is {value}, which no file can hold;"
             " rewind or undo to a state before it."
