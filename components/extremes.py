@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from components.field import Column, Field, Role
@@ -19,19 +21,25 @@ def incomputable(model: Model) -> str:
     for name in _TABLES:
         table = model.tables[name]
         for field in table.fields.values():
-            if field.dtype is float and (field.role is Role.DOCUMENT or field.name in (*_FOLLOWING, *_MOVING)):
+            if is_computed_with(field):
                 column = table.column(field.name)
-                for row, *axis in np.argwhere(_extreme(field, column))[:1].tolist():
+                for row, *axis in np.argwhere(is_extreme(field, column))[:1].tolist():
                     return _sentence(model.describe(table[row]), field, float(column[(row, *axis)]))
     return ""
 
 
-def _extreme(field: Field[float], column: Column) -> Column:
+def is_extreme(field: Field[Any], column: Column) -> Column:
+    """Which numbers of a column are too large or too small to compute with, in the shape of the column."""
     size = np.abs(column)
     extreme: Column = (size > LARGEST) & np.isfinite(size)
     if field.above == 0.0 or field.name in _FOLLOWING:
         extreme |= size < SMALLEST
     return extreme
+
+
+def is_computed_with(field: Field[Any]) -> bool:
+    """True if the numbers of a Field must not be extreme: what a person made, and what follows from it at once."""
+    return field.dtype is float and (field.role is Role.DOCUMENT or field.name in (*_FOLLOWING, *_MOVING))
 
 
 def _sentence(element: str, field: Field[float], value: float) -> str:

@@ -19,7 +19,7 @@ from game.program_writer import Writer
 from systems.base import ACCOUNTS, Driver, StepSystem, StopReason
 
 _AT_STRENGTH = 1e-9  # relative distance from its strength at which a rod is said to yield
-_ACCOUNT = (
+ACCOUNT = (
     *ACCOUNTS,
     "initial_energy",
     "potential_reference",
@@ -27,7 +27,7 @@ _ACCOUNT = (
     "energy_scale",
     "guard_energy",
 )
-_CONTROL = ("time", "step_size", "step_error", "largest_displacement", "largest_speed")
+CONTROL = ("time", "step_size", "step_error", "largest_displacement", "largest_speed")
 
 
 def _writer(model: Model, systems: Sequence[StepSystem], driver: Driver) -> Writer:
@@ -41,11 +41,18 @@ def has_program(model: Model, systems: Sequence[StepSystem], driver: Driver) -> 
     return is_compiled(writer.source(), writer.kernels)
 
 
+def at_strength(axial_force: Column, tension_limit: Column, compression_limit: Column) -> Column:
+    """Which rods are at a strength, as far as forces (kN) can tell."""
+    pulled: Column = axial_force >= tension_limit * (1.0 - _AT_STRENGTH)
+    return pulled | (axial_force <= -compression_limit * (1.0 - _AT_STRENGTH))
+
+
 class Program:
     """A compiled step program, bound to the columns of one model.
 
     measures: kinetic, fᵀM⁻¹f, elastic, potential energy (J), residual, largest force, round-off (kN) of
         the state last observed.
+    module: what is compiled.
     compile_seconds: what writing and compiling it took, or loading it from the cache.
     """
 
@@ -55,7 +62,7 @@ class Program:
         self.systems = tuple(system for system in systems if system.kernel)
         self.driver = driver
         self._writer = _writer(model, systems, driver)
-        self._module = compile_module(self._writer.source(), self._writer.kernels)
+        self.module = compile_module(self._writer.source(), self._writer.kernels)
         self.measures = np.zeros(8)
         self._state_revision = -1
         self.bind()
@@ -71,10 +78,20 @@ class Program:
             self.observe()
             if self._writer.commits:  # of no rods, since a commit at all changes history
                 state, columns = ([a[:0] for a in arrays] for arrays in (self._state(), self._columns))
-                self._module.commit(0.0, 0.0, *state, np.zeros(len(_ACCOUNT)), *columns)
+                self.module.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *columns)
         except NumbaError as error:
             raise explain(self._writer.bound, self.model, error) from error
-        note_compiled(self._module)
+        note_compiled(self.module)
+
+    @property
+    def columns(self) -> dict[str, Column]:
+        """The columns and arrays that its compiled functions end with, by name, in order."""
+        return dict(zip(self._writer.columns, self._columns, strict=True))
+
+    @property
+    def marks(self) -> int:
+        """How many numbers it notes of each rod to locate events."""
+        return MARKS * len(self._writer.branching)
 
     @property
     def resists_motion(self) -> bool:
@@ -99,7 +116,7 @@ class Program:
         self._breaks = load_breaks(self.model)
         self._work = np.zeros((self.driver.particle_rows, particles, 2))
         self._rod_work = np.zeros((self.driver.rod_rows, rods))
-        self._marks = np.zeros((rods, MARKS * len(self._writer.branching)))
+        self._marks = np.zeros((rods, self.marks))
         self._stage_power = np.zeros(len(ACCOUNTS))
         self._state_revision = -1
 
@@ -139,7 +156,7 @@ class Program:
             self.measures,
         )
         if taken:
-            for name, value in zip(_ACCOUNT, account, strict=True):
+            for name, value in zip(ACCOUNT, account, strict=True):
                 self.model.writable(f"clock.{name}")[0] = value
             self.model.writable("clock.steps")[0] = total + taken
             self.model.writable("clock.time")[0] = clock.origin + (first + taken) * clock.step_size
@@ -151,7 +168,7 @@ class Program:
         fresh = self._state_revision == model.newest(Role.STATE)
         total = clock.steps
         account = self._accounts()
-        control = np.array([*self._of_clock(_CONTROL), 0.0, 0.0])
+        control = np.array([*self._of_clock(CONTROL), 0.0, 0.0])
         controls_error = self.driver.estimates_error and model.settings.time_step is None
         breaks = np.sort(np.append(self._breaks, [landing, math.inf]))
         taken, reason = self._call(
@@ -181,7 +198,7 @@ class Program:
         if control[0] > clock.time:
             if control[0] == landing and not controls_error:
                 taken += 1  # the piece that it takes to land
-            for name, value in zip((*_ACCOUNT, *_CONTROL), (*account, *control), strict=False):
+            for name, value in zip((*ACCOUNT, *CONTROL), (*account, *control), strict=False):
                 model.writable(f"clock.{name}")[0] = value
             model.writable("clock.steps")[0] = total + taken
             if controls_error or control[0] == landing:
@@ -194,7 +211,7 @@ class Program:
         """Let history take note of a state that no step has led to, outside the energy account."""
         if self._writer.commits:
             clock = self.model.clock
-            self._call("commit", clock.time, clock.step_size, *self._state(), np.zeros(len(_ACCOUNT)))
+            self._call("commit", clock.time, clock.step_size, *self._state(), np.zeros(len(ACCOUNT)))
 
     def observe(self) -> None:
         """Bring the derived columns of rods and particles, and the measures, up to date."""
@@ -227,20 +244,17 @@ class Program:
         model = self.model
         model.writable("particles.applied_force")[...] = applied
         model.writable("particles.reaction")[...] = np.where(model.particles.fixed, 0.0 - net_force, 0.0)
-        rods = model.rods
-        at_limit = (axial_force >= rods.tension_limit * (1.0 - _AT_STRENGTH)) | (
-            axial_force <= -rods.compression_limit * (1.0 - _AT_STRENGTH)
-        )
-        model.writable("rods.yielding")[...] = at_limit & model.settings.plasticity
+        limits = model.rods.tension_limit, model.rods.compression_limit
+        model.writable("rods.yielding")[...] = at_strength(axial_force, *limits) & model.settings.plasticity
 
     def conserved_energy(self) -> float:
         """What the integrator conserves, less the work done so far (J), in the state last observed."""
         dt = self.model.clock.step_size
-        conserved = self._module.conserved.py_func  # by itself it would have to be compiled in every process
-        return float(conserved(self.measures, self._accounts(), dt, self._module.SHADOW))
+        conserved = self.module.conserved.py_func  # by itself it would have to be compiled in every process
+        return float(conserved(self.measures, self._accounts(), dt, self.module.SHADOW))
 
     def _accounts(self) -> Column:
-        return np.array(self._of_clock(_ACCOUNT))
+        return np.array(self._of_clock(ACCOUNT))
 
     def _of_clock(self, names: Sequence[str]) -> list[float]:
         """Values of the clock, without the way over its handle, which takes longer than some runs."""
@@ -253,4 +267,4 @@ class Program:
         return displacement, velocity, self._force, self._resisting, self._direction
 
     def _call(self, entry: str, *arguments: Any) -> Any:
-        return getattr(self._module, entry)(*arguments, *self._columns)
+        return getattr(self.module, entry)(*arguments, *self._columns)

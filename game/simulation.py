@@ -161,6 +161,11 @@ class Simulation:
         return self._program is not None or self._key(self.schedule.step_plan(self.model)) in self._programs
 
     @property
+    def collides(self) -> bool:
+        """True if particles of the model that the program is bound to may meet."""
+        return self._collides
+
+    @property
     def armed_revision(self) -> int:
         """Changes whenever the document that is run changed."""
         return self._armed_revision
@@ -425,7 +430,7 @@ class Simulation:
         """Do what a program that returned for this reason asks for."""
         self.reason = reason
         if reason is StopReason.REST:
-            self.message = f"At rest since t = {self.model.clock.time:.6g} s."
+            self.message = at_rest_since(self.model.clock.time)
         elif reason is StopReason.UNRESOLVED:
             self.reason = StopReason.DIVERGED
             if not self._go_on_without_mod():
@@ -561,3 +566,8 @@ class Simulation:
         self.observe()
         unbalanced, largest = self.program.measures[4:6].tolist()
         return float(unbalanced / largest) if largest > 0.0 else 0.0
+
+
+def at_rest_since(time: float) -> str:
+    """What to say of a model that came to rest at this time (s)."""
+    return f"At rest since t = {time:.6g} s."

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import logging
-import os
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from game.program_batch import cores
 from game.sweeps.plan import Outcome, Plan
-from game.sweeps.specimen import compute
+from game.sweeps.specimen import Bench, compute
 from game.sweeps.variation import INSTALL, SweepError
 
 MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
@@ -18,11 +18,11 @@ LARGE = 30_000  # variants × rods from which workers are worth the seconds in w
 LIGHT = 100  # rods up to which a variant takes as long as one of this many
 
 
-def suitable_workers(plan: Plan, variants: int) -> int:
-    """All cores that this process may use where there is much to do, by a rule; else 1."""
-    if variants * max(len(plan.document.get("rods", ())), LIGHT) < LARGE:
+def suitable_workers(plan: Plan, variants: int, together: int) -> int:
+    """All cores that this process may use where there is much to do one by one, by a rule; else 1."""
+    if together > 1 or variants * max(len(plan.document.get("rods", ())), LIGHT) < LARGE:
         return 1
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return cores()
 
 
 def outcomes(
@@ -33,11 +33,12 @@ def outcomes(
     workers: 1 computes in this process; more start that many on this machine; None: as many as suit.
     scheduler: the address of that of a running Dask cluster, which computes instead. Raises SweepError.
     """
+    bench = Bench(plan, cores())
     if workers is None:
-        workers = suitable_workers(plan, len(numbers))
+        workers = suitable_workers(plan, len(numbers), bench.at_a_time)
     if scheduler is None and workers == 1:
-        for task in _tasks(numbers, 1):
-            yield compute(plan, task)
+        for task in _tasks(numbers, 1, bench.at_a_time):
+            yield bench.compute(task)
         return
     try:
         import distributed
@@ -49,7 +50,7 @@ def outcomes(
     with (
         _local_client(distributed, workers) if scheduler is None else _client_of(distributed, scheduler)
     ) as client:
-        yield from _distributed(distributed, client, plan, numbers)
+        yield from _distributed(distributed, client, plan, numbers, bench.at_a_time)
 
 
 def _local_client(distributed: Any, workers: int) -> Any:
@@ -78,14 +79,16 @@ def _client_of(distributed: Any, scheduler: str) -> Any:
     return client
 
 
-def _distributed(distributed: Any, client: Any, plan: Plan, numbers: Sequence[int]) -> Iterator[list[Outcome]]:
+def _distributed(
+    distributed: Any, client: Any, plan: Plan, numbers: Sequence[int], together: int
+) -> Iterator[list[Outcome]]:
     shared = client.submit(_same, plan, pure=False)  # unlike scattered data, survives the death of its workers
 
     def submit(task: Sequence[int]) -> Any:
         return client.submit(compute, shared, task, pure=False)
 
     workers = max(len(client.scheduler_info()["workers"]), 1)
-    tasks = {submit(task): task for task in _tasks(numbers, workers)}
+    tasks = {submit(task): task for task in _tasks(numbers, workers, together)}
     suspects: list[int] = []
     for future in distributed.as_completed(tasks):
         task = tasks.pop(future)
@@ -117,6 +120,9 @@ def _same(plan: Plan) -> Plan:
     return plan
 
 
-def _tasks(numbers: Sequence[int], workers: int) -> list[Sequence[int]]:
+def _tasks(numbers: Sequence[int], workers: int, together: int) -> list[Sequence[int]]:
+    """together: how many variants are best computed at a time."""
     size = min(max(len(numbers) // (workers * TASKS_PER_WORKER), 1), MOST_IN_A_TASK)
+    if together > 1:
+        size = min(max(len(numbers) // workers, 1), together)
     return [numbers[first : first + size] for first in range(0, len(numbers), size)]

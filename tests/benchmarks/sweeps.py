@@ -1,53 +1,89 @@
-"""How long a variant of a small model takes in a sweep, and what several workers make of it."""
+"""How long a variant of a small model takes in a sweep: together with others, one by one, by several workers."""
 
 from __future__ import annotations
 
 import os
 import time
+from collections.abc import Callable
 from typing import Any
 
+from game.program_batch import cores
 from game.report import Analysis
+from game.session import Session
 from game.sweeps.execution import outcomes
 from game.sweeps.plan import Plan
-from game.sweeps.run import plan_of
-from game.sweeps.specimen import compute
+from game.sweeps.run import plan_of, sweep
+from game.sweeps.specimen import Bench, Specimen
+from tests.benchmarks.models import lattice
 
 ANALYSES = {"settled": Analysis(load_factors=(1.0,)), "run to rest": Analysis()}
+STEP, STEPS = 1e-6, 1000
 
 Row = dict[str, Any]
 
 
 def report(*, quick: bool) -> dict[str, list[Row]]:
-    """The tables: milliseconds per variant of the triangle, here and by workers."""
-    return {"variants": variants(100 if quick else 1000), "workers": workers(200 if quick else 10_000)}
+    """The tables: a variant of the triangle, steps beside those of a large model, a whole sweep, workers."""
+    return {
+        "variants": variants(100 if quick else 1000),
+        "steps": steps(1000 if quick else 10_000),
+        "sweep": whole(10_000 if quick else 100_000),
+        "workers": workers(200 if quick else 2000),
+    }
 
 
 def variants(count: int) -> list[Row]:
-    """CPU time in this process, beside that of opening the model anew for each variant."""
+    """CPU time for each variant: computed together, one by one with one model, and with the model opened anew."""
+    return [_variant(name, analysis, count) for name, analysis in ANALYSES.items()]
+
+
+def _variant(name: str, analysis: Analysis, count: int) -> Row:
+    plan, numbers = _plan(analysis, count), range(count)
+    bench, specimen = Bench(plan), Specimen(plan)
+    together = _cpu(lambda: bench.together(numbers)) * 1e3 / count
+    return {
+        "analysis": name,
+        "variants": count,
+        "together_cpu_ms": together if bench.at_a_time > 1 else "–",
+        "one_by_one_cpu_ms": _cpu(lambda: [specimen.records(n) for n in numbers]) * 1e3 / count,
+        "opened_anew_cpu_ms": _cpu(lambda: [Specimen(plan).records(n) for n in numbers]) * 1e3 / count,
+    }
+
+
+def steps(count: int) -> list[Row]:
+    """CPU time of steps of so many elastic triangles beside that of a lattice with as many rods, by Verlet."""
+    elastic = ("rods.*.damping=0", "rods.*.tensile_strength=0", "rods.*.compressive_strength=0")
+    integrator = ("settings.integrator=velocity_verlet", f"settings.time_step={STEP}")
+    vary = ["rods.*.stiffness~normal(164640,5%)"]
+    analysis = Analysis(times=(STEP * STEPS,))
+    plan = plan_of("isostatic", vary, ["residual"], analysis, (*elastic, *integrator), count, 1)
+    bench = Bench(plan, cores())
+    session = Session(lattice(3 * count, damping=0.0))
+    session.model.settings.integrator, session.model.settings.time_step = "velocity_verlet", STEP
     rows = []
-    for name, analysis in ANALYSES.items():
-        plan = _plan(analysis, count)
-        compute(plan, [0])  # compiles
-        started = time.process_time()
-        compute(plan, range(count))
-        kept = time.process_time()
-        for number in range(count):
-            compute(plan, [number])
-        opened = time.process_time()
-        rows.append(
-            {
-                "analysis": name,
-                "variants": count,
-                "cpu_ms_per_variant": (kept - started) * 1e3 / count,
-                "opened_anew_cpu_ms": (opened - kept) * 1e3 / count,
-            }
-        )
+    for name, rods, work in [
+        ("batch of triangles", 3 * count, lambda: bench.together(range(count))),
+        ("one lattice", session.rods.count, lambda: session.simulation.advance(STEPS)),
+    ]:
+        seconds = _cpu(work)
+        ns = seconds / STEPS / rods * 1e9
+        rows.append({"model": name, "rods": rods, "steps": STEPS, "cpu_seconds": seconds, "ns_per_rod": ns})
     return rows
 
 
+def whole(count: int) -> list[Row]:
+    """A Monte Carlo sweep of the triangle until at rest, from the beginning to the table."""
+    vary, measures = ["rods.*.stiffness~normal(164640,5%)"], ["rods.*.axial_force"]
+    sweep("isostatic", vary, measures, samples=2)  # compiles
+    began, cpu = time.perf_counter(), time.process_time()
+    sweep("isostatic", vary, measures, samples=count)
+    seconds = time.perf_counter() - began
+    return [{"variants": count, "seconds": seconds, "cpu_seconds": time.process_time() - cpu}]
+
+
 def workers(count: int) -> list[Row]:
-    """By so many processes, beside what it takes until the first of them is done with something."""
-    plan = _plan(ANALYSES["run to rest"], count)
+    """Variants that are settled by so many processes, beside what it takes until one is done with something."""
+    plan = _plan(ANALYSES["settled"], count)
     rows = []
     for processes in (1, os.cpu_count() or 1):
         started = time.perf_counter()
@@ -70,3 +106,11 @@ def workers(count: int) -> list[Row]:
 def _plan(analysis: Analysis, samples: int) -> Plan:
     vary = ["rods.*.stiffness~normal(164640,5%)"]
     return plan_of("isostatic", vary, ["rods.*.axial_force"], analysis, (), samples, 1)
+
+
+def _cpu(work: Callable[[], object]) -> float:
+    """Seconds of the second time; the first compiles."""
+    work()
+    began = time.process_time()
+    work()
+    return time.process_time() - began

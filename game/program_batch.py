@@ -1,0 +1,138 @@
+"""Step programs of batches: a loop over blocks that calls the compiled step program of a single run."""
+
+from __future__ import annotations
+
+import inspect
+import os
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import Column
+from game.program import Program
+from game.program_cache import compile_module, note_compiled
+from game.stack import Stack
+from systems.base import ACCOUNTS
+
+_SHARED = ("fresh", "breaks", "until", "loads_end")  # one for all blocks, besides what is written anew for each
+_RETURNS = {"advance": "taken[k], reason[k] = "}
+_PIECES = 4  # for each thread, so that none waits long for another
+
+
+class BatchProgram:
+    """The compiled functions of a step program, called for one block of a stack after the other.
+
+    Blocks are independent: they are shared out among threads, and results do not depend on how many.
+    """
+
+    def __init__(self, program: Program, threads: int) -> None:
+        self.program = program
+        self.driver = program.driver
+        self.threads = threads
+        self._columns = program.columns
+        entries = {name: getattr(program.module, name, None) for name in ("advance", "observe", "commit")}
+        self._entries = {name: entry for name, entry in entries.items() if entry is not None}
+        self.has_history = "commit" in self._entries
+        self._scratch_shapes = self._shapes()
+        self._parameters = {
+            name: tuple(inspect.signature(entry.py_func).parameters) for name, entry in self._entries.items()
+        }
+        self._module = compile_module(self._source(), self._entries)
+
+    def _shapes(self) -> dict[str, tuple[int, ...]]:
+        """Of what is written anew for each block and read by nobody else."""
+        program, driver = self.program, self.driver
+        particles, rods = program.model.particles.count, program.model.rods.count
+        vectors = dict.fromkeys(("force", "resisting", "predicted"), (particles, 2))
+        accounts = dict.fromkeys(("power", "gained", "stage_power"), (len(ACCOUNTS),))
+        return (
+            vectors
+            | accounts
+            | {
+                "direction": (rods, 2),
+                "work": (driver.particle_rows, particles, 2),
+                "rod_work": (driver.rod_rows, rods),
+                "marks": (rods, program.marks),
+                "search": (7,),
+            }
+        )
+
+    def _source(self) -> str:
+        lines = [
+            '"""A step program for blocks. Generated; safe to delete."""',
+            "",
+            "from numba import njit",
+            "",
+        ]
+        for name, parameters in self._parameters.items():
+            one_for_all = (*_SHARED, *self._scratch(name))
+            arguments = [p if p in one_for_all else f"{p}[k]" for p in parameters]
+            lines += [
+                '@njit(error_model="numpy", nogil=True, cache=True)',
+                f"def {name}_each(blocks, taken, reason, {', '.join(parameters)}):",
+                "    for k in blocks:",
+                f"        {_RETURNS.get(name, '')}{name}({', '.join(arguments)})",
+                "",
+            ]
+        return "\n".join(lines)
+
+    def _scratch(self, entry: str) -> tuple[str, ...]:
+        """The parameters of an entry that nobody reads afterwards; observing tells the forces."""
+        told = ("force", "resisting") if entry == "observe" else ()
+        return tuple(name for name in self._scratch_shapes if name not in told)
+
+    def columns(self, stack: Stack, varied: bool) -> dict[str, Column]:
+        """What the compiled functions end with, by name; varied: arrays of systems differ between blocks."""
+        made: dict[str, Column] = {}
+        for name, bound in self._columns.items():
+            table, _, column = name.partition("_")
+            key = f"{table}.{column}"
+            if stack.has(key):
+                made[name] = stack[key]
+            elif not varied:
+                made[name] = np.repeat(bound[None], stack.blocks, axis=0)
+        if varied:
+            made |= self._arrays(stack)
+        for name, bound in self._columns.items():
+            made[name] = made[name].view()
+            made[name].flags.writeable = bound.flags.writeable
+        return made
+
+    def _arrays(self, stack: Stack) -> dict[str, Column]:
+        """The arrays of the systems, made for each block."""
+        blocks = [stack.part(np.array([block])).as_model() for block in range(stack.blocks)]
+        each = [
+            {name: array for system in self.program.systems for name, array in system.arrays(block).items()}
+            for block in blocks
+        ]
+        return {name: np.array([arrays[name] for arrays in each]) for name in each[0]}
+
+    def call(
+        self, entry: str, blocks: NDArray[np.intp], arguments: Mapping[str, Any], count: int
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Call an entry for some of `count` blocks; returns the steps taken by each, and the reasons to stop.
+
+        arguments: by name of the parameter, with one entry for each block, but for those of all.
+        """
+        taken, reason = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
+
+        def work(some: NDArray[np.intp]) -> None:
+            scratch = {name: np.zeros(self._scratch_shapes[name]) for name in self._scratch(entry)}
+            given = [scratch[p] if p in scratch else arguments[p] for p in self._parameters[entry]]
+            getattr(self._module, f"{entry}_each")(some, taken, reason, *given)
+
+        if self.threads == 1 or len(blocks) < 2 * self.threads:
+            work(blocks)
+        else:
+            with ThreadPoolExecutor(self.threads) as pool:
+                list(pool.map(work, np.array_split(blocks, self.threads * _PIECES)))
+        note_compiled(self._module)
+        return taken, reason
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -1,0 +1,127 @@
+"""Stack: variants of one model as equal, disjoint blocks of the same tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.derived import DERIVATIONS
+from components.extremes import is_computed_with, is_extreme
+from components.field import Column, Field, Role
+from components.model import Model
+from components.world import World
+
+_TABLES = ("particles", "rods", "loads", "environment", "settings", "clock")
+
+
+class Stack:
+    """Variants that differ in their numbers only, not in what there is and what is joined to what.
+
+    A column of all of them, such as `stack["rods.stiffness"]`, has the shape (blocks, rows, …). To functions
+    that read the columns of a model, they are those of one model that consists of disjoint blocks:
+    `stack.rods.stiffness` has the rows of all, and references point to rows of the same block. What there is
+    one of in a model, such as the environment, has a row for each particle then.
+    """
+
+    def __init__(self, model: Model, columns: dict[str, Column], blocks: int) -> None:
+        self.blocks = blocks
+        self._model = model
+        self._columns = columns
+        self.tables = {name: _Table(self, name, blocks * model.tables[name].count) for name in _TABLES}
+        self.particles, self.rods, self.loads = (self.tables[name] for name in ("particles", "rods", "loads"))
+
+    @classmethod
+    def of(cls, model: Model, blocks: int) -> Stack:
+        """So many copies of a model."""
+        columns = {
+            f"{name}.{field.name}": np.repeat(model.tables[name].column(field.name)[None], blocks, axis=0)
+            for name in _TABLES
+            for field in model.tables[name].fields.values()
+        }
+        return cls(model, columns, blocks)
+
+    def part(self, blocks: NDArray[np.intp]) -> Stack:
+        """Copies of some of the blocks."""
+        columns = {name: column[blocks] for name, column in self._columns.items()}
+        return Stack(self._model, columns, len(blocks))
+
+    def as_model(self) -> Model:
+        """Itself, for functions that only read columns of a model."""
+        return cast(Model, self)
+
+    def __getitem__(self, name: str) -> Column:
+        return self._columns[name]
+
+    def has(self, name: str) -> bool:
+        """True if there is a column of this name."""
+        return name in self._columns
+
+    def single(self, name: str) -> Column:
+        """A column of what there is one of in each block, shape (blocks, …)."""
+        return self._columns[name][:, 0]
+
+    def field(self, name: str) -> Field[object]:
+        """The Field of a column."""
+        table, _, field = name.partition(".")
+        return self._model.tables[table].fields[field]
+
+    def writable(self, name: str) -> Column:
+        """A column with the rows of all blocks, for a derivation to fill."""
+        column = self._columns[name]
+        return column.reshape(-1, *column.shape[2:])
+
+    def flat(self, name: str) -> Column:
+        """A column as that of one model that consists of all blocks."""
+        table, references = name.partition(".")[0], self.field(name).references
+        column = self._columns[name]
+        if self._model.tables[table].kind.single:
+            column = np.repeat(column, self._model.particles.count, axis=1)
+        elif references is not None:
+            rows = self._model.tables[references].count
+            first = np.arange(self.blocks, dtype=column.dtype) * column.dtype.type(rows)
+            column = column + first.reshape(-1, *(1,) * (column.ndim - 1))
+        return column.reshape(-1, *column.shape[2:])
+
+    def derive(self) -> None:
+        """Bring what follows directly from the document up to date."""
+        for derivation in DERIVATIONS:
+            derivation.compute(cast(World, self))
+
+    def extreme(self) -> NDArray[np.bool_]:
+        """Which blocks have a number that is too large or too small to compute with."""
+        found = np.zeros(self.blocks, dtype=bool)
+        for name, column in self._columns.items():
+            if is_computed_with(self.field(name)):
+                found |= is_extreme(self.field(name), column).reshape(self.blocks, -1).any(axis=1)
+        return found
+
+    def state(self) -> Mapping[str, Column]:
+        """Copies of the columns that time changes."""
+        return {
+            name: column.copy() for name, column in self._columns.items() if self.field(name).role is Role.STATE
+        }
+
+    def restore(self, state: Mapping[str, Column]) -> None:
+        """Put a state back."""
+        for name, column in state.items():
+            self._columns[name][...] = column
+
+
+class _Table:
+    """A table with the rows of all blocks."""
+
+    def __init__(self, stack: Stack, name: str, count: int) -> None:
+        self.count = count
+        self._stack, self._name = stack, name
+
+    def __getattr__(self, field: str) -> Column:
+        if field.startswith("_"):
+            raise AttributeError(field)
+        return self.column(field)
+
+    def column(self, field: str) -> Column:
+        """The column of a Field."""
+        return self._stack.flat(f"{self._name}.{field}")

@@ -1,0 +1,218 @@
+"""Batches of a sweep: which variants can be computed together, and what they come to."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import Column, FieldError
+from components.settings import AUTOMATIC
+from game.batch import Batch
+from game.overrides import EVERY, Target, locate
+from game.program import Program
+from game.program_batch import BatchProgram
+from game.results import ENERGIES, reported
+from game.simulation import at_rest_since
+from game.stack import Stack
+from game.sweeps.measure import Measure
+from game.sweeps.plan import Plan, Record
+from game.sweeps.variation import Random, Value
+from systems.physics.automatic import SMALL, stiffnesses, suited_to
+
+if TYPE_CHECKING:
+    from game.sweeps.specimen import Specimen
+
+MOST_NUMBERS = 2_000_000  # in the largest array of a batch: of stiffness, rods × directions of particles
+_ALONE = ("particles.name", "particles.fixed", "rods.name", "loads.name")  # what makes another model of it
+_REPORTED = ("particles", "rods")
+
+
+class Batches:
+    """Computes variants of a plan together, where they differ in numbers only and none collide.
+
+    size: how many variants to compute at a time; 1: they cannot be computed together.
+    """
+
+    def __init__(self, specimen: Specimen, plan: Plan, threads: int) -> None:
+        self._specimen, self._plan, self._threads = specimen, plan, threads
+        self._programs: dict[Hashable, BatchProgram | None] = {}
+        with specimen.taken_back():
+            specimen.override(plan.overrides)
+            self._targets = [locate(specimen.model, path)[0] for path in plan.varied]
+            self._base = Stack.of(specimen.model, 1) if self._suits() else None
+        self._loads_vary = any(target.table.name == "loads" for target in self._targets)
+        rods, particles = specimen.model.rods.count, specimen.model.particles.count
+        most = MOST_NUMBERS // max(2 * rods * particles, 1)
+        self.size = max(min(most, 1024), 1) if self._base is not None else 1
+
+    def _suits(self) -> bool:
+        """True unless something about the plan asks for single runs."""
+        model, plan = self._specimen.model, self._plan
+        placed = [v for v in plan.variations if not isinstance(v, Random) and ".position." in v.path]
+        return (
+            plan.analysis.load_factors is None
+            and 0 < model.rods.count <= SMALL
+            and model.clock.step_size == 0.0  # it has not begun
+            and len(placed) <= 1  # two could meet on the way, which is refused
+            and all(type(system).__module__.startswith("systems.") for system in self._specimen.step_systems)
+            and all(self._is_number(target) for target in self._targets)
+        )
+
+    @staticmethod
+    def _is_number(target: Target) -> bool:
+        name = f"{target.table.name}.{target.field.name}"
+        return (
+            target.field.dtype in (float, int, bool) and name not in _ALONE
+        ) or name == "settings.integrator"
+
+    # --- the variants ---------------------------------------------------------------------------------
+
+    def records(self, numbers: Sequence[int]) -> dict[int, list[Record]]:
+        """What these variants come to, without those that need a run of their own."""
+        if self._base is None:
+            return {}
+        found: dict[int, list[Record]] = {}
+        for stack, key, of_stack in self._stacks(numbers):
+            program = self._program(key, of_stack[0])
+            if program is not None:
+                found |= self._run(Batch(stack, program, self._loads_vary), of_stack)
+        return found
+
+    def _stacks(self, numbers: Sequence[int]) -> Iterator[tuple[Stack, Hashable, list[int]]]:
+        """Stacks of variants that have one plan and one driver, what tells them apart, and their numbers."""
+        assert self._base is not None
+        groups: dict[Hashable, list[tuple[int, tuple[Value, ...]]]] = {}
+        for number in numbers:
+            values = self._plan.values(number)
+            if self._allowed(values):
+                groups.setdefault(tuple(map(_kind, values)), []).append((number, values))
+        for kinds, variants in groups.items():
+            stack = self._base.part(np.zeros(len(variants), dtype=np.intp))
+            for place, target in enumerate(self._targets):
+                self._put(stack, target, [values[place] for _, values in variants])
+            stack.derive()
+            sound = np.flatnonzero(~(stack.extreme() | _refused(stack)))
+            stack = stack.part(sound)
+            integrators = self._integrators(stack)
+            for integrator in np.unique(integrators).tolist():
+                at = np.flatnonzero(integrators == integrator)
+                yield stack.part(at), (kinds, integrator), [variants[row][0] for row in sound[at].tolist()]
+
+    def _allowed(self, values: Sequence[Value]) -> bool:
+        try:
+            for target, value in zip(self._targets, values, strict=True):
+                if target.axis:
+                    target.field.check((value, value), "")
+                else:
+                    target.field.check(value, "")
+        except FieldError:
+            return False
+        return True
+
+    @staticmethod
+    def _put(stack: Stack, target: Target, values: Sequence[Value]) -> None:
+        column = stack[f"{target.table.name}.{target.field.name}"]
+        stored = np.array([target.field.stored(value) for value in values], dtype=column.dtype)
+        rows = slice(None) if target.element == EVERY else target.handles[0].row
+        if target.axis:
+            column[:, rows, "xy".index(target.axis)] = stored[:, None] if target.element == EVERY else stored
+        else:
+            column[:, rows] = stored.reshape(-1, *(1,) * (column[:, rows].ndim - 1))
+
+    @staticmethod
+    def _integrators(stack: Stack) -> NDArray[Any]:
+        """The name of each block's driver."""
+        chosen = stack.single("settings.integrator").copy()
+        chosen[(chosen == AUTOMATIC) & ~np.isnan(stack.single("settings.time_step"))] = "velocity_verlet"
+        automatic = np.flatnonzero(chosen == AUTOMATIC)
+        if len(automatic):
+            found = stiffnesses(stack.as_model(), stack.single("environment.drag"))
+            chosen[automatic] = [suited_to(stiffness) for stiffness in found[automatic].tolist()]
+        return chosen
+
+    def _program(self, key: Hashable, number: int) -> BatchProgram | None:
+        """The program of variants that this one stands for; None: they need runs of their own."""
+        if key not in self._programs:
+            self._programs[key] = None
+            with suppress(ValueError), self._specimen.taken_back():  # a run of its own says what is wrong
+                self._specimen.override(self._plan.overrides_of(number))
+                simulation = self._specimen.simulation
+                program = simulation.program
+                if isinstance(program, Program) and not simulation.collides:
+                    self._programs[key] = BatchProgram(program, self._threads)
+        return self._programs[key]
+
+    # --- running them -----------------------------------------------------------------------------------
+
+    def _run(self, batch: Batch, numbers: Sequence[int]) -> dict[int, list[Record]]:
+        analysis = self._plan.analysis
+        states: list[list[tuple[Any, ...]]] = []
+        if analysis.times is None:
+            batch.run_until_rest(analysis.limit)
+            states.append(self._measured(batch))
+        for target in analysis.times or ():
+            batch.run_to(target)
+            before = batch.stack.state()
+            batch.land(target)
+            states.append(self._measured(batch))
+            batch.stack.restore(before)
+        found: dict[int, list[Record]] = {}
+        for block in np.flatnonzero(~batch.alone).tolist():
+            status = "at rest" if analysis.times is None else "time reached"
+            message = at_rest_since(batch.rested[block]) if batch.resting[block] else ""
+            found[numbers[block]] = [(status, message, *state[block]) for state in states]
+        return found
+
+    def _measured(self, batch: Batch) -> list[tuple[Any, ...]]:
+        """What is recorded of the present state of each block: time, no load factor, measures."""
+        batch.observe()
+        energy, residual = batch.energy.as_dict(), batch.residual
+        batch.alone |= ~_finite(batch, energy, residual)
+        columns = [batch.clock("time").tolist(), [None] * batch.stack.blocks]
+        for measure in self._plan.measures:
+            columns.append(self._column(measure, batch, energy, residual))
+        return list(zip(*columns, strict=True))
+
+    def _column(self, measure: Measure, batch: Batch, energy: dict[str, Any], residual: Column) -> list[Any]:
+        section, *rest = measure.keys
+        if section == "residual":
+            return list(residual.tolist())
+        if section == "collisions":
+            return list(batch.clock("collisions").tolist())
+        if section == "energy":
+            return list(energy[str(rest[0])].tolist())
+        row = self._specimen.model.tables[str(section)][str(rest[0])].row
+        column = batch.stack[f"{section}.{rest[1]}"][(slice(None), row, *rest[2:])]
+        return [None if value != value else value for value in column.tolist()]
+
+
+def _kind(value: Value) -> Hashable:
+    """What about a value decides which systems a model needs: zero, its sign, or itself if it is no number."""
+    if value is None or isinstance(value, bool | str):
+        return value
+    return "+" if value > 0.0 else "-" if value < 0.0 else "0"
+
+
+def _refused(stack: Stack) -> NDArray[np.bool_]:
+    """Which blocks would be refused: a velocity along a constraint, a rod that shrinks to nothing."""
+    pushed = stack["particles.fixed"] & (stack["particles.velocity"] != 0.0)
+    shrunk = stack["rods.thermal_expansion"] * stack["rods.temperature_change"] <= -1.0
+    refused: NDArray[np.bool_] = pushed.any(axis=(1, 2))
+    return refused | shrunk.any(axis=1)
+
+
+def _finite(batch: Batch, energy: dict[str, Any], residual: Column) -> NDArray[np.bool_]:
+    """Which blocks have a state that can be reported."""
+    columns = [residual, *(energy[name] for name in ENERGIES)]
+    for table in _REPORTED:
+        for field in reported(table):
+            column = batch.stack[f"{table}.{field.name}"]
+            columns.append(np.where(np.isnan(column), 0.0, column) if field.nullable else column)
+    finite = np.ones(batch.stack.blocks, dtype=bool)
+    for column in columns:
+        finite &= np.isfinite(column).reshape(len(finite), -1).all(axis=1)
+    return finite

@@ -1,0 +1,159 @@
+"""Batches: variants computed together have the bits of single runs, or are left to these."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from game.report import Analysis
+from game.stack import Stack
+from game.sweeps.plan import Plan, Record
+from game.sweeps.run import plan_of
+from game.sweeps.specimen import Bench, Specimen
+from systems.physics.automatic import choose, stiffnesses, suited_to
+from systems.physics.spectrum import spectra, spectrum
+from tests.reference.models import square, triangle
+
+TRIANGLE = triangle(damping=100, density=6.15, tensile_strength=215, compressive_strength=215)
+TIMES = Analysis(times=(1e-4, 3e-4, 1e-3))
+MEASURES = [
+    "rods.*.axial_force,rods.*.length,rods.*.strain,rods.*.plastic_strain,rods.*.yielding",
+    "particles.*.displacement,particles.*.velocity,particles.*.reaction,particles.*.mass",
+    "energy.work,energy.imbalance,energy.kinetic,energy.elastic,energy.dissipated_damping",
+    "energy.dissipated_plastic,residual,collisions",
+]
+
+
+def loaded() -> dict[str, Any]:
+    """The triangle under loads that change in time."""
+    return TRIANGLE | {
+        "loads": [
+            {"name": "up", "on": "B", "force": [0, -90], "history": {"kind": "ramp", "duration": 2e-4}},
+            {"name": "on", "on": "B", "force": [30, 0], "history": {"kind": "ramp", "start": 1e-4}},
+        ]
+    }
+
+
+def planned(source: Any, vary: list[str], analysis: Analysis, samples: int | None = None) -> Plan:
+    return plan_of(source, vary, MEASURES, analysis, (), samples, 1)
+
+
+def alone(plan: Plan, number: int) -> list[Record]:
+    return Specimen(plan).records(number)
+
+
+CASES: dict[str, tuple[Any, list[str], Analysis, int | None]] = {
+    "until rest": (TRIANGLE, ["rods.*.stiffness~normal(164640,5%)"], Analysis(), 4),
+    "at times": (TRIANGLE, ["particles.B.force.y=-50,-200,-300"], TIMES, None),
+    "plans that differ": (
+        TRIANGLE,
+        ["settings.plasticity=true,false", "rods.*.damping=0,100", "rods.*.compressive_strength=null,90"],
+        TIMES,
+        None,
+    ),
+    "fixed steps": (
+        TRIANGLE,
+        [
+            "settings.time_step=null,3e-6",
+            "settings.integrator=automatic,velocity_verlet",
+            "rods.AB.density=5,6",
+        ],
+        TIMES,
+        None,
+    ),
+    "loads and state": (
+        loaded(),
+        ["loads.up.force.y=-80,-90", "loads.*.force.x~normal(10,5)", "particles.B.velocity.x=0,1"],
+        TIMES,
+        1,
+    ),
+    "environment and geometry": (
+        TRIANGLE,
+        [
+            "environment.acceleration.y=0,-9.81",
+            "particles.B.position.y=0.8,1.2",
+            "settings.tolerance=1e-6,1e-9",
+        ],
+        TIMES,
+        None,
+    ),
+    "another structure": (
+        square(damping=100),
+        ["rods.CD.tensile_strength=40,80"],
+        Analysis(times=(2e-3,)),
+        None,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_together_they_have_the_bits_of_single_runs(name: str) -> None:
+    plan = planned(*CASES[name])
+    together = Bench(plan).together(range(plan.size))
+    assert together == {number: alone(plan, number) for number in range(plan.size)}
+
+
+def test_the_number_of_threads_changes_no_bit() -> None:
+    plan = planned(TRIANGLE, ["rods.*.stiffness~normal(164640,5%)"], TIMES, 30)
+    one, three = (Bench(plan, threads).together(range(plan.size)) for threads in (1, 3))
+    assert len(one) == 30
+    assert one == three
+
+
+def test_what_cannot_be_computed_together_is_left_to_single_runs() -> None:
+    """A warning, no rest, a number that is refused, one that is extreme; then one that is none of these."""
+    vary = [
+        "settings.time_step=1e-2,null",
+        "rods.*.damping=0,100",
+        "rods.CA.temperature_change=-1e9,0",
+        "rods.CA.stiffness=-1,1e-40,1e5",
+    ]
+    plan = planned(TRIANGLE, vary, Analysis(limit=0.1))
+    bench = Bench(plan)
+    together = bench.together(range(plan.size))
+    assert set(together) == {plan.size - 1}
+    statuses = {records[-1][0] for _, records in bench.compute(range(plan.size))}
+    assert statuses == {"failed", "diverged", "limit reached", "at rest"}
+
+
+@pytest.mark.parametrize(
+    ("source", "vary", "analysis"),
+    [
+        (TRIANGLE, "rods.CA.stiffness=1e5,2e5", Analysis(load_factors=(1.0,))),
+        (TRIANGLE, "particles.C.fixed.x=true,false", TIMES),
+        ("collision_ii", "settings.restitution=1,0.5", TIMES),
+    ],
+    ids=["statics", "supports", "no rods"],
+)
+def test_other_sweeps_are_single_runs(source: Any, vary: str, analysis: Analysis) -> None:
+    assert Bench(planned(source, [vary], analysis)).at_a_time == 1
+
+
+def test_structures_whose_particles_can_meet_are_single_runs() -> None:
+    apart = {"name": "E", "position": [5, 5]}
+    source = TRIANGLE | {"particles": [*TRIANGLE["particles"], apart]}
+    plan = planned(source, ["settings.collisions=true,false"], TIMES)
+    assert set(Bench(plan).together(range(2))) == {1}
+
+
+@pytest.mark.parametrize(
+    "source", [TRIANGLE, square(damping=100), "tower"], ids=["triangle", "square", "tower"]
+)
+def test_limits_of_a_block_are_those_of_its_model(source: Any) -> None:
+    plan = planned(source, ["rods.*.stiffness~normal(164640,30%)"], TIMES, 3)
+    specimen = Specimen(plan)
+    stack = Stack.of(specimen.model, 3)
+    expected = []
+    for number in range(3):
+        with specimen.taken_back():
+            specimen.override(plan.overrides_of(number))
+            stack["rods.stiffness"][number] = specimen.model.rods.stiffness
+            found = spectrum(specimen.model, specimen.model.rods.axial_force)
+            expected.append((found.frequency, found.decay, choose(specimen.model)))
+            stack["rods.axial_force"][number] = specimen.model.rods.axial_force
+    drag = np.zeros(3)
+    frequency, decay = spectra(stack.as_model(), stack.rods.axial_force, drag)
+    chosen = [suited_to(stiffness) for stiffness in stiffnesses(stack.as_model(), drag).tolist()]
+    assert list(zip(frequency.tolist(), decay.tolist(), chosen, strict=True)) == expected
