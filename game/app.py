@@ -238,9 +238,10 @@ class App:
             self.window.set_windowed()
 
     def screenshot(self) -> str:
-        """Save what the window shows as a PNG in the working folder; returns its path."""
+        """Save what the window shows as a PNG in the working folder; returns its path. Raises OSError."""
         path = _unused(Path.cwd() / "pinjoint.png")
-        pygame.image.save(self.render.surface, path)
+        with open(path, "wb") as file:
+            pygame.image.save(self.render.surface, file, ".png")
         return str(path)
 
 

@@ -4,17 +4,28 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 from components.field import FieldError
 from components.model import Model
 from components.settings import INTEGRATORS
 from game import __version__, bench, models, script
+from game.arguments import (
+    BAD_INPUT,
+    Parser,
+    UsageError,
+    count,
+    finite,
+    numbers,
+    positive,
+    times,
+    writable,
+    write,
+)
 from game.curve import as_csv as as_curve
 from game.desk import ModelFile, file_of
 from game.mods import ModError, command
@@ -22,32 +33,17 @@ from game.mods.command import load_as_asked
 from game.mods.safety import in_use
 from game.overrides import OverrideError, apply_override
 from game.registry import COMMANDS
-from game.report import FOUND, Analysis
-from game.results import as_csv, as_json, as_table
+from game.report import FOUND, Analysis, AnalysisError
+from game.results import ResultError, as_csv, as_json, as_table
 from game.session import DEFAULT_LIMIT, Session
 from game.shapes import NoShape, numbered
 from game.sweeps import SweepError, sweep
 from game.sweeps.variation import FORMS
 from systems.render.theme import theme_names
 
-ANSWERED, NOT_ANSWERED, BAD_INPUT, NO_DISPLAY = 0, 1, 2, 3
+ANSWERED, NOT_ANSWERED, NO_DISPLAY = 0, 1, 3
 
 _FORMATS = {"table": as_table, "json": as_json, "csv": as_csv}
-
-
-class Refusal(Exception):
-    """Bad usage or a bad model: one sentence for the person, and the exit status."""
-
-    def __init__(self, sentence: str, status: int = BAD_INPUT) -> None:
-        super().__init__(sentence)
-        self.status = status
-
-
-class Parser(argparse.ArgumentParser):
-    """Says what is wrong in one sentence, and where help is."""
-
-    def error(self, message: str) -> NoReturn:
-        raise Refusal(f"{message[:1].upper()}{message[1:]}. See: {self.prog} --help")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -57,9 +53,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         words = load_as_asked(words)
         command = words[0] if words and words[0] in COMMANDS else "open"
-        return COMMANDS[command](words[1:] if command in words[:1] else words)
+        status = COMMANDS[command](words[1:] if command in words[:1] else words)
+        write("", None)  # what is still on its way there
+        return status
     except (
-        Refusal,
+        UsageError,
         models.ModelError,
         OverrideError,
         FieldError,
@@ -67,13 +65,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         ModError,
         SweepError,
         NoShape,
+        AnalysisError,
+        ResultError,
     ) as error:
         print(f"pinjoint: {error}", file=sys.stderr)
         return getattr(error, "status", BAD_INPUT)
     except KeyboardInterrupt:
         return 130
-    except BrokenPipeError:
-        sys.stderr.close()
+    except BrokenPipeError:  # whoever reads has seen enough, such as `head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return NOT_ANSWERED
 
 
@@ -88,7 +88,9 @@ def _open(words: Sequence[str]) -> int:
         " in a folder, and --no-mods, to leave yours out. Bundled models: " + ", ".join(models.bundled()),
     )
     parser.add_argument("model", nargs="?", help="a model file, or the name of a bundled model")
-    parser.add_argument("--record", metavar="FILE", help="write what you do to a script for: pinjoint play")
+    parser.add_argument(
+        "--record", type=writable, metavar="FILE", help="write what you do to a script for: pinjoint play"
+    )
     parser.add_argument("--theme", choices=theme_names(), help="colours; default: those that were used last")
     parser.add_argument("--version", action="version", version=f"pinjoint {__version__}")
     options = parser.parse_args(words)
@@ -97,7 +99,7 @@ def _open(words: Sequence[str]) -> int:
     try:
         _in_window(model, file, options.theme, record=(options.record, source))
     except OSError as error:
-        raise Refusal(
+        raise UsageError(
             f"{options.record} cannot be written: {error.strerror}. Choose another --record."
         ) from None
     return ANSWERED
@@ -108,12 +110,14 @@ def _in_window(model: Model, file: ModelFile, theme: str | None = None, **furthe
     try:
         from game.app import NoDisplay, open_window
     except ImportError as error:
-        raise Refusal(f"The window needs pygame-ce, which cannot be imported: {error}.", NO_DISPLAY) from None
+        raise UsageError(
+            f"The window needs pygame-ce, which cannot be imported: {error}.", NO_DISPLAY
+        ) from None
     try:
         with in_use():
             return open_window(model, file, theme, **further)
     except NoDisplay as error:
-        raise Refusal(
+        raise UsageError(
             f"No window can be opened: {error}. Without a display, use: pinjoint run MODEL,"
             " or pinjoint play SCRIPT without --window.",
             NO_DISPLAY,
@@ -130,14 +134,14 @@ def _run(words: Sequence[str]) -> int:
     _add_model(parser)
     _add_analysis(parser)
     parser.add_argument("--format", choices=tuple(_FORMATS), default="table")
-    parser.add_argument("--output", metavar="FILE", help="write to a file instead of standard output")
-    parser.add_argument("--events", metavar="FILE", help="write all impacts to a file, as CSV")
+    _add_output(parser)
+    parser.add_argument("--events", type=writable, metavar="FILE", help="write all impacts to a file, as CSV")
     options = parser.parse_args(words)
     session = _session(options)
     run = _analysis(options).run_in(session, options.model)
-    _write(_FORMATS[options.format](run), options.output)
+    write(_FORMATS[options.format](run), options.output)
     if options.events is not None:
-        _write(session.impacts.as_csv(), options.events, "--events")
+        write(session.impacts.as_csv(), options.events)
     return ANSWERED if run["status"] in FOUND else NOT_ANSWERED
 
 
@@ -151,7 +155,7 @@ def _add_analysis(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--load-factors", metavar="F1,F2,…", help="with --static: settle at each in turn")
     parser.add_argument(
         "--limit",
-        type=_positive,
+        type=positive,
         default=DEFAULT_LIMIT,
         metavar="SECONDS",
         help="simulated time to wait for rest",
@@ -159,11 +163,12 @@ def _add_analysis(parser: argparse.ArgumentParser) -> None:
 
 
 def _analysis(options: argparse.Namespace) -> Analysis:
-    if options.load_factors is not None and not options.static:
-        raise Refusal("--load-factors goes with --static; add it.")
+    factors = numbers("--load-factors", options.load_factors) if options.load_factors is not None else None
+    if factors is not None and not options.static:
+        raise UsageError("--load-factors goes with --static; add it.")
     return Analysis(
-        load_factors=_numbers("--load-factors", options.load_factors or "1") if options.static else None,
-        times=_times(options.at) if options.at is not None else None,
+        load_factors=(factors or (1.0,)) if options.static else None,
+        times=times(options.at) if options.at is not None else None,
         limit=options.limit,
     )
 
@@ -171,13 +176,19 @@ def _analysis(options: argparse.Namespace) -> Analysis:
 def _add_model(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("model", help="a model file, or the name of a bundled model")
     parser.add_argument("--integrator", metavar="NAME", help=f"one of {', '.join(INTEGRATORS)}")
-    parser.add_argument("--time-step", type=_positive, metavar="S", help="fixed time step in seconds")
+    parser.add_argument("--time-step", type=positive, metavar="S", help="fixed time step in seconds")
     parser.add_argument(
         "--set",
         action="append",
         default=[],
         metavar="PATH=VALUE",
         help="change the model first, such as particles.B.force=120,-160 or rods.*.damping=0",
+    )
+
+
+def _add_output(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--output", type=writable, metavar="FILE", help="write to a file instead of standard output"
     )
 
 
@@ -190,43 +201,6 @@ def _session(options: argparse.Namespace) -> Session:
     if options.time_step is not None:
         session.settings.time_step = options.time_step
     return session
-
-
-def _positive(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text} is not a number of seconds above 0")
-    return value
-
-
-def _numbers(option: str, text: str) -> tuple[float, ...]:
-    try:
-        numbers = tuple(float(part) for part in text.split(","))
-    except ValueError:
-        raise Refusal(f"{option} {text}: write numbers separated by commas, such as 0.1,0.5.") from None
-    if not all(map(math.isfinite, numbers)):
-        raise Refusal(f"{option} {text}: write finite numbers.")
-    return numbers
-
-
-def _times(text: str) -> tuple[float, ...]:
-    times = _numbers("--at", text)
-    if times[0] < 0.0 or list(times) != sorted(times):
-        raise Refusal(f"--at {text}: times must be at least 0 s and ascending.")
-    return times
-
-
-def _write(text: str, output: str | None, option: str = "--output") -> None:
-    if output is None:
-        sys.stdout.write(text)
-        return
-    try:
-        Path(output).write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise Refusal(f"{output} cannot be written: {error.strerror}. Choose another {option}.") from None
 
 
 # --- theory beside the simulation --------------------------------------------------------------------------
@@ -246,10 +220,10 @@ def _verify(words: Sequence[str]) -> int:
     )
     parser.add_argument("--theory-only", action="store_true", help="without the simulation")
     parser.add_argument(
-        "--limit", type=_positive, default=DEFAULT_LIMIT, metavar="SECONDS", help="simulated time for rest"
+        "--limit", type=positive, default=DEFAULT_LIMIT, metavar="SECONDS", help="simulated time for rest"
     )
     parser.add_argument("--format", choices=("table", "json"), default="table")
-    parser.add_argument("--output", metavar="FILE", help="write to a file instead of standard output")
+    _add_output(parser)
     options = parser.parse_args(words)
     session = _session(options)
     from game import verify_report
@@ -264,8 +238,8 @@ def _verify(words: Sequence[str]) -> int:
                 session, options.model, options.limit, simulate=not options.theory_only
             )
     except (ForceMethodError, NoEquilibrium) as error:
-        raise Refusal(str(error), NOT_ANSWERED if isinstance(error, NoEquilibrium) else BAD_INPUT) from None
-    _write(as_json(found) if options.format == "json" else verify_report.as_table(found), options.output)
+        raise UsageError(str(error), NOT_ANSWERED if isinstance(error, NoEquilibrium) else BAD_INPUT) from None
+    write(as_json(found) if options.format == "json" else verify_report.as_table(found), options.output)
     return ANSWERED if found.get("status") != verify_report.NOT_VERIFIED else NOT_ANSWERED
 
 
@@ -322,7 +296,7 @@ def _sweep(words: Sequence[str]) -> int:
         print("\nInterrupted; the same command goes on with what is finished.", file=sys.stderr)
         raise
     except OSError as error:
-        raise Refusal(
+        raise UsageError(
             f"{error.filename or options.output} cannot be written: {error.strerror}. Choose another file."
         ) from None
     counts = results.counts()
@@ -341,17 +315,17 @@ def _curve(words: Sequence[str]) -> int:
     )
     _add_model(parser)
     goal = parser.add_mutually_exclusive_group()
-    goal.add_argument("--factor", type=float, default=1.0, help="end where the load factor is first this (1)")
+    goal.add_argument("--factor", type=finite, default=1.0, help="end where the load factor is first this (1)")
     goal.add_argument("--until", metavar="B.y=-2.5", help="end where a particle is displaced so far (m)")
-    parser.add_argument("--points", type=int, default=500, metavar="N", help="at most so many equilibria")
-    parser.add_argument("--output", metavar="FILE.csv", help="write to a file instead of standard output")
+    parser.add_argument("--points", type=count, default=500, metavar="N", help="at most so many equilibria")
+    _add_output(parser)
     options = parser.parse_args(words)
     session = _session(options)
     try:
         found = session.load_path(options.factor, until=options.until, points=options.points)
     except ValueError as error:
-        raise Refusal(str(error)) from None
-    _write(as_curve(session.model, found), options.output)
+        raise UsageError(str(error)) from None
+    write(as_curve(session.model, found), options.output)
     if not found.complete:
         print(f"pinjoint: The curve ends at the load factor {found.load_factor[-1]:.6g}.", file=sys.stderr)
     return ANSWERED if found.complete else NOT_ANSWERED
@@ -369,7 +343,7 @@ def _force_method(words: Sequence[str]) -> int:
     parser.add_argument(
         "--set", action="append", default=[], metavar="PATH=VALUE", help="change the model first"
     )
-    parser.add_argument("--output", metavar="FILE", help="write to a file instead of standard output")
+    _add_output(parser)
     options = parser.parse_args(words)
     model = models.load(options.model)
     for override in options.set:
@@ -380,8 +354,8 @@ def _force_method(words: Sequence[str]) -> int:
     try:
         found = force_method(model, None if options.all else options.release)
     except ForceMethodError as error:
-        raise Refusal(str(error)) from None
-    _write(json.dumps(found, indent=2, ensure_ascii=False) + "\n", options.output)
+        raise UsageError(str(error)) from None
+    write(json.dumps(found, indent=2, ensure_ascii=False) + "\n", options.output)
     return ANSWERED
 
 
@@ -406,7 +380,8 @@ def _play(words: Sequence[str]) -> int:
         failures = loaded.play(loaded.open())
     for failure in failures:
         print(f"{options.script} {failure}", file=sys.stderr)
-    found = f"{len(failures)} expectations failed" if failures else "all as expected"
+    failed = f"{len(failures)} expectation{'s' if len(failures) > 1 else ''} failed"
+    found = failed if failures else "all as expected"
     print(f"{options.script}: {len(loaded.lines) - 1} lines, {found}")
     return NOT_ANSWERED if failures else ANSWERED
 
@@ -420,16 +395,18 @@ def _render(words: Sequence[str]) -> int:
         description="Draw a model, or its run as a GIF, without a display.",
     )
     _add_model(parser)
-    parser.add_argument("--output", required=True, metavar="FILE", help="a .png, or a .gif that shows the run")
+    parser.add_argument(
+        "--output", type=writable, required=True, metavar="FILE", help="a .png, or a .gif that shows the run"
+    )
     parser.add_argument("--size", default="1280x800", metavar="WIDTHxHEIGHT", help="pixels")
     parser.add_argument("--until-rest", action="store_true", help="run until at rest first (a GIF's default)")
-    parser.add_argument("--at", type=_positive, metavar="T", help="run to this time (s) first")
+    parser.add_argument("--at", type=positive, metavar="T", help="run to this time (s) first")
     parser.add_argument("--diagrams", action="store_true", help="show all force diagrams")
     shape = parser.add_mutually_exclusive_group()
     shape.add_argument("--mechanism", type=int, metavar="N", help="draw a motion that elongates no rod over it")
     shape.add_argument("--mode", type=int, metavar="N", help="draw a natural mode over it, 1 the lowest")
     parser.add_argument("--theme", choices=theme_names(), default="light", help="colours")
-    parser.add_argument("--limit", type=_positive, default=DEFAULT_LIMIT, help=argparse.SUPPRESS)
+    parser.add_argument("--limit", type=positive, default=DEFAULT_LIMIT, help=argparse.SUPPRESS)
     options = parser.parse_args(words)
     width, height = _size(options.size)
     session = _session(options)
@@ -441,7 +418,9 @@ def _render(words: Sequence[str]) -> int:
         else:
             status = _draw(session, options, (width, height))
     except OSError as error:
-        raise Refusal(f"{options.output} cannot be written: {error}. Choose another --output.") from None
+        raise UsageError(
+            f"{options.output} cannot be written: {error.strerror or error}. Choose another --output."
+        ) from None
     return ANSWERED if status in FOUND else NOT_ANSWERED
 
 
@@ -474,7 +453,7 @@ def _animate(session: Session, options: argparse.Namespace, size: tuple[int, int
 def _size(text: str) -> tuple[int, int]:
     width, _, height = text.partition("x")
     if not (width.isdigit() and height.isdigit() and 16 <= int(width) <= 16384 and 16 <= int(height) <= 16384):
-        raise Refusal(f"--size {text}: write it like 1280x800, each from 16 to 16384 pixels.")
+        raise UsageError(f"--size {text}: write it like 1280x800, each from 16 to 16384 pixels.")
     return int(width), int(height)
 
 
@@ -491,18 +470,18 @@ def _bench(words: Sequence[str]) -> int:
     options = parser.parse_args(words)
     for name in options.names:
         if name not in bench.NAMES:
-            raise Refusal(f"There is no benchmark '{name}'; choose from {', '.join(bench.NAMES)}.")
+            raise UsageError(f"There is no benchmark '{name}'; choose from {', '.join(bench.NAMES)}.")
     for name in options.names or bench.NAMES:
         try:
             tables = bench.run(name, quick=options.quick)
         except bench.NoBenchmarks as error:
-            raise Refusal(str(error)) from None
+            raise UsageError(str(error)) from None
         print(f"== {name} ==\n{bench.as_text(tables)}")
         if options.output:
             try:
                 bench.write(name, tables, Path(options.output))
             except OSError as error:
-                raise Refusal(f"{options.output} cannot be written: {error.strerror}.") from None
+                raise UsageError(f"{options.output} cannot be written: {error.strerror}.") from None
     return ANSWERED
 
 

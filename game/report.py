@@ -1,4 +1,4 @@
-"""Reports: running a model without a window, and what came of it as plain data (DESIGN of the results)."""
+"""Reports: running a model without a window, and what came of it as plain data; see results.py."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from components.model import Model
-from game.results import ENERGIES, Run, State, state
+from game.results import ENERGIES, ResultError, Run, State, state
 from game.session import DEFAULT_LIMIT
 from game.simulation import Simulation
 from systems.base import StopReason
@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from systems.statics.settle import StaticState
 
 FOUND = ("equilibrium", "at rest", "time reached")  # statuses of a run that found what was asked for
+
+
+class AnalysisError(ValueError):
+    """What is asked of a model cannot be had; the message says why and the remedy."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +40,7 @@ class Analysis:
     limit: float = DEFAULT_LIMIT
 
     def run(self, simulation: Simulation, name: str) -> Run:
-        """Compute it; `name` is what the result calls the model."""
+        """Compute it; `name` is what the result calls the model. Raises AnalysisError, ResultError, FieldError."""
         if self.load_factors is not None:
             return run_static(simulation, name, self.load_factors)
         if self.times is not None:
@@ -65,7 +69,12 @@ def run_at(simulation: Simulation, name: str, times: Sequence[float]) -> Run:
     """Run through the given times (s, ascending) and report the state at exactly each of them.
 
     The short last step to a reported time is taken on a copy, so that a report never changes the run.
+    Raises AnalysisError for times that are over.
     """
+    if times[0] < (present := simulation.model.clock.time):
+        raise AnalysisError(
+            f"The model is at t = {present:.9g} s already, after {times[0]:.9g} s; ask for later times."
+        )
     states: list[State] = []
     simulation.smooth = False  # nobody watches
     for target in times:
@@ -118,7 +127,10 @@ def _static_state(simulation: Simulation, found: StaticState) -> State:
 
 
 def _state(simulation: Simulation) -> State:
-    return state(simulation.model, simulation.energy.as_dict(), None, simulation.residual)
+    try:
+        return state(simulation.model, simulation.energy.as_dict(), None, simulation.residual)
+    except ResultError as error:
+        raise ResultError(simulation.message or str(error)) from None
 
 
 def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:

@@ -95,8 +95,10 @@ class Script:
     def _read(self) -> Iterator[tuple[int, dict[str, Any]]]:
         try:
             text = self.path.read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise ScriptError(f"{self.path} cannot be read: {error}.") from None
+        except OSError as error:
+            raise ScriptError(f"{self.path} cannot be read: {error.strerror}. Check its path.") from None
+        except UnicodeDecodeError as error:
+            raise ScriptError(f"{self.path} is no script in UTF-8: {error}.") from None
         for number, line in enumerate(text.splitlines(), start=1):
             if not line.strip() or line.lstrip().startswith("#"):
                 continue

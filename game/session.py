@@ -81,7 +81,7 @@ class Window(Protocol):
         """Fill the screen, or stop doing so."""
 
     def screenshot(self) -> str:
-        """Save a picture of the window; returns where."""
+        """Save a picture of the window; returns where. Raises OSError."""
 
     def copied(self) -> str:
         """The text on the system's clipboard."""

@@ -86,5 +86,11 @@ def _toggle_full_screen(session: Session, pixel: Vector) -> None:
 
 @action("screenshot", while_drawing=True)
 def _screenshot(session: Session, pixel: Vector) -> None:
-    if session.window is not None:
+    if session.window is None:
+        return
+    try:
         session.notice = f"Picture saved: {session.window.screenshot()}"
+    except OSError as error:
+        raise Refusal(
+            f"No picture was saved: {error.filename}: {error.strerror}. Start Pinjoint in a folder of yours."
+        ) from None

@@ -127,27 +127,28 @@ def shake(model: Model, record: History | dict[str, list[float] | str], directio
 
 def run(words: list[str]) -> int:
     """`pinjoint shake MODEL RECORD.csv --output FILE`."""
-    import argparse
-    import sys
-
     from game import models
+    from game.arguments import Parser, UsageError, writable
 
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="pinjoint shake", description="Shake the supports of a model by a recorded acceleration."
     )
     parser.add_argument("model", help="a model file, or the name of a bundled model")
     parser.add_argument("record", type=Path, metavar="RECORD.csv", help="lines of time (s), acceleration")
     parser.add_argument("--unit", choices=("m/s2", "g"), default="m/s2", help="of the accelerations")
     parser.add_argument("--direction", choices=tuple(DIRECTIONS), default="x")
-    parser.add_argument("--output", required=True, metavar="FILE", help="the model with the loads")
+    parser.add_argument(
+        "--output", type=writable, required=True, metavar="FILE", help="the model with the loads"
+    )
     options = parser.parse_args(words)
     model = models.load(options.model)
     try:
         record = read_record(options.record, STANDARD_GRAVITY if options.unit == "g" else 1.0)
         shake(model, record, DIRECTIONS[options.direction])
-    except (OSError, ValueError) as error:
-        print(f"pinjoint: {error}", file=sys.stderr)
-        return 2
+    except OSError as error:
+        raise UsageError(f"{options.record} cannot be read: {error.strerror}. Check its path.") from None
+    except ValueError as error:
+        raise UsageError(str(error)) from None
     models.save(model, options.output)
     return 0
 

@@ -15,6 +15,7 @@ import numpy as np
 from components import Model, Particle, Plot, Readout, Rod, Vector
 from game.quantities import TIME, Quantity, quantity
 from systems.base import Phase, System
+from systems.edit.refusal import Refusal
 
 if TYPE_CHECKING:
     from game.mods import App
@@ -167,9 +168,14 @@ def zoom(factor: float, session: Session) -> None:
 def save(session: Session, pixel: Vector) -> None:
     """Write every plot as CSV and PNG into the working folder."""
     paths = [Path.cwd() / f"pinjoint-plot-{number}.csv" for number, _ in enumerate(probes_of(session).all, 1)]
-    for probe, path in zip(probes_of(session).all, paths, strict=True):
-        write_csv(probe, path)
-        write_png(probe, path.with_suffix(".png"), session.view.theme)
+    try:
+        for probe, path in zip(probes_of(session).all, paths, strict=True):
+            write_csv(probe, path)
+            write_png(probe, path.with_suffix(".png"), session.view.theme)
+    except OSError as error:
+        raise Refusal(
+            f"No plot was saved: {error.filename}: {error.strerror}. Start Pinjoint in a folder of yours."
+        ) from None
     names = ", ".join(path.stem for path in paths)
     session.notice = f"Saved as CSV and PNG: {names}" if paths else "There is no plot to save; O makes one."
 
@@ -204,13 +210,11 @@ def _heading(probe: Probe) -> str:
 
 def run(words: list[str]) -> int:
     """`pinjoint plot MODEL --of QUANTITY --until T --output FILE`."""
-    import argparse
-    import sys
-
+    from game.arguments import Parser, UsageError, count, positive, writable
     from game.quantities import QuantityError
     from game.session import Session
 
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="pinjoint plot", description="Run a model and write quantities against time or another."
     )
     parser.add_argument("model", help="a model file, or the name of a bundled model")
@@ -218,18 +222,20 @@ def run(words: list[str]) -> int:
         "--of", action="append", required=True, metavar="PATH", help="such as rods.AB.axial_force"
     )
     parser.add_argument("--against", default=TIME, metavar="PATH", help="default: time")
-    parser.add_argument("--until", type=float, required=True, metavar="T", help="simulated time (s)")
-    parser.add_argument("--samples", type=int, default=500, metavar="N", help="at least; default 500")
-    parser.add_argument("--output", type=Path, required=True, metavar="FILE", help=".csv or .png")
+    parser.add_argument("--until", type=positive, required=True, metavar="T", help="simulated time (s)")
+    parser.add_argument("--samples", type=count, default=500, metavar="N", help="at least; default 500")
+    parser.add_argument("--output", type=writable, required=True, metavar="FILE", help=".csv or .png")
     options = parser.parse_args(words)
     session = Session.open(options.model)
     try:
         probe = probes_of(session).add(session, options.of, options.against)
-        record(session, probe, options.until, max(options.samples, 2))
-        (write_png if options.output.suffix == ".png" else write_csv)(probe, options.output)
-    except (QuantityError, OSError) as error:
-        print(f"pinjoint: {error}", file=sys.stderr)
-        return 2
+    except QuantityError as error:
+        raise UsageError(str(error)) from None
+    output = Path(options.output)
+    if output.suffix not in (".csv", ".png"):
+        raise UsageError(f"--output {output}: write a file that ends with .csv or .png.")
+    record(session, probe, options.until, options.samples)
+    (write_png if output.suffix == ".png" else write_csv)(probe, output)
     return 0
 
 

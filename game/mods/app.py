@@ -14,6 +14,7 @@ from components.settings import INTEGRATORS
 from components.view import Readout
 from game import models, registry
 from game.actions.registry import ACTIONS, WHILE_DRAWING, Action, action
+from game.arguments import BAD_INPUT, UsageError
 from game.catalogue import DRIVERS, register_driver
 from game.mods.guard import guarded_history, guarded_scene, guarded_system
 from game.mods.mod import Mod, ModError
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from game.session import Session
 
 T = TypeVar("T")
+MISTAKES = (UsageError, models.ModelError, FieldError)  # of a person at the command line
 Panel = Callable[["Session"], Readout | Sequence[Readout] | None]
 
 
@@ -144,12 +146,15 @@ class App:
             )
 
     def command(self, name: str, run: Callable[[list[str]], int], about: str = "") -> None:
-        """Add `pinjoint <name> …`: `run` gets the words after it and returns the exit status."""
-        commands = registry.COMMANDS
+        """Add `pinjoint <name> …`: `run` gets the words after it and returns the exit status.
+
+        It may raise UsageError, ModelError or FieldError, whose sentence is shown, for what a person did wrong.
+        """
+        commands, call = registry.COMMANDS, self._mod.call
         if name in commands:
             raise ModError(f"There is a command '{name}' already; call this one something else.")
         commands[name] = lambda words: int(
-            self._mod.call(f"the command '{name}'", run, list(words), otherwise=2)
+            call(f"the command '{name}'", run, list(words), otherwise=BAD_INPUT, mistakes=MISTAKES)
         )
         self._undo.append(lambda: commands.pop(name))
 

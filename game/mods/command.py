@@ -7,6 +7,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from game.arguments import Parser
 from game.mods.finding import mods_folder
 from game.mods.loading import MODS, load
 from game.mods.mod import FAULTS, INCLUDED, Mod, ModError
@@ -21,7 +22,7 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
     What was left out is told on standard error. After a crash with mods, a window is opened without those
     that were not asked for. Raises ModError.
     """
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser = Parser(prog="pinjoint", add_help=False, allow_abbrev=False)
     parser.add_argument("--mods", action="append", default=[], metavar="DIR")
     parser.add_argument("--no-mods", action="store_true")
     options, others = parser.parse_known_args(list(words))

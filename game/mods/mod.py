@@ -72,12 +72,24 @@ class Mod:
         own = [f for f in frames if self.folder is not None and Path(f.filename).is_relative_to(self.folder)]
         return f"{_short(own[-1].filename)}, line {own[-1].lineno}" if own else ""
 
-    def call(self, what: str, function: Callable[..., Any], *arguments: Any, otherwise: Any = None) -> Any:
-        """What a function of the mod returns; `otherwise` if the mod is off, or fails, which switches it off."""
+    def call(
+        self,
+        what: str,
+        function: Callable[..., Any],
+        *arguments: Any,
+        otherwise: Any = None,
+        mistakes: tuple[type[Exception], ...] = (),
+    ) -> Any:
+        """What a function of the mod returns; `otherwise` if the mod is off, or fails, which switches it off.
+
+        mistakes: errors by which it tells a person what to do otherwise; they are raised.
+        """
         if self.off:
             return otherwise
         try:
             return function(*arguments)
+        except mistakes:
+            raise
         except Exception as error:  # whatever a stranger's code raises
             self.fail(what, error)
             return otherwise

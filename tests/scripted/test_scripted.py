@@ -45,7 +45,7 @@ def test_an_expectation_that_fails_says_what_where_expected_and_got(
     assert main(["play", str(path)]) == 1
     said = capsys.readouterr()
     assert "line 3: expected rods.AB.axial_force ≈ -29 ± 0.1, got -28.34" in said.err
-    assert "1 expectations failed" in said.out
+    assert "1 expectation failed" in said.out
 
 
 def test_a_session_expects_the_same_in_python() -> None:

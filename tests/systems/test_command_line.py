@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from game.cli import main
 
 ROOT = Path(__file__).parents[2]
 
@@ -35,3 +38,90 @@ def test_without_a_display_one_line_says_so(environment: dict[str, str]) -> None
     (line,) = [line for line in found.stderr.splitlines() if line.startswith("pinjoint: ")]
     assert "pinjoint run" in line
     assert found.stdout == ""
+
+
+MODEL = {
+    "format": "pinjoint model",
+    "version": 1,
+    "particles": [
+        {"name": "A", "position": [0, 0], "fixed": [True, True]},
+        {"name": "B", "position": [1, 0], "fixed": [False, True], "force": [10, 0]},
+    ],
+    "rods": [{"name": "AB", "between": ["A", "B"]}],
+}
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("run isostatic --static --load-factors ,", "write numbers separated by commas"),
+        ("run isostatic --output /no/such/folder/x.json", "there is no folder /no/such/folder"),
+        ("run isostatic --events /", "it is a folder"),
+        ("run isostatic --set particles.B.position=1e200,1", "1e+200 m, too large to compute with"),
+        ("curve von_mises --factor nan", "nan is not a finite number"),
+        ("curve von_mises --points 1", "1 is not a whole number of at least 2"),
+        ("plot isostatic", "required: --of, --until, --output. See: pinjoint plot --help"),
+        ("plot missing --of time --until 1 --output x.csv", "no bundled model 'missing'"),
+        ("plot isostatic --of rods.AX.strain --until 1 --output x.csv", "no 'AX' among the rods"),
+        ("plot isostatic --of time --until 1 --output x.pdf", "ends with .csv or .png"),
+        ("shake isostatic missing.csv --output x.json", "missing.csv cannot be read: No such file"),
+        ("play missing.jsonl", "missing.jsonl cannot be read: No such file or directory. Check its path."),
+        ("run isostatic --mods", "Argument --mods: expected one argument"),
+    ],
+)
+def test_what_cannot_be_done_is_said_in_one_line(
+    words: str, sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words.split()) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith("pinjoint: ")
+    assert said.err.count("\n") == 1
+    assert sentence in said.err
+
+
+def test_lists_of_numbers_may_begin_with_a_minus(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["run", "isostatic", "--static", "--format", "json", "--load-factors", "-0.5,0.5"]
+    assert main(words) == 0
+    states = json.loads(capsys.readouterr().out)["states"]
+    assert [state["load_factor"] for state in states] == [-0.5, 0.5]
+
+
+def test_times_before_that_of_a_saved_run_are_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "later.json"
+    path.write_text(json.dumps(MODEL | {"state": {"time": 3.5, "steps": 10}}), encoding="utf-8")
+    assert main(["run", str(path), "--at", "1"]) == 2
+    assert "The model is at t = 3.5 s already" in capsys.readouterr().err
+
+
+def test_a_reader_that_has_seen_enough_is_no_error() -> None:
+    found = subprocess.run(
+        f"'{sys.executable}' -m game mods list | head -c 1; exit ${{PIPESTATUS[0]}}",
+        shell=True,
+        executable="/bin/bash",
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    )
+    assert found.returncode in (0, 1)
+    assert found.stderr == ""
+
+
+def test_a_full_disk_is_said_in_one_line() -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("there is no /dev/full here")
+    with open("/dev/full", "w") as full:
+        found = subprocess.run(
+            [sys.executable, "-m", "game", "run", "isostatic", "--static"],
+            cwd=ROOT,
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+    assert found.returncode == 2
+    assert (
+        found.stderr
+        == "pinjoint: Standard output cannot be written: No space left on device. Choose another file.\n"
+    )
