@@ -167,8 +167,10 @@ class Structure:
 
     def move(self, vector: Array, length: Array) -> float:
         """The largest change of a rod, in length or direction, relative to its length."""
-        change = self.relative(self.spread(vector))
-        return float((np.hypot(change[:, 0], change[:, 1]) / length).max(initial=0.0))
+        change = np.hypot(*self.relative(self.spread(vector)).T)
+        moved = change > 0.0
+        with np.errstate(divide="ignore"):  # the ends may be at the same place, as yet
+            return float((change[moved] / length[moved]).max(initial=0.0))
 
     def elongation_rate(self, vector: Array, response: Response) -> Array:
         """Rate of elongation of every rod when the unknowns change at this rate."""

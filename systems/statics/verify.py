@@ -59,14 +59,18 @@ class Theories:
 
 
 def theories(model: Model, start: Start | None = None) -> Theories:
-    """Linear and exact answers under the model's load, from a state (None: the present one) on."""
+    """Linear and exact answers under the model's load, from a state (None: the present one) on.
+
+    Raises FieldError for numbers too large or too small to compute with.
+    """
     start = start or Start.present(model)
+    exact = settle(model, start=start)
     refusal, first_order = "", None
     try:
         first_order = linear(model, start)
     except NoEquilibrium as reason:
         refusal = str(reason)
-    return Theories(start, first_order, refusal, settle(model, start=start))
+    return Theories(start, first_order, refusal, exact)
 
 
 def observed(model: Model) -> Answer:

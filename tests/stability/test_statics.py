@@ -136,3 +136,13 @@ def test_huge_and_tiny_units(seed: int, length: float, force: float) -> None:
         assert np.abs(other.axial_force / force - one.axial_force).max() <= 1e-9 * largest
         moved = np.abs(here.states[0].displacement).max()
         assert np.abs(other.displacement / length - one.displacement).max() <= 1e-9 * moved
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_rod_whose_ends_are_at_the_same_place_has_no_direction_yet() -> None:
+    """Compressed to nothing, it stands by chance: there is no equilibrium to follow, and nothing is divided by 0."""
+    squeezed = model(
+        [particle("A", 0, 0, fixed=[True, True]), particle("B", 0, 0, force=[1, 0])],
+        [rod("A", "B", rest_length=1.0)],
+    )
+    assert settle(models.load(squeezed)).final.status == "limit reached"
