@@ -178,6 +178,12 @@ class Structure:
         return rate
 
     @cached_property
+    def original_axis(self) -> Array:
+        """Unit vectors from the first original position to the second, (rods, 2); 0 where they are the same."""
+        length = self.original_length[:, None]
+        return np.divide(self.difference, length, out=np.zeros_like(self.difference), where=length > 0.0)
+
+    @cached_property
     def extent(self) -> float:
         """The larger side of the box around the original positions (m), at least the longest rod."""
         box = float(np.ptp(self.position, axis=0).max()) if len(self.position) else 0.0

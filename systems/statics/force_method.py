@@ -254,8 +254,7 @@ def redundants(model: Model) -> list[Unknown]:
     used[structure.ends] = True
     supports = np.argwhere(structure.fixed & used[:, None])
     columns = np.zeros((2 * model.particles.count, model.rods.count + len(supports)))
-    axis = structure.difference / structure.original_length[:, None]
-    for row, ((first, second), along) in enumerate(zip(structure.ends, axis, strict=True)):
+    for row, ((first, second), along) in enumerate(zip(structure.ends, structure.original_axis, strict=True)):
         columns[2 * first : 2 * first + 2, row] = along
         columns[2 * second : 2 * second + 2, row] = -along
     for index, (row, direction) in enumerate(supports):
