@@ -40,11 +40,11 @@ class Contacts:
         pairs, forces = contacts.contacts, contacts.forces
         start = before.columns["particles.displacement"]
         _, normal = self._near.gaps(pairs, start)
-        held = HELD * self._near.radius[pairs].min(axis=1)
+        held = HELD * self._near.size[pairs].min(axis=1)
         inverse: Floats | None = None
         tried: tuple[Floats, Floats] | None = None
         for _ in range(MOST_TRIES):
-            _push(program, self.model, support_forces(self._near.position + start, pairs, forces))
+            _push(program, self.model, support_forces(normal, pairs, forces, self.model.particles.count))
             reason = take()
             h = self.model.clock.time - before.columns["clock.time"][0]
             if h == 0.0 or reason is StopReason.DIVERGED:

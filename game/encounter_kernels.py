@@ -16,8 +16,8 @@ entry = njit(error_model="numpy", _nrt=False, cache=True)
 
 
 @entry
-def meeting(h, pairs, kinds, position, before, velocity, after, radius):
-    return first_meeting(h, pairs, kinds, position, before, velocity, after, radius)
+def meeting(h, pairs, kinds, position, before, velocity, after, radius, span):
+    return first_meeting(h, pairs, kinds, position, before, velocity, after, radius, span)
 
 
 @entry

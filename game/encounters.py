@@ -118,11 +118,11 @@ class Encounters:
         sway = SWAY * np.hypot(*(h * (particles.velocity + speed) - 2.0 * moved).T)
         turn = h * np.hypot(*(particles.velocity - speed).T).max(initial=0.0)
         near.cover(old, float(turn + 4.0 * sway.max(initial=0.0)))
-        doubt = sway[near.pairs].sum(axis=1)
+        doubt = near.everywhere(sway)[near.pairs].sum(axis=1)
         first, _ = near.gaps(near.pairs, old)
         last, _ = near.gaps(near.pairs, particles.displacement)
         unsure = (np.minimum(first, last) < 2.0 * doubt) & (near.kinds(old) == WATCHED)
-        return not (unsure & (doubt > DOUBT * near.radius[near.pairs].min(axis=1))).any()
+        return not (unsure & (doubt > DOUBT * near.size[near.pairs].min(axis=1))).any()
 
     def _meeting(self, before: Snapshot) -> float:
         """When a watched pair first met in the step just taken (s); infinite if none did."""
@@ -133,10 +133,11 @@ class Encounters:
             near.pairs,
             near.kinds(old),
             near.position,
-            old,
-            speed,
-            particles.displacement.copy(),
+            near.everywhere(old),
+            near.everywhere(speed),
+            near.everywhere(particles.displacement.copy()),
             near.radius,
+            near.span,
         )
         return float(start + s)
 
@@ -149,7 +150,8 @@ class Encounters:
             reason = take(time)
             pairs = near.pairs[near.kinds(before.columns["particles.displacement"]) == WATCHED]
             gap, normal = near.gaps(pairs, particles.displacement)
-            relative = particles.velocity[pairs[:, 1]] - particles.velocity[pairs[:, 0]]
+            velocity = near.everywhere(particles.velocity)
+            relative = velocity[pairs[:, 1]] - velocity[pairs[:, 0]]
             rate = (normal * relative).sum(axis=1)
             late = np.where(rate < 0.0, gap / np.where(rate < 0.0, rate, 1.0), -math.inf)
             first = int(np.argmax(late))  # the pair that met first, or is to meet first

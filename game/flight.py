@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from components.field import Role
 from components.model import Model
+from components.obstacles import obstacles
 from components.paths import Paths
 from game.impacts import Impacts
 from game.program_cache import compile_module, is_compiled, note_compiled
@@ -69,28 +70,35 @@ def part_overlaps(model: Model) -> str:
     """Move particles apart that overlap, but for nodes of structures among themselves; says so, or ""."""
     from systems.collision.near import near_pairs
 
-    particles = model.particles
-    node = np.zeros(particles.count, dtype=bool)
+    particles, others = model.particles, obstacles(model)
+    node: NDArray[np.bool_] = np.ones(particles.count + len(others), dtype=bool)  # obstacles count as nodes
+    held = node.copy()
+    held[: particles.count] = (particles.mobility == 0.0).all(axis=1)
+    node[: particles.count] = False
     node[model.rods.between.ravel()] = True
-    held = (particles.mobility == 0.0).all(axis=1)
 
     def among(pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
-        chosen: NDArray[np.bool_] = ~(node[pairs].all(axis=1) | held[pairs].all(axis=1))
-        return chosen
+        left_alone: NDArray[np.bool_] = np.logical_or(node[pairs].all(axis=1), held[pairs].all(axis=1))
+        return np.logical_not(left_alone)
 
     displacement = particles.displacement.copy()
-    touching = near_pairs(particles.position + displacement, particles.radius)
+    touching = near_pairs(particles.position + displacement, particles.radius, others)
     if not among(touching).any():
         return ""
     from systems.collision.overlaps import overlaps, part
 
-    count = int(among(overlaps(particles.position + displacement, particles.radius)).sum())
+    overlapping = overlaps(particles.position + displacement, particles.radius, others)
+    overlapping = overlapping[among(overlapping)]
+    count = len(overlapping)
     if count == 0:
         return ""
-    left = part(particles.position, displacement, particles.radius, particles.mobility, among)
+    left = part(particles.position, displacement, particles.radius, particles.mobility, among, obstacles=others)
     model.writable("particles.displacement")[...] = displacement
     pairs = "1 pair of particles" if count == 1 else f"{count} pairs of particles"
     note = f"{pairs} overlapped and were moved apart along their lines of centres."
+    if (overlapping[:, 1] >= particles.count).any():
+        pairs = "1 overlap" if count == 1 else f"{count} overlaps"
+        note = f"{pairs} of particles with others or with obstacles: they were moved apart."
     return note if left == 0 else f"{note} {left} still overlap: move them, or free a direction."
 
 
@@ -113,7 +121,8 @@ class Flight:
     @property
     def resists_motion(self) -> bool:
         """True if impacts take energy."""
-        return self.model.settings.restitution < 1.0
+        least = obstacles(self.model).restitution.min(initial=self.model.settings.restitution)
+        return bool(least < 1.0)
 
     def bind(self) -> None:
         """The document changed: paths are found anew."""
@@ -138,6 +147,7 @@ class Flight:
                 acceleration=particles.mobility * particles.constant_force,
                 restitution=self.model.settings.restitution,
                 time=clock.time,
+                obstacles=obstacles(self.model),
             )
             if clock.paths is not None and self._fits(clock.paths):
                 self._flying.follow(clock.paths)
@@ -148,7 +158,8 @@ class Flight:
     def _fits(self, paths: Paths) -> bool:
         """True if the paths lead through the present state, bit for bit."""
         particles, now = self.model.particles, self.model.clock.time
-        inside = (paths.contacts < particles.count).all() and len(paths.crowd) == CROWD
+        count = particles.count + len(obstacles(self.model))
+        inside = (paths.contacts < count).all() and len(paths.crowd) == CROWD
         if paths.motion.shape != (particles.count, len(MOVING)) or not inside:
             return False
         u, v, a = paths.motion[:, 0:2], paths.motion[:, 2:4], paths.motion[:, 4:6]

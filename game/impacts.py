@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.model import Model
+from components.obstacles import obstacles
 
 MOST = 2**22  # impacts that are kept; of longer runs the earliest are forgotten
 _COLUMNS = ("time", "first", "second", "impulse", "energy_lost", "x", "y")
@@ -20,8 +21,9 @@ Column = NDArray[Any]
 class Impacts:
     """The impacts of a model's run so far, earliest first; going back in time takes them back.
 
-    time: s. first, second: rows of the two particles. impulse: N·s along the line of centres. energy_lost: J;
-    in a joint impact of many, a share of it. x, y: the point of contact, m. In an array each.
+    time: s. first, second: rows of the two particles; beyond the last, of obstacles, such as walls. impulse: N·s
+    along the line of centres. energy_lost: J; in a joint impact of many, a share of it. x, y: the point of
+    contact, m. In an array each.
     """
 
     def __init__(self, model: Model) -> None:
@@ -68,7 +70,7 @@ class Impacts:
 
     def as_csv(self) -> str:
         """One impact a line: time (s), the particles' names, impulse (N·s), energy lost (J), point (m)."""
-        names = self._model.particles.names
+        names = [*self._model.particles.names, *obstacles(self._model).names]
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(_COLUMNS)

@@ -40,14 +40,20 @@ class Strikes:
             return False
         slow = self._rest_speed(before)
         slow[kinds == LASTING] = math.inf
-        for group in connected(near.pairs[touching]):
+        for group in connected(self._apart(near.pairs[touching])):
             self._strike(touching[group], normal, rate, slow)
         touching = touching[kinds[touching] == WATCHED]
         return self._note_contacts(near.pairs[touching], normal[touching], slow[touching])
 
+    def _apart(self, pairs: Rows) -> Rows:
+        """The pairs, every obstacle a different one in each: it passes nothing on from one to another."""
+        fixed = pairs[:, 1] >= self.model.particles.count
+        numbers = len(self._near.position) + np.arange(len(pairs))
+        return np.column_stack([pairs[:, 0], np.where(fixed, numbers, pairs[:, 1])])
+
     def _rates(self, pairs: Rows, normal: Floats) -> Floats:
         """Speeds (m/s) at which pairs part along their lines of centres."""
-        velocity = self.model.particles.velocity
+        velocity = self._near.everywhere(self.model.particles.velocity)
         rates: Floats = (normal * (velocity[pairs[:, 1]] - velocity[pairs[:, 0]])).sum(axis=1)
         return rates
 
@@ -55,14 +61,14 @@ class Strikes:
         """Speed of approach below which pairs stay in contact: √(2 a h), a being the larger acceleration."""
         particles, pairs = self.model.particles, self._near.pairs
         height = TOUCH * self._near.reach(pairs)
-        if self.model.settings.restitution < 1.0:
-            height = np.maximum(height, REST_HEIGHT * self._near.radius[pairs].min(axis=1))
+        if (self._near.restitution < 1.0).any():
+            height = np.maximum(height, REST_HEIGHT * self._near.size[pairs].min(axis=1))
         pull = np.hypot(*(particles.mobility * particles.applied_force).T)
         h = self.model.clock.time - before.columns["clock.time"][0]
         if h > 0.0:
             change = (particles.velocity - before.columns["particles.velocity"]) / h
             pull = np.maximum(pull, np.hypot(*change.T))
-        speed: Floats = np.sqrt(2.0 * pull[pairs].max(axis=1) * height)
+        speed: Floats = np.sqrt(2.0 * self._near.everywhere(pull)[pairs].max(axis=1) * height)
         return speed
 
     def _strike(self, chosen: Rows, normal: Floats, rate: Floats, slow: Floats) -> None:
@@ -71,27 +77,29 @@ class Strikes:
         from systems.collision.discs import room_for
 
         pairs = self._near.pairs[chosen]
-        count, fast = len(pairs), bool((rate[chosen] < -slow[chosen]).any())
+        fast = rate[chosen] < -slow[chosen]
+        count, restitution = len(pairs), self._near.restitution[pairs[fast, 1]].min(initial=1.0)
         members, links = np.unique(pairs, return_inverse=True)
         group = room_for(len(members), count)
         group.links[:count] = links.reshape(-1, 2)
         group.contacts[:count, [NX, NY]] = normal[chosen]
         group.mobility[...] = self._near.weight[members]
         velocity = self.model.writable("particles.velocity")
-        group.motion[...] = velocity[members]
-        kernels().impact(len(members), count, self.model.settings.restitution if fast else 0.0, group)
-        velocity[members] = group.motion
+        group.motion[...] = self._near.everywhere(velocity)[members]
+        kernels().impact(len(members), count, restitution if fast.any() else 0.0, group)
+        moves = members < len(velocity)
+        velocity[members[moves]] = group.motion[moves]
         impulse = group.contacts[:count, IMPULSE]
         loss = -0.5 * float((impulse * (rate[chosen] + self._rates(pairs, normal[chosen]))).sum())
         clock = self.model.clock
         self.model.writable("clock.dissipated_impact")[0] = clock.dissipated_impact + loss
-        if fast and impulse.any():
+        if fast.any() and impulse.any():
             self._record(pairs, normal[chosen], impulse, loss)
 
     def _record(self, pairs: Rows, normal: Floats, impulse: Floats, loss: float) -> None:
         felt, clock = impulse > 0.0, self.model.clock
         pairs, impulse = pairs[felt], impulse[felt]
-        place = self._near.position + self.model.particles.displacement
+        place = self._near.position + self._near.everywhere(self.model.particles.displacement)
         point = place[pairs[:, 0]] + normal[felt] * self._near.radius[pairs[:, 0]][:, None]
         share = loss * impulse / impulse.sum()
         self._impacts.record(np.column_stack((np.full(len(pairs), clock.time), pairs, impulse, share, point)))

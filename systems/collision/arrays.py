@@ -16,7 +16,8 @@ SPEED_NOISE = 16.0 * EPSILON  # of the speeds that an impact or its contacts dea
 NONE = -1
 
 # Columns of `discs`, shape (n, DISC_WIDTH): one row per disc, its path since its epoch t₀, the time of its last
-# change. u(t) = u₀ + v₀ (t − t₀) + a (t − t₀)²/2 is the displacement from the original position o.
+# change. u(t) = u₀ + v₀ (t − t₀) + a (t − t₀)²/2 is the displacement from the original position o. After the discs
+# come obstacles: straight pieces that never move, rounded by their radius. Of two rows the later one is the obstacle.
 UX, UY = 0, 1  # displacement at the epoch, m
 VX, VY = 2, 3  # velocity at the epoch, m/s
 AX, AY = 4, 5  # acceleration of the path, m/s²
@@ -28,7 +29,12 @@ GX, GY = 12, 13  # acceleration without contact forces, m/s²
 STEP = 14  # s; when the forces in its lasting contacts are due again
 CHANGES = 15  # of its path so far
 NOISE = 16  # m/s; round-off in its velocity, from the impact or the contacts that gave it
-DISC_WIDTH = 17
+BOUNCE = 17  # restitution of impacts with it
+TX, TY = (
+    18,
+    19,
+)  # m; from the first end of an obstacle to the other, its original position being the first; else 0
+DISC_WIDTH = 20
 MOVING = (UX, UY, VX, VY, AX, AY, EPOCH, STEP, NOISE)  # what time changes, as components/paths.py has it
 
 
@@ -118,7 +124,8 @@ BIAS = 4  # added to the rate at which the contact opens
 GIVEN = 5  # impulse of the present projection
 IMPULSE = 6  # of the whole impact
 FORCE = 7  # that has kept the discs apart since the group's last change, N; 0: none
-CONTACT_WIDTH = 8
+ROUND = 8  # 1: the normal turns as the discs move around each other; 0: along a flat side it stays
+CONTACT_WIDTH = 9
 
 ACTIVE, STATE, CHOSEN = 0, 1, 2  # rows of marks: contacts of a projection; how they fare; those fitted now
 DIRECT = 48  # contacts up to which a projection is solved directly; more: by sweeps
@@ -141,7 +148,7 @@ END = 1  # s; of the present window, in which all meetings are foreseen
 WINDOW = 2  # s; length of a window
 CELL = 3  # m; of the finest layer of the grid
 CROWDING = 4  # neighbours found per area of boxes, 1/m²
-RESTITUTION = 5
+RESTITUTION = 5  # the least of all
 REST_HEIGHT = 6  # of the smaller radius; bounces that would rise less end in contact
 SMALLEST = 7  # m; radius of the smallest disc
 STEP_LENGTH = 8  # s; of the steps of piles, ∞ where nothing is pulled

@@ -12,10 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from components.obstacles import Obstacles
 from components.paths import Paths
 from systems.collision import arrays
 from systems.collision.arrays import Floats, Grid, Group, Integers, Queue, Reason, Report, Ties
 from systems.collision.flight.kernels import advance
+from systems.collision.near import nearest
 from systems.collision.pile.kernels import STEP_SHARE
 
 REPORT = 4096  # impacts reported at a time
@@ -61,16 +63,19 @@ class Discs:
         rest_height: float = REST_HEIGHT,
         joined: Sequence[tuple[int, int]] | NDArray[Any] = (),
         time: float = 0.0,
+        obstacles: Obstacles | None = None,
     ) -> None:
         """Take over the state at `time` (s).
 
         position: original, shape (n, 2), m. velocity: shape (n, 2), m/s, 0 in held directions. radius: shape
         (n,), m. inverse_mass: of each direction, shape (n, 2), 1/kg, 0 where it is held. displacement: m;
         acceleration: m/s², without contacts. rest_height: bounces that would rise less, relative to the
-        smaller radius, end in lasting contact. joined: pairs that never collide.
+        smaller radius, end in lasting contact. joined: pairs that never collide. obstacles: what else there is;
+        in pairs they count on after the discs.
         """
         place = np.atleast_2d(np.asarray(position, dtype=np.float64))
-        n = len(place)
+        self.count = len(place)
+        n = self.count + (len(obstacles) if obstacles is not None else 0)
         self.rows = np.zeros((n, arrays.DISC_WIDTH))
         self._columns(arrays.OX)[...] = place
         self._columns(arrays.UX)[...] = displacement
@@ -79,19 +84,24 @@ class Discs:
         self._columns(arrays.GX)[...] = acceleration
         self._columns(arrays.GX)[self._columns(arrays.WX) == 0.0] = 0.0
         self._columns(arrays.AX)[...] = self._columns(arrays.GX)
-        self.rows[:, arrays.RADIUS] = radius
-        self.rows[:, arrays.EPOCH] = time
+        self.rows[: self.count, arrays.RADIUS] = radius
+        self.rows[: self.count, arrays.EPOCH] = time
+        self.rows[: self.count, arrays.BOUNCE] = restitution
         self.rows[:, arrays.STEP] = np.inf
+        if obstacles is not None:
+            added = self.rows[self.count :]
+            added[:, [arrays.OX, arrays.OY]], added[:, [arrays.TX, arrays.TY]] = obstacles.start, obstacles.span
+            added[:, arrays.RADIUS], added[:, arrays.BOUNCE] = obstacles.radius, obstacles.restitution
         speed = np.abs(self._columns(arrays.VX)).sum(axis=1)
-        self.rows[:, arrays.NOISE] = arrays.SPEED_NOISE * speed
+        self.rows[: self.count, arrays.NOISE] = arrays.SPEED_NOISE * speed
         self.numbers = np.zeros(arrays.NUMBERS)
         self.numbers[arrays.NOW] = time
-        self.numbers[arrays.RESTITUTION] = restitution
+        self.numbers[arrays.RESTITUTION] = self.rows[:, arrays.BOUNCE].min(initial=restitution)
         self.numbers[arrays.REST_HEIGHT] = rest_height
         self.counts = np.zeros(arrays.COUNTS, dtype=np.int64)
         self.counts[arrays.RENEW] = 1
-        self.counts[arrays.DISCS] = n
-        self.numbers[arrays.SMALLEST] = self.rows[:, arrays.RADIUS].min(initial=np.inf)
+        self.counts[arrays.DISCS] = self.count
+        self.numbers[arrays.SMALLEST] = self.rows[: self.count, arrays.RADIUS].min(initial=np.inf)
         self.numbers[arrays.STEP_LENGTH] = STEP_SHARE * self._fall_time()
         self.numbers[arrays.WORK_SINCE] = time
         self.queue = _queue(2 * n + 64)
@@ -101,13 +111,13 @@ class Discs:
         self.ties = _ties(n, joined, 2 * len(self.group.links), self.counts)
 
     def _columns(self, first: int) -> Floats:
-        """The x and y columns that begin with one."""
-        return self.rows[:, first : first + 2]
+        """The x and y columns of the discs that begin with one."""
+        return self.rows[: self.count, first : first + 2]
 
     def _fall_time(self) -> float:
         """Median time (s) in which discs that are pulled fall through their diameters; ∞ without any."""
         pull = np.hypot(*self._columns(arrays.GX).T)
-        radius, pull = self.rows[pull > 0.0, arrays.RADIUS], pull[pull > 0.0]
+        radius, pull = self.rows[: self.count][pull > 0.0, arrays.RADIUS], pull[pull > 0.0]
         return float(np.median(np.sqrt(4.0 * radius / pull))) if len(pull) else np.inf
 
     # --- time -------------------------------------------------------------------------------------
@@ -167,11 +177,11 @@ class Discs:
         owners, entries = self._lasting_entries()
         pairs = np.column_stack([owners, self.ties.lasting[entries, arrays.OTHER]])
         crowd = np.concatenate([self.counts[list(arrays.CROWD_COUNTS)], self.numbers[list(arrays.CROWD_TIMES)]])
-        return Paths(self.rows[:, list(arrays.MOVING)], pairs, self.ties.forces[entries], crowd)
+        return Paths(self.rows[: self.count, list(arrays.MOVING)], pairs, self.ties.forces[entries], crowd)
 
     def follow(self, paths: Paths) -> None:
         """Go on as the discs did that these paths were taken from."""
-        self.rows[:, list(arrays.MOVING)] = paths.motion
+        self.rows[: self.count, list(arrays.MOVING)] = paths.motion
         counted = len(arrays.CROWD_COUNTS)
         self.counts[list(arrays.CROWD_COUNTS)] = paths.crowd[:counted]
         self.numbers[list(arrays.CROWD_TIMES)] = paths.crowd[counted:]
@@ -202,25 +212,26 @@ class Discs:
         owners, entries = self._lasting_entries()
         others = self.ties.lasting[entries, arrays.OTHER]
         displacement, _ = self.state_at(self.now)
-        place = self._columns(arrays.OX) + displacement
-        line = place[owners] - place[others]
+        place = self.rows[:, [arrays.OX, arrays.OY]]
+        place[: self.count] += displacement
+        line = -nearest(place[others] - place[owners], self.rows[others][:, [arrays.TX, arrays.TY]])
         push = line * (self.ties.forces[entries] / np.hypot(line[:, 0], line[:, 1]))[:, None]
-        held = (self._columns(arrays.WX)[others] == 0.0).all(axis=1)  # they have no entries of their own
+        held = (self.rows[others][:, [arrays.WX, arrays.WY]] == 0.0).all(axis=1)  # without entries of their own
         total = np.zeros_like(place)
         for d in range(2):
             total[:, d] = np.bincount(owners, push[:, d], len(place))
             total[:, d] -= np.bincount(others[held], push[held, d], len(place))
-        return total
+        return total[: self.count]
 
     @property
     def at_rest(self) -> bool:
         """True if nothing moves and nothing will."""
-        return not self.rows[:, arrays.VX : arrays.AY + 1].any()
+        return not self.rows[: self.count, arrays.VX : arrays.AY + 1].any()
 
     @property
     def last_change(self) -> float:
         """Time (s) at which a path last changed."""
-        return float(self.rows[:, arrays.EPOCH].max())
+        return float(self.rows[: self.count, arrays.EPOCH].max())
 
     @property
     def now(self) -> float:
@@ -234,7 +245,7 @@ class Discs:
 
     def state_at(self, time: float) -> tuple[Floats, Floats]:
         """Displacements (m) and velocities (m/s) at a time (s) between the last event and the next."""
-        s = (time - self.rows[:, arrays.EPOCH])[:, None]
+        s = (time - self.rows[: self.count, arrays.EPOCH])[:, None]
         u, v, a = (self._columns(first) for first in (arrays.UX, arrays.VX, arrays.AX))
         return u + s * (v + 0.5 * s * a), v + s * a
 

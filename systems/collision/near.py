@@ -5,17 +5,33 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from components.obstacles import Obstacles
+
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 WIDER = 1.0 + 1e-9  # than it need be is the search by trees, whose round-off loses no pair then
 
 
-def near_pairs(place: Floats, reach: Floats) -> Rows:
+def nearest(line: Floats, span: Floats) -> Floats:
+    """The vectors to the nearest points of pieces, if `line` are those to their first ends; all of shape (k, 2).
+
+    span: the way to the other end; zero for discs.
+    """
+    squared = (span * span).sum(axis=1)
+    along, long = -(line * span).sum(axis=1), np.where(squared > 0.0, squared, 1.0)
+    across = (line[:, 0] * span[:, 1] - line[:, 1] * span[:, 0]) / long
+    side = np.column_stack([across * span[:, 1], -across * span[:, 0]])
+    end = line + np.where(along >= squared, 1.0, 0.0)[:, None] * span
+    found: Floats = np.where(((along > 0.0) & (along < squared))[:, None], side, end)
+    return found
+
+
+def near_pairs(place: Floats, reach: Floats, obstacles: Obstacles | None = None) -> Rows:
     """Pairs i < j whose centres are at most reach[i] + reach[j] apart, in ascending order, shape (k, 2).
 
     place: centres, shape (n, 2), m. reach: shape (n,), m. Discs are sought by size, so that a few large ones
-    among many small ones do not make every small one look far.
+    among many small ones do not make every small one look far. Obstacles count on after them.
     """
     from scipy.spatial import cKDTree
 
@@ -34,5 +50,20 @@ def near_pairs(place: Floats, reach: Floats) -> Rows:
     first, second = np.concatenate(found).T
     apart = place[second] - place[first]
     near = np.hypot(apart[:, 0], apart[:, 1]) <= reach[first] + reach[second]
-    keys = np.sort((first * len(place) + second)[near])
-    return np.column_stack(np.divmod(keys, len(place)))
+    if obstacles is None or len(obstacles) == 0:
+        keys = np.sort((first * len(place) + second)[near])
+        return np.column_stack(np.divmod(keys, len(place)))
+    total = len(place) + len(obstacles)
+    at_them = _near_obstacles(place, reach, obstacles)
+    keys = np.concatenate([(first * total + second)[near], at_them[:, 0] * total + at_them[:, 1]])
+    return np.column_stack(np.divmod(np.sort(keys), total))
+
+
+def _near_obstacles(place: Floats, reach: Floats, obstacles: Obstacles) -> Rows:
+    found = []
+    for k in range(len(obstacles)):
+        span = np.broadcast_to(obstacles.span[k], place.shape)
+        away = np.hypot(*nearest(obstacles.start[k] - place, span).T)
+        rows = np.flatnonzero(away <= reach + obstacles.radius[k])
+        found.append(np.column_stack([rows, np.full(len(rows), len(place) + k)]))
+    return np.concatenate(found).astype(np.int64)

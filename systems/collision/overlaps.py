@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.collision.near import Floats, Rows, near_pairs
+from components.obstacles import NO_OBSTACLES, Obstacles
+from systems.collision.near import Floats, Rows, near_pairs, nearest
 from systems.collision.overlap.kernels import separate
 
 SLACK = 1e-13  # of the reach of two discs; less is round-off
@@ -19,10 +20,14 @@ AROUND = 1.5  # times its radius, within which a disc's neighbours are looked af
 MOST_ROUNDS = 100  # of finding neighbours anew
 
 
-def overlaps(place: Floats, radius: Floats) -> Rows:
-    """Pairs of discs that overlap, shape (k, 2)."""
-    pairs = near_pairs(place, radius)
-    line = place[pairs[:, 1]] - place[pairs[:, 0]]
+def overlaps(place: Floats, radius: Floats, obstacles: Obstacles | None = None) -> Rows:
+    """Pairs of discs, and of discs and obstacles, that overlap, shape (k, 2)."""
+    pairs = near_pairs(place, radius, obstacles)
+    first, span = place, np.zeros_like(place)
+    if obstacles is not None:
+        first, span = np.concatenate([place, obstacles.start]), np.concatenate([span, obstacles.span])
+        radius = np.concatenate([radius, obstacles.radius])
+    line = nearest(first[pairs[:, 1]] - place[pairs[:, 0]], span[pairs[:, 1]])
     reach = radius[pairs].sum(axis=1)
     overlapping: Rows = pairs[np.hypot(line[:, 0], line[:, 1]) < reach * (1.0 - SLACK)]
     return overlapping
@@ -35,16 +40,22 @@ def part(
     inverse_mass: Floats,
     among: Callable[[Rows], NDArray[np.bool_]],
     kernel: Callable[..., Any] = separate,
+    obstacles: Obstacles = NO_OBSTACLES,
 ) -> int:
     """Move discs apart that overlap, changing `displacement`; returns how many pairs still do in the end.
 
     among: which of the pairs it is given are to be parted.
     """
+    count, still = len(position), np.zeros((len(obstacles), 2))
+    places, moved = np.concatenate([position, obstacles.start]), np.concatenate([displacement, still])
+    span = np.concatenate([np.zeros_like(position), obstacles.span])
+    radii, inverse = np.concatenate([radius, obstacles.radius]), np.concatenate([inverse_mass, still])
     for _ in range(MOST_ROUNDS):
-        near = near_pairs(position + displacement, AROUND * radius)
+        near = near_pairs(position + moved[:count], AROUND * radius, obstacles)
         near = near[among(near)]
         first, second = np.ascontiguousarray(near[:, 0]), np.ascontiguousarray(near[:, 1])
-        if kernel(first, second, position, displacement, radius, inverse_mass, SLACK) == 0:
+        if kernel(first, second, places, moved, radii, inverse, span, SLACK) == 0:
             break
-    left = overlaps(position + displacement, radius)
+    displacement[...] = moved[:count]
+    left = overlaps(position + displacement, radius, obstacles)
     return int(among(left).sum())

@@ -10,8 +10,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from components.obstacles import any_obstacles, obstacles
 from components.paths import Paths
 from systems.base import Driver, Law, StepSystem
+from systems.collision.near import nearest
 
 if TYPE_CHECKING:
     from components.model import Model
@@ -29,8 +31,10 @@ class Collision(StepSystem):
 
 
 def can_touch(model: Model) -> bool:
-    """True if there are two particles that a rod does not join, of which one can move."""
+    """True if there are two particles that a rod does not join, or one and an obstacle, of which one can move."""
     movable: NDArray[np.bool_] = np.any(model.particles.mobility > 0.0, axis=1)
+    if any_obstacles(model) and movable.any():
+        return True
     count, moving = len(movable), int(movable.sum())
     held = count - moving
     pairs = count * (count - 1) // 2 - held * (held - 1) // 2
@@ -57,9 +61,8 @@ class Support(Law):
         """The sum over the contacts of each particle (kN), from the forces of the last step."""
         paths = contacts_of(model)
         assert paths is not None
-        particles = model.particles
-        place = particles.position + particles.displacement
-        self._pushes[model] = support_forces(place, paths.contacts, paths.forces)
+        normal = normals(model, paths.contacts)
+        self._pushes[model] = support_forces(normal, paths.contacts, paths.forces, model.particles.count)
         return {"collision_support_force": self._pushes[model].view()}
 
     def push(self, model: Model, force: NDArray[np.float64] | float) -> None:
@@ -74,19 +77,26 @@ def contacts_of(model: Model) -> Paths | None:
     paths: Paths | None = model.clock.paths
     if paths is None or len(paths.motion) or not len(paths.contacts):
         return None
-    return paths if paths.contacts.max() < model.particles.count else None
+    return paths if paths.contacts.max() < model.particles.count + len(obstacles(model)) else None
+
+
+def normals(model: Model, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Unit vectors from the first of pairs to the second, which may be obstacles, shape (k, 2)."""
+    place, others = model.particles.position + model.particles.displacement, obstacles(model)
+    start, span = np.concatenate([place, others.start]), np.concatenate([np.zeros_like(place), others.span])
+    line = nearest(start[pairs[:, 1]] - place[pairs[:, 0]], span[pairs[:, 1]])
+    return line / np.hypot(line[:, 0], line[:, 1])[:, None]
 
 
 def support_forces(
-    place: NDArray[np.float64], pairs: NDArray[np.int64], forces: NDArray[np.float64]
+    normal: NDArray[np.float64], pairs: NDArray[np.int64], forces: NDArray[np.float64], count: int
 ) -> NDArray[np.float64]:
-    """Force on each particle (kN), shape (n, 2), from the forces (N) that keep pairs apart."""
-    line = place[pairs[:, 1]] - place[pairs[:, 0]]
-    push = line * (0.001 * forces / np.hypot(line[:, 0], line[:, 1]))[:, None]
-    total = np.zeros_like(place)
+    """Force on each of `count` particles (kN), shape (count, 2), from the forces (N) that keep pairs apart."""
+    push = normal * (0.001 * forces)[:, None]
+    total = np.zeros((count, 2))
     for d in range(2):
-        total[:, d] = np.bincount(pairs[:, 1], push[:, d], len(place))
-        total[:, d] -= np.bincount(pairs[:, 0], push[:, d], len(place))
+        total[:, d] = np.bincount(pairs[:, 1], push[:, d], count)[:count]  # without those of obstacles
+        total[:, d] -= np.bincount(pairs[:, 0], push[:, d], count)
     return total
 
 

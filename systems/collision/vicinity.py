@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Role
 from components.model import Model
-from systems.collision.near import Floats, Rows, near_pairs
+from components.obstacles import obstacles
+from systems.collision.near import Floats, Rows, near_pairs, nearest
 from systems.collision.system import contacts_of
 
 FAR = 0.5  # of the largest radius; particles that are farther apart are watched less closely
@@ -21,7 +23,8 @@ class Vicinity:
     """The pairs of one model's particles that are near each other.
 
     pairs: rows i < j in ascending order, shape (k, 2); without those that a rod joins or that cannot move.
-    position, radius: of the particles. weight: inverse mass in each direction (1/kg), 0 where it is held.
+    position, radius: of the particles and, after them, the obstacles. weight: inverse mass in each direction
+    (1/kg), 0 where it is held. restitution: of impacts with each. size: m; of which gaps are small shares.
     """
 
     def __init__(self, model: Model) -> None:
@@ -35,28 +38,44 @@ class Vicinity:
             return
         self._revision = revision
         particles, ends = self.model.particles, np.sort(self.model.rods.between.astype(np.int64), axis=1)
-        joined = np.sort(ends[:, 0] * particles.count + ends[:, 1])
+        self.obstacles = others = obstacles(self.model)
+        self._count = particles.count
+        joined = np.sort(ends[:, 0] * (self._count + len(others)) + ends[:, 1])
         self._joined = np.append(joined, -1)  # what is looked up and would come last meets no pair
-        self._node = np.zeros(particles.count, dtype=bool)
+        self._node = np.ones(self._count + len(others), dtype=bool)
+        self._node[: self._count] = False
         self._node[ends.ravel()] = True
-        self._moves: NDArray[np.bool_] = np.any(particles.mobility > 0.0, axis=1)
-        self.position, self.radius = particles.position.copy(), particles.radius.copy()
-        self.weight: Floats = np.where(particles.fixed, 0.0, 1.0 / particles.mass[:, None])
-        self._far = self._widest(FAR * float(self.radius.max(initial=0.0)))
+        self._moves: NDArray[np.bool_] = self.everywhere(np.any(particles.mobility > 0.0, axis=1))
+        self.position = np.concatenate([particles.position, others.start])
+        self.radius = np.concatenate([particles.radius, others.radius])
+        self.size = np.concatenate([particles.radius, np.full(len(others), np.inf)])
+        self.weight: Floats = self.everywhere(np.where(particles.fixed, 0.0, 1.0 / particles.mass[:, None]))
+        alike = np.full(self._count, self.model.settings.restitution)
+        self.restitution = np.concatenate([alike, others.restitution])
+        self.span = self.everywhere(np.zeros((self._count, 2)))
+        self.span[self._count :] = others.span
+        self._far = self._widest(FAR * float(particles.radius.max(initial=0.0)))
         self._margin = -1.0
+
+    def everywhere(self, values: NDArray[Any]) -> NDArray[Any]:
+        """What particles have, with zeros for the obstacles, which do not move."""
+        if len(self.obstacles) == 0:
+            return values
+        return np.concatenate([values, np.zeros((len(self.obstacles), *values.shape[1:]), values.dtype)])
 
     def _widest(self, least: float) -> float:
         """About half the least gap (m) between those that may meet in the original geometry, or the least."""
         far = least
-        self._list(far, np.zeros_like(self.position))
+        self._list(far, np.zeros((self._count, 2)))
         while len(self.pairs) == 0 and far < 1e6 * least:
             far *= 2.0
-            self._list(far, np.zeros_like(self.position))
+            self._list(far, np.zeros((self._count, 2)))
         return max(0.5 * far, least)
 
     def _list(self, margin: float, displacement: Floats) -> None:
         """List the pairs that can meet before any particle has moved by the margin (m) from there."""
-        near = near_pairs(self.position + displacement, self.radius + margin)
+        place, radius = self.position[: self._count] + displacement, self.radius[: self._count]
+        near = near_pairs(place, radius + margin, self.obstacles)
         may = np.logical_or(self._moves[near[:, 0]], self._moves[near[:, 1]])
         keys = near[:, 0] * len(self.position) + near[:, 1]
         joined = self._joined[np.searchsorted(self._joined[:-1], keys)] == keys
@@ -69,7 +88,9 @@ class Vicinity:
     def gaps(self, pairs: Rows, displacement: Floats) -> tuple[Floats, Floats]:
         """Distance between the rims of pairs, and unit vectors from the first centres to the second."""
         first, second = pairs[:, 0], pairs[:, 1]
+        displacement = self.everywhere(displacement)
         line = (self.position[second] - self.position[first]) + (displacement[second] - displacement[first])
+        line = nearest(line, self.span[second])
         distance = np.hypot(line[:, 0], line[:, 1])
         normal = line / np.where(distance > 0.0, distance, 1.0)[:, None]
         return distance - self.reach(pairs), normal
@@ -126,5 +147,5 @@ class Vicinity:
         supply = 1000.0 * np.abs(particles.applied_force).sum() * self._far
         kinetic = 0.5 * (particles.mass[:, None] * particles.velocity**2).sum()
         stored = 500.0 * (rods.axial_force**2 * rods.rest_length / rods.stiffness).sum()
-        lightest = particles.mass[self._moves].min(initial=math.inf)
+        lightest = particles.mass[self._moves[: self._count]].min(initial=math.inf)
         return math.sqrt(2.0 * float(kinetic + stored + supply) / float(lightest))

@@ -122,6 +122,32 @@ def amplification(scene: Scene, duration: float, size: float = 1e-9) -> float:
     return max(float(growth) / size, 1.0)
 
 
+def distance_to_piece(first: np.ndarray, span: np.ndarray) -> Real:
+    """Return the distance from the origin to the straight piece from `first` to first + span."""
+    squared = span @ span
+    share = min(max(-(first @ span) / squared, Real(0)), Real(1)) if squared > 0 else Real(0)
+    return np.sqrt(((first + share * span) ** 2).sum())
+
+
+def time_to_piece(motion: np.ndarray, span: np.ndarray, reach: float, horizon: float) -> Real:
+    """Return the least t in [0, horizon] at which a piece comes as near to the origin as `reach`; else NEVER.
+
+    motion: place, velocity and acceleration of its first end, shape (3, 2). All times at which the distance to
+    either end or to the straight line through them is `reach` are looked at.
+    """
+    (d, v, a), span, reach = np.array(motion, Real), np.array(span, Real), Real(reach)
+    parts = [[a @ a / 4, v @ a, v @ v + e @ a, 2 * e @ v, e @ e - reach**2] for e in (d, d + span)]
+    if span @ span > 0:
+        normal = np.array([span[1], -span[0]]) / np.sqrt(span @ span)
+        parts += [[normal @ a / 2, normal @ v, normal @ d - side] for side in (reach, -reach)]
+    times = sorted({time for part in parts for time in real_roots(part, Real(0), Real(horizon))})
+    for early, late in pairwise([*times, Real(horizon)]):
+        middle = (early + late) / 2
+        if distance_to_piece(d + v * middle + a * middle**2 / 2, span) < reach:
+            return early
+    return NEVER
+
+
 # Polynomials, highest power first
 
 

@@ -27,17 +27,29 @@ from systems.collision.arrays import (
     OPENING,
     OTHER,
     RADIUS,
+    ROUND,
     SPARE,
     SPARES,
+    TX,
+    TY,
     WX,
     WY,
 )
-from systems.collision.gap.kernels import NEVER, place_noise, touch_speed
+from systems.collision.gap.kernels import (
+    NEVER,
+    is_straight,
+    passing,
+    place_noise,
+    relative_motion,
+    speed_noise,
+    touch_speed,
+)
 from systems.collision.kernels import compiled
 from systems.collision.projection.kernels import begin, copy_motion, opening_rate, project
 
 STILL = 1e-10  # of the speed and acceleration that gravity gives; what moves less is at rest
 STEP_ANGLE = 0.0156  # by which discs turn around one another in a step; discs sink by its cube / 8 of a radius
+LEAST_SHARE = 1e-4  # of such a step, by which the end of a flat side may be missed
 MOST_CORRECTIONS = 40  # of the forces in a step; 3 are usual
 
 
@@ -124,8 +136,9 @@ def support(count, touching, discs, group, numbers):
     project(count, closed, 0.0, group)
     duration = NEVER
     if not _stop_where_still(count, closed, discs, group):
-        duration = _duration(closed, discs, group)
-        _meet_at_end(duration, count, closed, discs, group, numbers)
+        duration = _duration(closed, discs, group, numbers)
+        if duration < NEVER:
+            _meet_at_end(duration, count, closed, discs, group, numbers)
     for k in range(closed):
         c = group.marks[ACTIVE, k]
         group.contacts[c, FORCE] = group.contacts[c, GIVEN]
@@ -158,7 +171,7 @@ def _list_closed(touching, discs, group, numbers):
         slow = max(4.0 * group.noise[0], touch_speed(discs, i, j, numbers[NOW]))
         if contacts[c, OPENING] > 0.0 and opening_rate(c, group.other, group) <= slow:
             x, y = _relative(c, group.other, group)
-            contacts[c, BIAS] = (x * x + y * y) / contacts[c, DISTANCE]
+            contacts[c, BIAS] = contacts[c, ROUND] * (x * x + y * y) / contacts[c, DISTANCE]
             contacts[c, GIVEN] = contacts[c, FORCE]
             group.marks[ACTIVE, closed] = c
             closed += 1
@@ -196,10 +209,11 @@ def _size(motion, m):
 
 
 @compiled
-def _duration(closed, discs, group):
+def _duration(closed, discs, group, numbers):
     """For how long the discs that push one another turn around one another by about STEP_ANGLE.
 
-    At rest they would turn by it under the pull of their weight across the line of centres.
+    At rest they would turn by it under the pull of their weight across the line of centres. Along the flat side
+    of an obstacle nothing turns: its end matters.
     """
     duration = NEVER
     for k in range(closed):
@@ -207,22 +221,52 @@ def _duration(closed, discs, group):
         if group.contacts[c, GIVEN] > 0.0:
             distance = group.contacts[c, DISTANCE]
             speed = math.hypot(*_relative(c, group.other, group))
-            duration = min(duration, STEP_ANGLE * distance / speed)
+            turn = STEP_ANGLE * distance / speed
             for p in range(2):
                 i = group.members[group.links[c, p]]
                 pull = math.hypot(discs[i, GX], discs[i, GY])
-                duration = min(duration, STEP_ANGLE * math.sqrt(distance / pull))
+                turn = min(turn, STEP_ANGLE * math.sqrt(distance / pull))
+            if is_straight(group.members[group.links[c, 1]], discs):
+                stay = max(_stay(c, discs, group, numbers), LEAST_SHARE * turn)
+                turn = stay if _slides(c, discs, group, numbers) else min(stay, turn)
+            duration = min(duration, turn)
     return duration
 
 
 @compiled
+def _slides(c, discs, group, numbers):
+    """True if a disc moves along a flat side, not from it by so little that it will be back at once."""
+    i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+    x, y = _relative(c, group.other, group)
+    rate = group.contacts[c, NX] * x + group.contacts[c, NY] * y
+    return group.contacts[c, ROUND] == 0.0 and abs(rate) <= speed_noise(discs, i, j, numbers[NOW])
+
+
+@compiled
+def _stay(c, discs, group, numbers):
+    """For how long the foot of a disc on an obstacle passes none of its ends."""
+    i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+    length = math.hypot(discs[j, TX], discs[j, TY])
+    tx, ty = discs[j, TX] / length, discs[j, TY] / length
+    x, y, _, _, _, _ = relative_motion(discs, i, j, numbers[NOW])
+    vx, vy = _relative(c, group.other, group)
+    ax, ay = _relative(c, group.motion, group)
+    return passing(-(x * tx + y * ty), -(vx * tx + vy * ty), -(ax * tx + ay * ty), length, 0.0)
+
+
+@compiled
 def _end_gap(c, h, discs, group):
-    """Gap of a contact after a time h with the accelerations in `motion` and the velocities in `other`."""
+    """Gap of a contact after a time h with the accelerations in `motion` and the velocities in `other`.
+
+    What is nearest of an obstacle is taken to be the same end or flat side as at the start.
+    """
     vx, vy = _relative(c, group.other, group)
     ax, ay = _relative(c, group.motion, group)
     x = group.contacts[c, NX] * group.contacts[c, DISTANCE] + h * (vx + 0.5 * h * ax)
     y = group.contacts[c, NY] * group.contacts[c, DISTANCE] + h * (vy + 0.5 * h * ay)
     i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+    if group.contacts[c, ROUND] == 0.0:
+        return group.contacts[c, NX] * x + group.contacts[c, NY] * y - (discs[i, RADIUS] + discs[j, RADIUS])
     return math.sqrt(x * x + y * y) - (discs[i, RADIUS] + discs[j, RADIUS])
 
 

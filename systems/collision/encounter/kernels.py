@@ -1,7 +1,7 @@
 """Meetings within one step of an integrator, and the joint impact of discs that touch."""
 
 from systems.collision.arrays import BIAS, EPSILON, OPENING
-from systems.collision.gap.kernels import NEVER, first_approach
+from systems.collision.gap.kernels import NEVER, first_touch
 from systems.collision.impact.kernels import respond
 from systems.collision.kernels import entry
 from systems.collision.projection.kernels import compliance
@@ -10,11 +10,12 @@ NOISE = 16.0 * EPSILON  # of speeds and accelerations: slower approaches are rou
 
 
 @entry
-def first_meeting(h, pairs, kinds, position, before, velocity, after, radius):
+def first_meeting(h, pairs, kinds, position, before, velocity, after, radius, span):
     """When in a step of h seconds two discs first touch while they approach; NEVER if none do.
 
     Their paths are the parabolas through the displacements before and after that begin with the velocity: those
     of velocity Verlet exactly, of others nearly. kinds: 0 watched, 1 left alone until apart, 2 not watched.
+    span: of obstacles; zero for discs.
     """
     earliest = NEVER
     for k in range(pairs.shape[0]):
@@ -27,12 +28,13 @@ def first_meeting(h, pairs, kinds, position, before, velocity, after, radius):
         ax = 2.0 * (((after[j, 0] - after[i, 0]) - sx) / h - vx) / h
         ay = 2.0 * (((after[j, 1] - after[i, 1]) - sy) / h - vy) / h
         moving = abs(velocity[i, 0]) + abs(velocity[i, 1]) + abs(velocity[j, 0]) + abs(velocity[j, 1])
-        span = abs(before[i, 0]) + abs(before[i, 1]) + abs(before[j, 0]) + abs(before[j, 1])
-        if abs(ax) + abs(ay) <= 64.0 * EPSILON * (span / h + moving) / h:
+        away = abs(before[i, 0]) + abs(before[i, 1]) + abs(before[j, 0]) + abs(before[j, 1])
+        if abs(ax) + abs(ay) <= 64.0 * EPSILON * (away / h + moving) / h:
             ax, ay = 0.0, 0.0
         reach = radius[i] + radius[j]
         growth = NOISE * (abs(ax) + abs(ay))
-        s = first_approach(dx, dy, vx, vy, ax, ay, reach, NOISE * moving, growth, h, kinds[k] == 1)
+        tx, ty = span[j, 0], span[j, 1]
+        s = first_touch(dx, dy, vx, vy, ax, ay, tx, ty, reach, NOISE * moving, growth, h, kinds[k] == 1)
         earliest = min(earliest, s)
     return earliest if earliest <= h else NEVER
 

@@ -11,6 +11,7 @@ from systems.collision.arrays import (
     AX,
     AY,
     BIAS,
+    BOUNCE,
     CELL,
     CHANGES,
     DISTANCE,
@@ -39,7 +40,7 @@ from systems.collision.arrays import (
     RENEW,
     REPORTED,
     REST_HEIGHT,
-    RESTITUTION,
+    ROUND,
     SPARES,
     SPEED_NOISE,
     STEP,
@@ -61,7 +62,14 @@ from systems.collision.contact.kernels import (
     stop_sinking,
     support,
 )
-from systems.collision.gap.kernels import NEVER, place_noise, relative_motion, rest_speed, touch_speed
+from systems.collision.gap.kernels import (
+    NEVER,
+    nearest,
+    place_noise,
+    relative_motion,
+    rest_speed,
+    touch_speed,
+)
 from systems.collision.grid.kernels import enclose, enter, layer_of, leave, level_of, neighbours, place_box
 from systems.collision.impact.kernels import respond
 from systems.collision.kernels import compiled, entry
@@ -192,9 +200,11 @@ def _link(i, j, force, touching, discs, group, time):
     """Note a contact of the group; those for which there is no room are only counted."""
     if touching < group.links.shape[0]:
         dx, dy, _, _, _, _ = relative_motion(discs, i, j, time)
+        dx, dy, rounded = nearest(dx, dy, j, discs)
         distance = math.sqrt(dx * dx + dy * dy)
         group.links[touching, 0], group.links[touching, 1] = group.place[i], group.place[j]
         contact = group.contacts[touching]
+        contact[ROUND] = rounded
         if distance == 0.0:  # no direction is better than another
             dx = distance = TINY
         contact[NX], contact[NY], contact[DISTANCE] = dx / distance, dy / distance, distance
@@ -256,6 +266,7 @@ def _is_new(m, b, discs, group):
 def _touch(a, b, discs, ties, now):
     """True if two discs touch that may collide and have no lasting contact."""
     dx, dy, _, _, _, _ = relative_motion(discs, a, b, now)
+    dx, dy, _ = nearest(dx, dy, b, discs)
     reach = discs[a, RADIUS] + discs[b, RADIUS] + place_noise(discs, a, b, now)
     if dx * dx + dy * dy > reach * reach:
         return False
@@ -283,13 +294,13 @@ def _gather_lasting(m, count, touching, discs, ties, group, now):
 
 @compiled
 def _restitution(touching, discs, group, numbers):
-    """The restitution, or 0 if nothing in the group approaches faster than rest."""
+    """The least restitution of what approaches faster than rest; 0 if nothing in the group does."""
+    least = NEVER
     for c in range(touching):
         i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
-        speed = rest_speed(i, j, discs, numbers[RESTITUTION], numbers[REST_HEIGHT], numbers[NOW])
-        if opening_rate(c, group.motion, group) < -speed:
-            return numbers[RESTITUTION]
-    return 0.0
+        if opening_rate(c, group.motion, group) < -rest_speed(i, j, discs, numbers[REST_HEIGHT], numbers[NOW]):
+            least = min(least, discs[j, BOUNCE])
+    return least if least < NEVER else 0.0
 
 
 @compiled

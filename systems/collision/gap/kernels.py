@@ -1,4 +1,7 @@
-"""The first time at which two discs touch while they approach, along paths of constant acceleration.
+"""The first time at which two discs, or a disc and an obstacle, touch while they approach.
+
+Paths have constant acceleration. The gap of a disc and a straight piece is, by turns, that to one of its ends, to
+its flat side or to the other end, as the foot of the perpendicular from the disc's centre goes past the ends.
 
 With d, v, a the relative position, velocity and acceleration, half the squared gap is
     f(s) = (|d + v s + a s²/2|² − R²)/2,   f' = d(s)·v(s),   f'' = v(s)·v(s) + d(s)·a.
@@ -10,6 +13,7 @@ import math
 from systems.collision.arrays import (
     AX,
     AY,
+    BOUNCE,
     EPOCH,
     EPSILON,
     GX,
@@ -19,6 +23,8 @@ from systems.collision.arrays import (
     OY,
     RADIUS,
     SPEED_NOISE,
+    TX,
+    TY,
     UX,
     UY,
     VX,
@@ -45,6 +51,33 @@ def relative_motion(discs, i, j, time):
     vx = (jvx + t * jax) - (ivx + s * iax)
     vy = (jvy + t * jay) - (ivy + s * iay)
     return dx, dy, vx, vy, difference(iax, jax), difference(iay, jay)
+
+
+@compiled
+def is_straight(i, discs):
+    """True for an obstacle that has a length."""
+    return discs[i, TX] != 0.0 or discs[i, TY] != 0.0
+
+
+@compiled
+def nearest(dx, dy, j, discs):
+    """As nearest_of_piece, of disc or obstacle j."""
+    return nearest_of_piece(dx, dy, discs[j, TX], discs[j, TY])
+
+
+@compiled
+def nearest_of_piece(dx, dy, tx, ty):
+    """The vector to the nearest point of a piece from (dx, dy) to (dx + tx, dy + ty).
+
+    And 1 if that is an end, around which the vector turns; 0 on the flat side, of which it is the normal.
+    """
+    along, squared = -(dx * tx + dy * ty), tx * tx + ty * ty
+    if along <= 0.0:
+        return dx, dy, 1.0
+    if along >= squared:
+        return dx + tx, dy + ty, 1.0
+    across = (dx * ty - dy * tx) / squared  # the normal is that of the side, exactly
+    return across * ty, -across * tx, 0.0
 
 
 @compiled
@@ -82,7 +115,8 @@ def pull_noise(discs, i, j):
 def extent(discs, i, time):
     """Magnitude of the numbers that make up a disc's position: its coordinates and its path since t = 0."""
     place = abs(discs[i, OX]) + abs(discs[i, OY]) + abs(discs[i, UX]) + abs(discs[i, UY])
-    return place + discs[i, RADIUS] + speed_at(discs, i, time) * abs(time)
+    size = discs[i, RADIUS] + abs(discs[i, TX]) + abs(discs[i, TY])
+    return place + size + speed_at(discs, i, time) * abs(time)
 
 
 @compiled
@@ -104,15 +138,15 @@ def touch_speed(discs, i, j, time):
 
 
 @compiled
-def rest_speed(i, j, discs, restitution, rest_height, time):
+def rest_speed(i, j, discs, rest_height, time):
     """Speed (m/s) of two discs from each other below which they stay in contact: √(2 g h).
 
     g is the larger acceleration of the two, h the height that is not worth a bounce.
     """
     speed = touch_speed(discs, i, j, time)
-    if restitution < 1.0:
-        height = rest_height * min(discs[i, RADIUS], discs[j, RADIUS])
-        speed = max(speed, math.sqrt(2.0 * pull_on(discs, i, j) * height))
+    if discs[j, BOUNCE] < 1.0:
+        radius = discs[i, RADIUS] if is_straight(j, discs) else min(discs[i, RADIUS], discs[j, RADIUS])
+        speed = max(speed, math.sqrt(2.0 * pull_on(discs, i, j) * rest_height * radius))
     return speed
 
 
@@ -284,3 +318,94 @@ def _touch(dx, dy, vx, vy, ax, ay, reach, noise, growth, low, high, overlapping)
             return following
         s = following
     return s
+
+
+# --- a disc and a straight piece ------------------------------------------------------------------------
+
+
+@compiled
+def first_touch(dx, dy, vx, vy, ax, ay, tx, ty, reach, noise, growth, horizon, overlapping):
+    """As first_approach, of a piece from (dx, dy) to (dx + tx, dy + ty) that moves relative to a disc.
+
+    The foot of the perpendicular from the disc goes past an end at most four times; in between, what is nearest
+    is always the same end, or always the flat side.
+    """
+    if tx == 0.0 and ty == 0.0:
+        return first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, horizon, overlapping)
+    length = math.sqrt(tx * tx + ty * ty)
+    nx, ny = ty / length, -tx / length
+    foot, foot_v, foot_a = ny * dx - nx * dy, ny * vx - nx * vy, ny * ax - nx * ay
+    start = 0.0
+    for _ in range(5):
+        end = passing(foot, foot_v, foot_a, length, start)
+        x, y = dx + start * (vx + 0.5 * start * ax), dy + start * (vy + 0.5 * start * ay)
+        u, v = vx + start * ax, vy + start * ay
+        middle = 0.5 * (start + end) if end < NEVER else 2.0 * start + 1.0
+        between = foot + middle * (foot_v + 0.5 * middle * foot_a)
+        slow = noise + growth * start
+        if 0.0 <= between <= length:
+            gap_x, speed, pull = nx * x + ny * y, nx * u + ny * v, nx * ax + ny * ay
+            s = _first_on_side(gap_x, speed, pull, reach, slow, growth, overlapping)
+        else:
+            if between > length:
+                x, y = x + tx, y + ty
+            s = first_approach(x, y, u, v, ax, ay, reach, slow, growth, horizon - start, overlapping)
+        if s <= end - start:
+            return start + s
+        start = end
+        if start > horizon:
+            break
+    return NEVER
+
+
+@compiled
+def passing(foot, speed, pull, length, start):
+    """The first time after `start` at which the foot, on a parabola along a piece, passes one of its ends."""
+    earliest = NEVER
+    for end in (0.0, length):
+        first, second = _roots(foot - end, speed, pull)
+        if first > start:
+            earliest = min(earliest, first)
+        elif second > start:
+            earliest = min(earliest, second)
+    return earliest
+
+
+@compiled
+def _roots(x, v, a):
+    """Where x + v s + a s²/2 changes its sign, ascending; NEVER for those there are not."""
+    if a == 0.0:
+        return (-x / v if v != 0.0 else NEVER), NEVER
+    discriminant = v * v - 2.0 * a * x
+    if not discriminant > 0.0:
+        return NEVER, NEVER
+    q = -(v + math.copysign(math.sqrt(discriminant), v))
+    first, second = q / a, 2.0 * x / q
+    return min(first, second), max(first, second)
+
+
+@compiled
+def _first_on_side(x, v, a, reach, noise, growth, overlapping):
+    """The least s ≥ 0 at which |x + v s + a s²/2| is at most `reach` and shrinks; NEVER if there is none.
+
+    The one side that the disc is on is all that matters: it cannot get to the other one.
+    """
+    if x < 0.0:
+        x, v, a = -x, -v, -a
+    gap = x - reach
+    if v >= 0.0 and a >= 0.0:
+        return NEVER
+    highest = gap if v <= 0.0 or a >= 0.0 else gap - 0.5 * v * v / a
+    if highest <= 0.0:
+        if overlapping:
+            return NEVER
+        if v < -noise:
+            return 0.0
+        return (v + noise) / (-a - growth) * (1.0 + 8.0 * EPSILON) if a < -growth else NEVER
+    if v >= -noise and a >= -growth:
+        return NEVER
+    discriminant = v * v - 2.0 * a * gap
+    if discriminant < 0.0:
+        return NEVER
+    root = math.sqrt(discriminant)
+    return 2.0 * gap / (root - v) if v < 0.0 else (v + root) / -a

@@ -21,6 +21,8 @@ from systems.collision.arrays import (
     OX,
     OY,
     RADIUS,
+    TX,
+    TY,
     UX,
     UY,
     VX,
@@ -52,6 +54,8 @@ def enclose(i, discs, grid, now, end):
     start, stop = now - discs[i, EPOCH], end - discs[i, EPOCH]
     low_x, high_x = _range(discs[i, UX], discs[i, VX], discs[i, AX], start, stop)
     low_y, high_y = _range(discs[i, UY], discs[i, VY], discs[i, AY], start, stop)
+    low_x, high_x = low_x + min(discs[i, TX], 0.0), high_x + max(discs[i, TX], 0.0)
+    low_y, high_y = low_y + min(discs[i, TY], 0.0), high_y + max(discs[i, TY], 0.0)
     margin = MARGIN * max(extent(discs, i, now), extent(discs, i, end))
     around = discs[i, RADIUS] + margin
     grid.boxes[i, 0] = discs[i, OX] + low_x - around

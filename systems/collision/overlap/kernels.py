@@ -1,7 +1,8 @@
-"""Discs that overlap are moved apart along their lines of centres, shares by inverse mass."""
+"""Discs that overlap are moved apart along their lines of centres, shares by inverse mass; out of obstacles as well."""
 
 import math
 
+from systems.collision.gap.kernels import nearest_of_piece
 from systems.collision.kernels import entry
 
 MORE = 0.05  # of an overlap, by which discs are moved farther than apart: sweeps then come to an end
@@ -10,10 +11,10 @@ GOLDEN_ANGLE = 2.399963229728653  # between the directions of discs with one cen
 
 
 @entry
-def separate(first, second, position, displacement, radius, inverse_mass, slack):
+def separate(first, second, position, displacement, radius, inverse_mass, span, slack):
     """Move the discs of pairs that overlap by more than slack × reach apart; returns how many sweeps it took.
 
-    Held directions do not move. What is left after MOST_SWEEPS stays.
+    Held directions do not move, nor do obstacles, which have a span. What is left after MOST_SWEEPS stays.
     """
     for sweep in range(MOST_SWEEPS):
         apart = True
@@ -22,12 +23,16 @@ def separate(first, second, position, displacement, radius, inverse_mass, slack)
             reach = radius[i] + radius[j]
             x = (position[j, 0] - position[i, 0]) + (displacement[j, 0] - displacement[i, 0])
             y = (position[j, 1] - position[i, 1]) + (displacement[j, 1] - displacement[i, 1])
+            x, y, _ = nearest_of_piece(x, y, span[j, 0], span[j, 1])
             distance = math.sqrt(x * x + y * y)
             overlap = reach - distance
             if overlap <= slack * reach:
                 continue
             if distance > 0.0:
                 x, y = x / distance, y / distance
+            elif span[j, 0] != 0.0 or span[j, 1] != 0.0:
+                length = math.hypot(span[j, 0], span[j, 1])
+                x, y = span[j, 1] / length, -span[j, 0] / length
             else:
                 x, y = math.cos(GOLDEN_ANGLE * j), math.sin(GOLDEN_ANGLE * j)
             along = (inverse_mass[i, 0] + inverse_mass[j, 0]) * x * x

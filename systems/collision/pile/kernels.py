@@ -15,6 +15,7 @@ from systems.collision.arrays import (
     AX,
     AY,
     BIAS,
+    BOUNCE,
     CALM,
     CELL,
     CHANGES,
@@ -59,7 +60,7 @@ from systems.collision.arrays import (
     Reason,
 )
 from systems.collision.contact.kernels import find_lasting, forget_lasting, is_held, note_lasting
-from systems.collision.gap.kernels import NEVER, pull_on, relative_motion, rest_speed
+from systems.collision.gap.kernels import NEVER, nearest, pull_on, relative_motion, rest_speed
 from systems.collision.grid.kernels import enclose, enter, neighbours
 from systems.collision.kernels import compiled
 from systems.collision.projection.kernels import compliance, opening_rate, push_apart, sweep
@@ -238,6 +239,7 @@ def _constrain(pairs, h, discs, ties, group, numbers):
     for c in range(pairs):
         i, j = group.links[c, 0], group.links[c, 1]
         dx, dy, vx, vy, _, _ = relative_motion(discs, i, j, numbers[NOW])
+        dx, dy, _ = nearest(dx, dy, j, discs)
         distance = math.sqrt(dx * dx + dy * dy)
         contacts[c, NX] = dx / distance if distance > 0.0 else 1.0
         contacts[c, NY] = dy / distance if distance > 0.0 else 0.0
@@ -250,7 +252,7 @@ def _constrain(pairs, h, discs, ties, group, numbers):
         contacts[c, BIAS] = gap / h
         speed = contacts[c, NX] * vx + contacts[c, NY] * vy
         if speed < -_bounce(i, j, h, discs, numbers) and opening_rate(c, group.motion, group) < 0.0:
-            contacts[c, BIAS] = min(gap / h, numbers[RESTITUTION] * speed)
+            contacts[c, BIAS] = min(gap / h, discs[j, BOUNCE] * speed)
         push_apart(c, contacts[c, GIVEN], group)
         group.other[i, 0], group.other[j, 0] = 1.0, 1.0
         group.marks[ACTIVE, active] = c
@@ -295,7 +297,7 @@ def _find_impulses(active, most, tolerance, group):
 @compiled
 def _bounce(i, j, h, discs, numbers):
     """Speed of approach (m/s) below which discs of a pile do not bounce: what free fall gives in two steps."""
-    speed = rest_speed(i, j, discs, numbers[RESTITUTION], numbers[REST_HEIGHT], numbers[NOW])
+    speed = rest_speed(i, j, discs, numbers[REST_HEIGHT], numbers[NOW])
     return max(speed, 2.0 * h * pull_on(discs, i, j))
 
 

@@ -26,6 +26,8 @@ from systems.collision.arrays import (
     RADIUS,
     RENEW,
     STEP,
+    TX,
+    TY,
     UX,
     UY,
     VX,
@@ -34,7 +36,15 @@ from systems.collision.arrays import (
     Reason,
 )
 from systems.collision.contact.kernels import find_lasting, is_held
-from systems.collision.gap.kernels import NEVER, first_approach, pull_noise, relative_motion, speed_noise
+from systems.collision.gap.kernels import (
+    NEVER,
+    first_approach,
+    first_touch,
+    is_straight,
+    pull_noise,
+    relative_motion,
+    speed_noise,
+)
 from systems.collision.grid.kernels import (
     COARSEST,
     box_size,
@@ -101,8 +111,11 @@ def foresee(i, j, discs, ties, end):
     start = max(discs[i, EPOCH], discs[j, EPOCH])
     dx, dy, vx, vy, ax, ay = relative_motion(discs, i, j, start)
     reach = discs[i, RADIUS] + discs[j, RADIUS]
-    overlapping = is_left_alone(i, j, dx * dx + dy * dy - reach * reach, ties)
     noise, growth = speed_noise(discs, i, j, start), pull_noise(discs, i, j)
+    if is_straight(j, discs):
+        tx, ty = discs[j, TX], discs[j, TY]
+        return start + first_touch(dx, dy, vx, vy, ax, ay, tx, ty, reach, noise, growth, end - start, False)
+    overlapping = is_left_alone(i, j, dx * dx + dy * dy - reach * reach, ties)
     return start + first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, end - start, overlapping)
 
 
