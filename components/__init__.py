@@ -19,6 +19,7 @@ from components.field import Field, FieldError, Role, Vector
 from components.grid import Grid
 from components.load import HistoryKind, Load
 from components.model import Model
+from components.obstacles import Pieces
 from components.particle import Particle
 from components.rod import Rod
 from components.settings import Settings
@@ -46,6 +47,7 @@ __all__ = [
     "Load",
     "Model",
     "Particle",
+    "Pieces",
     "Plot",
     "Readout",
     "Rod",

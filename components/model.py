@@ -13,22 +13,25 @@ from components.particle import Particle
 from components.rod import Rod
 from components.settings import Settings
 from components.table import Table
-from components.world import World
+from components.world import Handle, World
 
 KINDS = (Environment, Settings, Clock, Particle, Rod, Load, Grid)
+ADDED: dict[str, type[Handle]] = {}  # kinds of mods, as files call them: "walls.Wall"
 
 
 class Model(World):
     """A world with the tables every Pinjoint document has.
 
     foreign: by entity, what its element of the model file held for mods' components, kept verbatim.
+    foreign_kinds: the elements of kinds of mods that are not loaded, as in ADDED, kept likewise.
     """
 
     def __init__(self) -> None:
-        super().__init__(KINDS, DERIVATIONS)
+        super().__init__((*KINDS, *ADDED.values()), DERIVATIONS)
         self.title = ""
         self.description = ""
         self.foreign: dict[int, dict[str, Any]] = {}
+        self.foreign_kinds: dict[str, Any] = {}
 
     @property
     def particles(self) -> Table[Particle]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from components.camera import Camera, Viewport
 from components.field import Vector
+from components.kind import all_points
 from components.model import Model
 from components.toolbar import Toolbar
 
@@ -132,7 +133,8 @@ class View:
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model."""
-        self.camera.fit(drawn_positions(model), MARGIN * self.pixel_ratio, self.canvas)
+        points = np.concatenate([drawn_positions(model), all_points(model)])
+        self.camera.fit(points, MARGIN * self.pixel_ratio, self.canvas)
 
     @property
     def strip(self) -> Viewport:

@@ -32,6 +32,7 @@ class Handle:
     table: ClassVar[str]  # name of the table, such as "rods"
     noun: ClassVar[str]  # what a person calls one, such as "rod"
     single: ClassVar[bool] = False  # exactly one in every world
+    points: ClassVar[tuple[str, ...]] = ()  # Fields that are places in the plane (m), which move with it
 
     def __init__(self, world: World, entity: int) -> None:
         self._world = weakref.ref(world)

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from components.field import Role, Vector
 from components.load import Load
-from components.model import Model
+from components.model import ADDED, Model
 from components.particle import Particle
 from components.rod import Rod
-from components.table import Table
+from components.table import Table, fields_of
 from components.world import Handle
 from game.document import ModelError, document_of, parse
 from game.models import laid_out
@@ -24,14 +24,14 @@ from systems.edit.refusal import Refusal
 
 Rows = NDArray[np.int64]
 Kind = type[Handle]
-Chosen = Mapping[Kind, Rows]  # of particles first, then of rods and loads
+Chosen = Mapping[Kind, Rows]  # of particles first, then of rods and loads, then of what mods add
 
 REFERENCES = {"between", "on"}  # Fields that refer to particles
 
 
 @dataclass(frozen=True)
 class Part:
-    """Some particles, with rods between and loads on them, that belong to no model.
+    """Some particles, with rods between and loads on them, and elements of mods, that belong to no model.
 
     columns: by kind, what they hold, by Field; particles are referred to by their place among these.
     foreign: by kind and place, what belongs to mods that are not loaded.
@@ -42,22 +42,24 @@ class Part:
 
     @property
     def position(self) -> NDArray[np.float64]:
-        """Original positions of the particles (m), shape (n, 2)."""
-        position: NDArray[np.float64] = self.columns[Particle]["position"]
-        return position
+        """Original positions of the particles, and the points of other elements (m), shape (n, 2)."""
+        return np.concatenate([held[point] for kind, held in self.columns.items() for point in _points(kind)])
 
 
 def chosen(model: Model, handles: Iterable[Handle]) -> Chosen:
     """Rows of the selected particles and rods, of the ends of those rods, and of the loads on them.
 
-    Raises Refusal if there are none.
+    And of the elements of mods among them. Raises Refusal if there are none.
     """
     selected = list(handles)
     particles = rows_of(model, movable(model, selected))
-    if not len(particles):
+    others = {kind: rows_of(model, [h for h in selected if type(h) is kind]) for kind in _added()}
+    others = {kind: rows for kind, rows in others.items() if len(rows)}
+    if not len(particles) and not others:
         raise Refusal("Nothing is selected that can be copied; click a particle or a rod first.")
     rods = rows_of(model, [handle for handle in selected if isinstance(handle, Rod)])
-    return {Particle: particles, Rod: rods, Load: np.flatnonzero(np.isin(model.loads.on, particles))}
+    loads = np.flatnonzero(np.isin(model.loads.on, particles))
+    return {Particle: particles, Rod: rods, Load: loads, **others}
 
 
 def written(model: Model, rows: Chosen) -> str:
@@ -74,9 +76,12 @@ def parsed(text: str) -> Part:
         source = parse(msgspec.json.decode(text))
     except (ModelError, msgspec.DecodeError):
         source = Model()
-    if not source.particles.count:
+    kinds: list[Kind] = [Particle, Rod, Load, *_added()]
+    rows = {kind: np.arange(source.tables[kind.table].count) for kind in kinds}
+    part = taken(source, rows)
+    if not len(part.position):
         raise Refusal("The clipboard holds no particles or rods; select some and copy them with Ctrl+C.")
-    return taken(source, {kind: np.arange(source.tables[kind.table].count) for kind in (Particle, Rod, Load)})
+    return part
 
 
 def taken(model: Model, rows: Chosen) -> Part:
@@ -91,22 +96,33 @@ def taken(model: Model, rows: Chosen) -> Part:
 
 
 def paste(model: Model, part: Part, offset: Vector) -> list[Handle]:
-    """New particles, rods and loads like those of a part, moved by an offset (m), as one edit.
+    """New elements like those of a part, moved by an offset (m), as one edit.
 
-    Names that are taken are replaced by free ones. Returns the particles and rods.
+    Names that are taken are replaced by free ones. Returns all but the loads.
     """
-    first, made = model.particles.count, {}
+    first = model.particles.count
+    made: dict[Kind, list[Handle]] = {}
     with model.transaction("paste"):
         for kind, held in part.columns.items():
             columns = {**held, "name": _free_names(model.tables[kind.table], held["name"])}
-            if kind is Particle:
-                columns["position"] = columns["position"] + offset
+            for point in _points(kind):
+                columns[point] = columns[point] + offset
             for reference in columns.keys() & REFERENCES:
                 columns[reference] = first + columns[reference]
             made[kind] = model.create(kind, len(columns["name"]), **columns)
         for (kind, place), kept in part.foreign.items():
             model.foreign[made[kind][place].entity] = kept
-    return [*made[Particle], *made[Rod]]
+    return [handle for kind, handles in made.items() if kind is not Load for handle in handles]
+
+
+def _points(kind: Kind) -> tuple[str, ...]:
+    """The Fields that are places in the plane."""
+    return ("position",) if kind is Particle else kind.points
+
+
+def _added() -> list[Kind]:
+    """The kinds of mods that can be copied: they have a place, and refer to nothing else."""
+    return [kind for kind in ADDED.values() if kind.points and not any(f.references for f in fields_of(kind))]
 
 
 def _columns(model: Model, kind: Kind, rows: Rows, place: Rows) -> dict[str, Any]:

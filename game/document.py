@@ -19,7 +19,7 @@ from components.environment import Environment
 from components.field import Column, Field, FieldError, Role
 from components.grid import Grid
 from components.load import Load
-from components.model import Model
+from components.model import ADDED, Model
 from components.particle import Particle, check_velocities
 from components.rod import Rod
 from components.settings import Settings
@@ -46,7 +46,7 @@ SECTIONS: Mapping[str, type[Handle]] = MappingProxyType(
 REQUIRED: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {"particles": ("name", "position"), "rods": ("name", "between"), "loads": ("on",)}
 )
-FOREIGN = "components"  # where an element keeps what belongs to mods
+FOREIGN = "components"  # where an element, and the document, keep what belongs to mods
 
 _HEADER = ("format", "version", "title", "description")
 _SAVED = (Role.DOCUMENT, Role.STATE)
@@ -95,14 +95,31 @@ class _Section:
 
 def _parsed(document: Any) -> Model:
     document = _migrated(document)
-    _refuse_unknown(document, (*_HEADER, *SECTIONS), "$")
+    _refuse_unknown(document, (*_HEADER, *SECTIONS, FOREIGN), "$")
     model = Model()
     model.title = _text(document, "title")
     model.description = _text(document, "description")
     for name, kind in SECTIONS.items():
         if name in document:
             _read(model, _section(f"$.{name}", kind, document[name]))
+    if FOREIGN in document:
+        _read_added(model, document[FOREIGN])
     return model
+
+
+def _read_added(model: Model, kinds: Any) -> None:
+    """Put the elements of mods' kinds into the model, and keep those of mods that are not loaded."""
+    path = f"$.{FOREIGN}"
+    if not isinstance(kinds, Mapping):
+        _fail(path, f"it must be an object, not {_kind_of(kinds)}.")
+    for name, elements in kinds.items():
+        if not isinstance(name, str) or "." not in name or not isinstance(elements, list | tuple):
+            _fail(path, f'{name!r} must be like "mod.Kind": […].')
+        if name not in ADDED:
+            model.foreign_kinds[name] = _copied(elements, f"{path}.{name}")
+    for name, kind in ADDED.items():  # what refers to another comes after it
+        if name in kinds:
+            _read(model, _section(f"{path}.{name}", kind, kinds[name]))
 
 
 def _migrated(document: Any) -> Mapping[str, Any]:
@@ -144,11 +161,18 @@ def _section(path: str, kind: type[Handle], value: Any) -> _Section:
     if not section.keys <= set(known):
         for row, element in enumerate(elements):
             _refuse_unknown(element, known, section.where(row), kind)
-    for key in REQUIRED.get(kind.table, ()):
+    for key in _required(kind):
         for row, element in enumerate(elements):
             if key not in element:
                 _fail(section.where(row), f"its '{key}' is missing; every {kind.noun} needs one.")
     return section
+
+
+def _required(kind: type[Handle]) -> Sequence[str]:
+    """The keys that every element of a kind must have."""
+    if kind.table in REQUIRED or kind not in ADDED.values():
+        return REQUIRED.get(kind.table, ())
+    return [field.key for field in fields_of(kind) if field.name in kind.points or field.references]
 
 
 def _saved_fields(kind: type[Handle]) -> list[Field[Any]]:
@@ -353,7 +377,8 @@ def _keep_foreign(model: Model, section: _Section, handles: Sequence[Handle]) ->
 
 def missing_mods(model: Model) -> list[str]:
     """Names of the mods, not loaded, whose data a model keeps."""
-    return sorted({name.partition(".")[0] for kept in model.foreign.values() for name in kept})
+    kept = [*model.foreign.values(), model.foreign_kinds]
+    return sorted({name.partition(".")[0] for part in kept for name in part})
 
 
 def _copied(value: Any, where: str) -> Any:
@@ -380,19 +405,24 @@ def document(model: Model) -> dict[str, Any]:
             made |= {name: elements} if elements else {}
         elif elements[0] or kind is not Clock:
             made[name] = elements[0]
-    return made
+    added = {name: _elements(model, kind) for name, kind in ADDED.items() if kind.table in model.tables}
+    added = {name: elements for name, elements in added.items() if elements} | model.foreign_kinds
+    return made | ({FOREIGN: dict(sorted(added.items()))} if added else {})
 
 
 def document_of(model: Model, parts: Mapping[type[Handle], NDArray[np.int64]]) -> dict[str, Any]:
     """The document of some rows alone, by kind, among them those that they refer to. Raises ModelError."""
     made: dict[str, Any] = {"format": FORMAT, "version": VERSION}
-    return made | {kind.table: _elements(model, kind, rows) for kind, rows in parts.items() if len(rows)}
+    elements = {kind: _elements(model, kind, rows) for kind, rows in parts.items() if len(rows)}
+    added = {name: elements.pop(kind) for name, kind in ADDED.items() if kind in elements}
+    made |= {kind.table: found for kind, found in elements.items()}
+    return made | ({FOREIGN: added} if added else {})
 
 
 def _elements(model: Model, kind: type[Handle], rows: NDArray[np.int64] | None = None) -> list[dict[str, Any]]:
     """One object per row (None: all), without the facts that are as by default (settings and the like: with all)."""
     table = model.tables[kind.table]
-    always = {"name", *REQUIRED.get(kind.table, ())}
+    always = {"name", *_required(kind)}
     chosen = np.arange(table.count) if rows is None else rows
     handles = [table.handles[row] for row in chosen.tolist()]
     elements: list[dict[str, Any]] = [{} for _ in handles]

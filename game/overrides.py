@@ -12,7 +12,7 @@ import msgspec
 
 from components.clock import Clock
 from components.field import Field, FieldError, Role
-from components.model import Model
+from components.model import ADDED, Model
 from components.table import Table
 from components.world import Handle
 from game.document import SECTIONS
@@ -20,7 +20,7 @@ from game.document import SECTIONS
 EVERY = "*"  # in place of a name: all elements of the table
 FORM = "write it like particles.B.force=120,-160 or settings.restitution=0.5"
 
-_TABLES = {name: kind.table for name, kind in SECTIONS.items() if kind is not Clock}
+_TABLES = {name: kind.table for name, kind in SECTIONS.items() if kind is not Clock}  # and those of mods
 _FLAGS = {"true": True, "false": False}
 
 
@@ -80,7 +80,8 @@ def locate(model: Model, text: str, keys: Keys | None = None) -> tuple[Target, s
     keys: the facts of a table that may be named, by key; None: those that can be set. Raises OverrideError.
     """
     section, _, rest = text.partition(".")
-    table = model.tables[_TABLES[_known(section.strip(), _TABLES, "table")]]
+    tables = _TABLES | {kind.table: kind.table for kind in ADDED.values() if kind.table in model.tables}
+    table = model.tables[tables[_known(section.strip(), tables, "table")]]
     known = (keys or _settable)(table)
     element, rest = _element(table, rest, known)
     handles = list(table) if element in ("", EVERY) else [table[element]]

@@ -255,6 +255,12 @@ class Session:
         """Loads by name."""
         return self.model.loads
 
+    def table(self, name: str) -> Table[Any]:
+        """The elements of any kind by name, those that mods add included: session.table("walls")["floor"]."""
+        if name not in self.model.tables:
+            raise KeyError(self.model.missing("tables", name, self.model.tables))
+        return self.model.tables[name]
+
     @property
     def environment(self) -> Environment:
         """What acts on every particle."""

@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass
 from components.extremes import incomputable
 from components.field import Column, Role
 from components.load import loads_end
-from components.model import Model
+from components.model import ADDED, Model
 from components.rod import is_warm
 from components.settings import AUTOMATIC
 from components.snapshot import Snapshot
@@ -118,7 +118,8 @@ class Simulation:
         self.forget()  # a saved run goes on with the step size it had
 
     def _sources(self) -> tuple[str, ...]:
-        tables = ("particles", "rods", "loads", "environment", "settings", "clock")
+        tables = ["particles", "rods", "loads", "environment", "settings", "clock"]
+        tables += [kind.table for kind in ADDED.values() if kind.table in self.model.tables]
         return tuple(
             f"{name}.{field.name}"
             for name in tables

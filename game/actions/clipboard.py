@@ -34,7 +34,7 @@ def _cut(session: Session, pixel: Vector) -> None:
 
 @action("paste")
 def _paste(session: Session, pixel: Vector) -> None:
-    """With the middle at the pointer, from the toolbar in the middle; the first particle snaps to the grid."""
+    """With the middle at the pointer, from the toolbar in the middle; the first place snaps to the grid."""
     if session.view.strip.contains(pixel):
         pixel = session.view.canvas.middle
     source = _taken_along(session)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from components.field import Vector
 from game.actions.editing import take_up
 from game.actions.registry import ACTIONS, Action, action
-from game.gestures import TOOLS, BoxSelect, Drawing, Move, PullParticle
-from systems.edit.picking import pick_particle, pick_rod
+from game.gestures import TOOLS, BoxSelect, Drawing, Move, MovePoint, PullParticle
+from systems.edit.picking import pick_line, pick_particle, pick_point
 from systems.edit.refusal import Refusal
 
 if TYPE_CHECKING:
@@ -25,7 +25,9 @@ def _drag(session: Session, pixel: Vector) -> None:
         _use_at(session, tool, pixel)
     elif particle is not None and session.scene == "simulation":
         session.gesture = PullParticle(session, particle)
-    elif session.scene == "pause" and (hit := particle or pick_rod(model, view, pixel)) is not None:
+    elif session.scene == "pause" and particle is None and (grip := pick_point(model, view, pixel)) is not None:
+        session.gesture = MovePoint(session, grip)
+    elif session.scene == "pause" and (hit := particle or pick_line(model, view, pixel)) is not None:
         session.gesture = Move(session, hit, pixel)
     else:
         session.gesture = BoxSelect(session, pixel, adding=False)
@@ -57,9 +59,9 @@ def _use_at(session: Session, tool: str, pixel: Vector) -> None:
     if tool not in TOOLS:
         ACTIONS[tool](session, pixel)
         return
-    particle = pick_particle(session.model, session.view, pixel)
-    if particle is not None:
-        session.gesture = TOOLS[tool](session, particle)
+    begun = TOOLS[tool].begin(session, pixel)
+    if begun is not None:
+        session.gesture = begun
     elif session.gesture is None:
         raise Refusal("Begin at a particle. Esc puts the tool away, P makes a new particle.")
 
@@ -82,25 +84,25 @@ def click_with_tool(session: Session, pixel: Vector) -> bool:
     return True
 
 
-def _use(tool: str) -> Action:
-    """A tool's key: over a particle it begins there, pressed again it ends; elsewhere it takes the tool up."""
+def use(tool: str) -> Action:
+    """A tool's key: where it can begin it does, pressed again it ends; elsewhere it takes the tool up."""
 
-    def use(session: Session, pixel: Vector) -> None:
+    def key(session: Session, pixel: Vector) -> None:
         if isinstance(session.gesture, Drawing) and session.gesture.tool == tool:
             finish_drawing(session, pixel)
             return
         session.leave_gesture()
-        particle = pick_particle(session.model, session.view, pixel)
-        if particle is not None:
-            session.gesture = TOOLS[tool](session, particle)
+        begun = TOOLS[tool].begin(session, pixel)
+        if begun is not None:
+            session.gesture = begun
         else:
             take_up(session, tool)
 
-    return use
+    return key
 
 
 for _tool in TOOLS:
-    action(_tool, while_drawing=True)(_use(_tool))
+    action(_tool, while_drawing=True)(use(_tool))
 
 
 def put_away(session: Session) -> bool:

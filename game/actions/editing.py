@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 from components.field import Vector
 from components.particle import Particle
 from game.actions.registry import action
-from systems.edit.moving import movable, move, nudged, rows_of
+from systems.edit.moving import Movable, nudged
 from systems.edit.picking import pick_particle
 from systems.edit.placing import place
 from systems.edit.refusal import Refusal
 from systems.edit.rods import delete
 from systems.edit.supports import next_support
+from systems.forms.properties import heading
 
 if TYPE_CHECKING:
     from game.session import Session
@@ -71,13 +72,14 @@ def _all_of(session: Session, particles: list[Particle]) -> str:
 def nudge(session: Session, direction: Vector, *, far: bool) -> bool:
     """Move what is selected by about a pixel, or (far) a grid spacing; False if nothing is."""
     model = session.model
-    particles = movable(model, session.selected)
-    if not particles:
+    chosen = Movable(model, session.selected)
+    if not len(chosen):
         return False
-    present = model.particles.position[rows_of(model, particles)]
-    positions = nudged(model, session.view, present, direction, far=far)
-    with session.history.as_one(("nudge", *(particle.entity for particle in particles))):
-        move(model, particles, positions)
-    x, y = particles[0].position
-    session.notice = f"{_all_of(session, particles)}: ({100.0 * x:g}, {100.0 * y:g}) cm"
+    positions = nudged(model, session.view, chosen.positions, direction, far=far)
+    moved = [*chosen.particles, *chosen.others]
+    with session.history.as_one(("nudge", *(handle.entity for handle in moved))):
+        chosen.place(positions)
+    x, y = positions[0].tolist()
+    named = _all_of(session, chosen.particles) if not chosen.others else heading(model, moved)
+    session.notice = f"{named[:1].upper()}{named[1:]}: ({100.0 * x:g}, {100.0 * y:g}) cm"
     return True

@@ -2,7 +2,7 @@
 
 from game.gestures.base import Gesture
 from game.gestures.drawing import TOOL_HINTS, TOOLS, Drawing
-from game.gestures.moving import Move, PullParticle
+from game.gestures.moving import Move, MovePoint, PullParticle
 from game.gestures.selecting import BoxSelect
 
-__all__ = ["TOOLS", "TOOL_HINTS", "BoxSelect", "Drawing", "Gesture", "Move", "PullParticle"]
+__all__ = ["TOOLS", "TOOL_HINTS", "BoxSelect", "Drawing", "Gesture", "Move", "MovePoint", "PullParticle"]

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, ClassVar
 from components.field import Vector
 from components.particle import Particle
 from components.view import Preview, drawn_positions
+from components.world import Handle
 from game.gestures.base import Gesture
 from systems.edit.arrows import arrow_end, arrow_value, usual_force, usual_speed
 from systems.edit.picking import pick_particle
+from systems.edit.placing import snapped_to_points
 from systems.edit.refusal import Refusal
 from systems.edit.rods import check_ends, distance, join
 
@@ -19,12 +21,26 @@ if TYPE_CHECKING:
 
 
 class Drawing(Gesture):
-    """What begins at a particle."""
+    """What clicks and drags draw while a tool is in hand."""
 
     tool: ClassVar[str]
 
+    @classmethod
+    def begin(cls, session: Session, pixel: Vector) -> Drawing | None:
+        """A new one that begins at a pixel; None if it cannot begin there, or another of its kind is to go on."""
+        raise NotImplementedError
+
+
+class DrawFromParticle(Drawing):
+    """What begins at a particle."""
+
     def __init__(self, session: Session, particle: Particle) -> None:
         self.particle = particle
+
+    @classmethod
+    def begin(cls, session: Session, pixel: Vector) -> Drawing | None:
+        particle = pick_particle(session.model, session.view, pixel)
+        return cls(session, particle) if particle is not None else None
 
     def start(self, session: Session) -> Vector:
         """Where that particle is drawn (m). Raises Refusal if it is gone."""
@@ -33,7 +49,7 @@ class Drawing(Gesture):
         return drawn_at(session, self.particle)
 
 
-class DrawRod(Drawing):
+class DrawRod(DrawFromParticle):
     """From one particle to another."""
 
     tool = "rod"
@@ -64,7 +80,7 @@ class DrawRod(Drawing):
         return Preview("rod", start, drawn_at(session, other), label)
 
 
-class DrawArrow(Drawing):
+class DrawArrow(DrawFromParticle):
     """A vector of a particle, as an arrow from it."""
 
     title: ClassVar[str]
@@ -126,6 +142,46 @@ class DrawVelocity(DrawArrow):
         return 0.0 if held[0] else x, 0.0 if held[1] else y
 
 
+class DrawElement(Drawing):
+    """An element of a mod's kind with two points, from one to the other."""
+
+    kind: ClassVar[type[Handle]]
+    key: ClassVar[str]
+
+    def __init__(self, session: Session, pixel: Vector) -> None:
+        self.from_ = snapped_to_points(session.model, session.view, pixel)
+        self.hint = f"{self.kind.noun}: {self.key.upper()} or click where it ends     Esc cancel"
+
+    @classmethod
+    def begin(cls, session: Session, pixel: Vector) -> Drawing | None:
+        if isinstance(session.gesture, cls) or session.view.strip.contains(pixel):
+            return None
+        return cls(session, pixel)
+
+    def drop(self, session: Session, pixel: Vector) -> None:
+        end = snapped_to_points(session.model, session.view, pixel)
+        if end == self.from_:
+            raise Refusal(f"A {self.kind.noun} goes from one point to another; end it elsewhere.")
+        first, last = self.kind.points
+        [made] = session.model.create(self.kind, 1, **{first: [self.from_], last: [end]})
+        session.select(made)
+        session.notice = f"{session.name(made)}: {_length_and_angle(self.from_, end)}"
+
+    def preview(self, session: Session, pixel: Vector) -> Preview | None:
+        end = snapped_to_points(session.model, session.view, pixel)
+        return Preview("rod", self.from_, end, _length_and_angle(self.from_, end))
+
+
+def _length_and_angle(start: Vector, end: Vector) -> str:
+    angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0])) + 0.0
+    return f"{math.dist(start, end):.6g} m, {angle:.4g}°"
+
+
+def drawing_of(kind: type[Handle], tool: str, key: str) -> type[DrawElement]:
+    """What draws elements of a kind with two points; `tool` is the name of its action."""
+    return type(f"Draw{kind.__name__}", (DrawElement,), {"kind": kind, "tool": tool, "key": key})
+
+
 TOOL_HINTS = {
     "place": "particles: click where they are to be     Esc done",
     "support": "supports: click particles, again for the next kind     Esc done",
@@ -133,9 +189,7 @@ TOOL_HINTS = {
     "force": "forces: drag an arrow from a particle     F or Esc done",
     "velocity": "velocities: drag an arrow from a particle     V or Esc done",
 }
-TOOLS: dict[str, type[DrawRod | DrawForce | DrawVelocity]] = {
-    kind.tool: kind for kind in (DrawRod, DrawForce, DrawVelocity)
-}
+TOOLS: dict[str, type[Drawing]] = {kind.tool: kind for kind in (DrawRod, DrawForce, DrawVelocity)}
 
 
 def drawn_at(session: Session, particle: Particle) -> Vector:

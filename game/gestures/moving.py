@@ -11,8 +11,9 @@ from components.field import FieldError, Vector
 from components.particle import Particle
 from components.view import Preview, drawn_positions
 from game.gestures.base import Gesture
-from systems.edit.moving import movable, move, rows_of
-from systems.edit.placing import check_free, snapped
+from systems.edit.moving import Movable
+from systems.edit.picking import Grip
+from systems.edit.placing import check_free, snapped, snapped_to_points
 from systems.edit.pull import hand_on
 from systems.edit.refusal import Refusal
 
@@ -31,33 +32,68 @@ class Move(Gesture):
         chosen = selected if hit in selected else [hit]
         if chosen == [hit]:
             session.select(hit)
-        model = session.model
-        self._particles = movable(model, chosen)
-        self._start = model.particles.position[rows_of(model, self._particles)]
-        self._leader = 0  # the one that keeps to the grid
-        if isinstance(hit, Particle):
-            self._leader = self._particles.index(hit)
+        self._movable = Movable(session.model, chosen)
+        self._start = self._movable.positions
+        self._leader = self._movable.index(hit)  # the one that keeps to the grid
         self._grip = np.subtract(self._start[self._leader], session.view.camera.to_model(pixel))
 
     def move(self, session: Session, pixel: Vector) -> None:
         model, view = session.model, session.view
         wanted = np.add(view.camera.to_model(pixel), self._grip)
         target = snapped(model, view, (float(wanted[0]), float(wanted[1])))
-        leader = self._particles[self._leader]
-        moved = np.subtract(drawn_positions(model)[leader.row], leader.position)
         try:
-            check_free(model, view, (target[0] + moved[0], target[1] + moved[1]), besides=self._particles)
+            self._check_free(session, target)
             with session.history.as_one(self):
-                move(model, self._particles, self._start + np.subtract(target, self._start[self._leader]))
+                self._movable.place(self._start + np.subtract(target, self._start[self._leader]))
         except (Refusal, FieldError) as error:
             session.notice = str(error)
         else:
-            session.notice = self._told(leader)
+            session.notice = self._told(target)
 
-    def _told(self, leader: Particle) -> str:
-        x, y = leader.position
-        others = f" and {len(self._particles) - 1} more" if len(self._particles) > 1 else ""
-        return f"{leader.name}{others}: ({100.0 * x:.6g}, {100.0 * y:.6g}) cm"
+    def _check_free(self, session: Session, target: Vector) -> None:
+        """Raise Refusal if the particle that keeps to the grid would come to lie on another."""
+        particles = self._movable.particles
+        if self._leader < len(particles):
+            leader = particles[self._leader]
+            x, y = np.subtract(drawn_positions(session.model)[leader.row], leader.position).tolist()
+            check_free(session.model, session.view, (target[0] + x, target[1] + y), besides=particles)
+
+    def _told(self, target: Vector) -> str:
+        particles, count = self._movable.particles, len(self._movable)
+        leader = particles[self._leader] if self._leader < len(particles) else self._movable.others[0]
+        others = f" and {count - 1} more" if count > 1 else ""
+        return f"{leader.name}{others}: ({100.0 * target[0]:.6g}, {100.0 * target[1]:.6g}) cm"  # type: ignore[attr-defined]
+
+    def drop(self, session: Session, pixel: Vector) -> None:
+        self.move(session, pixel)
+
+    def cancel(self, session: Session) -> None:
+        session.history.retract(self)
+
+    def leave(self, session: Session) -> None:
+        """What was moved stays where it is."""
+
+
+class MovePoint(Gesture):
+    """Dragging one point of an element, such as the end of a wall. One entry of the log."""
+
+    hint = "let go to place     Esc put back"
+
+    def __init__(self, session: Session, grip: Grip) -> None:
+        session.select(grip.element)
+        self._held = grip
+
+    def move(self, session: Session, pixel: Vector) -> None:
+        element, point = self._held.element, self._held.point
+        target = snapped_to_points(session.model, session.view, pixel, besides=element)
+        try:
+            with session.history.as_one(self):
+                session.model.assign([element], point, [target])
+        except FieldError as error:
+            session.notice = str(error)
+        else:
+            x, y = (100.0 * value for value in target)
+            session.notice = f"{session.name(element)}, {point}: ({x:.6g}, {y:.6g}) cm"
 
     def drop(self, session: Session, pixel: Vector) -> None:
         self.move(session, pixel)

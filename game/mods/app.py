@@ -7,21 +7,31 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
+
 from components.component import Component, add_component, remove_component
 from components.field import FieldError, Vector
+from components.kind import add_kind
 from components.load import HISTORIES, HistoryKind, register_history
+from components.model import ADDED
+from components.obstacles import SHAPES, Pieces, Shape
 from components.settings import INTEGRATORS
 from components.view import Readout
+from components.world import Handle
 from game import models, registry
+from game.actions.drawing import use
 from game.actions.registry import ACTIONS, WHILE_DRAWING, Action, action
 from game.arguments import BAD_INPUT, UsageError
 from game.catalogue import DRIVERS, register_driver
+from game.gestures import TOOL_HINTS, TOOLS
+from game.gestures.drawing import drawing_of
 from game.mods.guard import guarded_history, guarded_scene, guarded_system
 from game.mods.mod import Mod, ModError
 from game.scenes import Scene, all_scenes
 from systems.base import Driver, System
 from systems.edit.refusal import Refusal
-from systems.input.bindings import LIVE, Binding, add_binding, remove_binding
+from systems.input.bindings import LIVE, Binding, add_binding, add_tool, remove_binding, remove_tool
+from systems.render.icons import ICONS, Part
 from systems.render.picture import ABOVE, BELOW, Layer
 
 if TYPE_CHECKING:
@@ -57,6 +67,47 @@ class App:
         except ValueError as error:
             raise ModError(str(error)) from None
         self._undo.append(lambda: remove_component(component, names))
+
+    def kind(self, kind: type[Handle]) -> None:
+        """Add a kind of elements: a class with Fields, whose table every model has; see components.Handle.
+
+        Files keep them under "components": {"<mod>.<Kind>": […]}. Those with `points` can be picked, dragged,
+        copied and selected in a box like others; what draws them is a layer of the mod's own.
+        """
+        try:
+            name = add_kind(self.name, kind)
+        except ValueError as error:
+            raise ModError(str(error)) from None
+        self._undo.append(lambda: ADDED.pop(name))
+
+    def tool(self, kind: type[Handle], *, key: str, title: str = "", icon: Sequence[Part] = ()) -> None:
+        """Let a person draw elements of a kind with two points, from one to the other, by a key and a button.
+
+        The action is "<mod>.<noun>". icon: lines and areas, as in systems/render/icons.py; none, no button.
+        """
+        if len(kind.points) != 2:
+            raise ModError(f"A tool draws from point to point; {kind.__name__} has {len(kind.points)} points.")
+        name = f"{self.name}.{kind.noun}"
+        TOOLS[name] = drawing_of(kind, name, key)
+        TOOL_HINTS[name] = (
+            f"{kind.table}: click two points, or drag from one to the other     {key.upper()} or Esc done"
+        )
+        self._undo += [lambda: TOOLS.pop(name), lambda: TOOL_HINTS.pop(name)]
+        self.action(name, key=key, title=title or f"{kind.noun}, from point to point", while_drawing=True)(
+            use(name)
+        )
+        if icon:
+            ICONS[name] = tuple(icon)
+            add_tool(name)
+            self._undo += [lambda: ICONS.pop(name), lambda: remove_tool(name)]
+
+    def shape(self, kind: type[Handle], shape: Shape) -> None:
+        """Let particles collide with elements of a kind: `shape(table)` returns the Pieces that they are."""
+        if kind in SHAPES:
+            raise ModError(f"What {kind.table} collide as is registered already.")
+        mod, nothing = self._mod, Pieces(np.zeros((0, 2, 2)), np.zeros(0, dtype=np.intp))
+        SHAPES[kind] = lambda table: mod.call(f"the shape of {kind.table}", shape, table, otherwise=nothing)
+        self._undo.append(lambda: SHAPES.pop(kind))
 
     def system(self, system: Callable[[], System]) -> None:
         """Add a frame system, a law or a commit, by its class: every session makes one of its own."""

@@ -112,14 +112,14 @@ class Properties(FormScene):
 
 
 def _is_right(session: Session, selected: Sequence[Handle]) -> bool:
-    """True if the selected particles and rods are in the right half of the picture."""
+    """True if the selected elements are in the right half of the picture."""
     model, camera = session.model, session.view.camera
     entities: dict[type, list[int]] = {Particle: [], Rod: []}
+    places = [getattr(handle, point) for handle in selected for point in handle.points]
     for handle in selected:
         if type(handle) in entities:
             entities[type(handle)].append(handle.entity)
     ends = model.rods.between[model.row_of_entity[entities[Rod]]].ravel()
     rows = np.concatenate([model.row_of_entity[entities[Particle]], ends.astype(np.intp)])
-    if len(rows) == 0:
-        return False
-    return bool(camera.to_pixels(drawn_positions(model)[rows])[:, 0].mean() > camera.middle[0])
+    points = np.concatenate([drawn_positions(model)[rows], np.reshape(places, (-1, 2))])
+    return len(points) > 0 and bool(camera.to_pixels(points)[:, 0].mean() > camera.middle[0])

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from components.field import Vector
+from components.kind import outlines
 from components.tags import Hovered
 from components.view import View
 from systems.base import Phase, System
@@ -26,7 +27,7 @@ class Hover(System):
         self._looked: Any = None  # at what, from where and at which point, in the last frame
 
     def needs(self, model: Model) -> bool:
-        return model.particles.count + model.grids.count > 0
+        return model.particles.count + model.grids.count > 0 or any(outlines(model))
 
     def process(self, frame: Any) -> None:
         """Move the mark if the pointer is over something else now."""

@@ -27,6 +27,59 @@ def movable(model: Model, handles: Iterable[Handle]) -> list[Particle]:
     return [model.particles[row] for row in np.flatnonzero(moves).tolist()]
 
 
+class Movable:
+    """What moves with some elements: particles by their original positions, others by their points."""
+
+    def __init__(self, model: Model, handles: Iterable[Handle]) -> None:
+        chosen = list(handles)
+        self._model = model
+        self.particles = movable(model, chosen)
+        self.others = [handle for handle in chosen if handle.points]
+        kinds: dict[type[Handle], None] = dict.fromkeys(type(handle) for handle in self.others)
+        self._groups = [
+            ([handle for handle in self.others if type(handle) is kind], point)
+            for kind in kinds
+            for point in kind.points
+        ]
+
+    def __len__(self) -> int:
+        return len(self.particles) + len(self.others)
+
+    @property
+    def first(self) -> Handle:
+        """The particle, else the other element, that comes first."""
+        return (self.particles or self.others)[0]
+
+    @property
+    def positions(self) -> Points:
+        """Original positions of the particles and then the points (m), shape (n, 2)."""
+        columns = [self._model.particles.position[rows_of(self._model, self.particles)]]
+        for handles, point in self._groups:
+            columns.append(self._model.tables[handles[0].table].column(point)[rows_of(self._model, handles)])
+        return np.concatenate(columns)
+
+    def index(self, handle: Handle) -> int:
+        """The row of its position, or of its first point, in `positions`; 0 for what moves with others."""
+        if handle in self.particles:
+            return self.particles.index(handle)
+        row = len(self.particles)
+        for handles, _ in self._groups:
+            if handle in handles:
+                return row + handles.index(handle)
+            row += len(handles)
+        return 0
+
+    def place(self, positions: ArrayLike) -> None:
+        """Give all of them new positions (m), in the order of `positions`. Raises FieldError, then nothing moved."""
+        wanted = np.asarray(positions, dtype=np.float64)
+        with self._model.transaction("move"):
+            move(self._model, self.particles, wanted[: len(self.particles)])
+            row = len(self.particles)
+            for handles, point in self._groups:
+                self._model.assign(handles, point, wanted[row : row + len(handles)])
+                row += len(handles)
+
+
 def rows_of(model: Model, handles: Sequence[Handle]) -> NDArray[np.int64]:
     """Rows of existing elements of one kind, each in its table."""
     rows: NDArray[np.int64] = model.row_of_entity[[handle.entity for handle in handles]]

@@ -2,26 +2,51 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import NDArray
 
 from components.field import Vector
 from components.grid import Grid
+from components.kind import outlines
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 from components.view import View, drawn_positions
 from components.world import Handle
 
+Numbers = NDArray[np.float64]
+
 PARTICLE_REACH = 8.0  # points from the centre, at least its radius
 ROD_REACH = 10.0  # points
 GRID_REACH = 5.0  # points
 
 
+@dataclass(frozen=True)
+class Grip:
+    """A point of an element by which it can be taken: the name of the Field."""
+
+    element: Handle
+    point: str
+
+    @property
+    def place(self) -> Vector:
+        """Where it is (m)."""
+        place: Vector = getattr(self.element, self.point)
+        return place
+
+
 def pick(model: Model, view: View, pixel: Vector) -> Handle | None:
-    """The particle, else the rod, else the shown grid under a pixel; None if there is nothing to be seen."""
+    """The particle, else the rod, the element of a mod or the shown grid under a pixel; None if nothing is seen."""
     if view.strip.contains(pixel):
         return None
-    return pick_particle(model, view, pixel) or pick_rod(model, view, pixel) or _grid_at(model, view, pixel)
+    return pick_particle(model, view, pixel) or pick_line(model, view, pixel) or _grid_at(model, view, pixel)
+
+
+def pick_line(model: Model, view: View, pixel: Vector) -> Handle | None:
+    """The rod, else the element of a mod's kind with points, within reach of a pixel."""
+    return pick_rod(model, view, pixel) or _outlined_at(model, view, pixel)
 
 
 def pick_particle(model: Model, view: View, pixel: Vector) -> Particle | None:
@@ -41,14 +66,47 @@ def pick_rod(model: Model, view: View, pixel: Vector) -> Rod | None:
         return None
     x, y = (view.camera.to_pixels(drawn_positions(model)) - pixel).T
     first, last = model.rods.between.astype(np.intp).T
-    start_x, start_y = x[first], y[first]
-    along_x, along_y = x[last] - start_x, y[last] - start_y
-    squared = along_x**2 + along_y**2
-    share = -(start_x * along_x + start_y * along_y) / np.where(squared > 0.0, squared, 1.0)
-    share = np.minimum(np.maximum(share, 0.0), 1.0)  # of the rod, up to its point nearest to the pixel
-    distance = (start_x + share * along_x) ** 2 + (start_y + share * along_y) ** 2
+    distance = _squared_distance(x[first], y[first], x[last], y[last])
     nearest = int(np.argmin(distance))
     return model.rods[nearest] if distance[nearest] <= (ROD_REACH * view.pixel_ratio) ** 2 else None
+
+
+def _squared_distance(start_x: Numbers, start_y: Numbers, end_x: Numbers, end_y: Numbers) -> Numbers:
+    """From the origin to the lines between two points each."""
+    along_x, along_y = end_x - start_x, end_y - start_y
+    squared = along_x**2 + along_y**2
+    share = -(start_x * along_x + start_y * along_y) / np.where(squared > 0.0, squared, 1.0)
+    share = np.minimum(np.maximum(share, 0.0), 1.0)  # of the line, up to its point nearest to the origin
+    distance: Numbers = (start_x + share * along_x) ** 2 + (start_y + share * along_y) ** 2
+    return distance
+
+
+def _outlined_at(model: Model, view: View, pixel: Vector) -> Handle | None:
+    """The nearest element, within reach, of a mod's kind with points, seen as the lines through them."""
+    best, found = (ROD_REACH * view.pixel_ratio) ** 2, None
+    for table, points in outlines(model):
+        x, y = np.moveaxis(view.camera.to_pixels(points) - pixel, -1, 0)
+        for k in range(max(x.shape[1] - 1, 1)):
+            distance = _squared_distance(
+                x[:, k], y[:, k], x[:, (k + 1) % x.shape[1]], y[:, (k + 1) % x.shape[1]]
+            )
+            nearest = int(np.argmin(distance))
+            if distance[nearest] <= best:
+                best, found = float(distance[nearest]), table[nearest]
+    return found
+
+
+def pick_point(model: Model, view: View, pixel: Vector, besides: Handle | None = None) -> Grip | None:
+    """The element of a mod's kind, one of whose points is within reach of a pixel, and which."""
+    best, found = PARTICLE_REACH * view.pixel_ratio, None
+    for table, points in outlines(model):
+        away = np.hypot(*np.moveaxis(view.camera.to_pixels(points) - pixel, -1, 0))
+        if besides is not None and besides.table == table.name:
+            away[besides.row] = np.inf
+        row, k = np.unravel_index(int(np.argmin(away)), away.shape)
+        if away[row, k] <= best:
+            best, found = float(away[row, k]), Grip(table[int(row)], table.kind.points[int(k)])
+    return found
 
 
 def _grid_at(model: Model, view: View, pixel: Vector) -> Grid | None:

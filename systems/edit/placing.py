@@ -10,7 +10,8 @@ from components.field import Vector
 from components.model import Model
 from components.particle import Particle
 from components.view import View, drawn_positions
-from systems.edit.picking import PARTICLE_REACH
+from components.world import Handle
+from systems.edit.picking import PARTICLE_REACH, pick_point
 from systems.edit.refusal import Refusal
 
 SNAP_REACH = 5.0  # points from a grid line
@@ -25,6 +26,12 @@ def snapped(model: Model, view: View, point: Vector) -> Vector:
     spacing = model.grids.spacing[shown[-1]].tolist() if len(shown) else (math.inf, math.inf)
     x, y = (_snapped(value, step, view) for value, step in zip(point, spacing, strict=True))
     return x, y
+
+
+def snapped_to_points(model: Model, view: View, pixel: Vector, besides: Handle | None = None) -> Vector:
+    """The point (m) under a pixel: that of another element, within reach, else on the grid if near it."""
+    grip = pick_point(model, view, pixel, besides)
+    return snapped(model, view, view.camera.to_model(pixel)) if grip is None else grip.place
 
 
 def _snapped(value: float, step: float, view: View) -> float:

@@ -143,6 +143,9 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("next theme", "toggle help"),
 )
 
+ADDED_TOOLS: list[str] = []  # actions of mods that draw, at the end of the group in which PLACE is
+PLACE = "place"
+
 _BY_KEY = {(scene, binding.key): binding for binding in BINDINGS for scene in binding.scenes}
 
 
@@ -154,6 +157,18 @@ def add_binding(binding: Binding) -> list[Binding]:
         BINDINGS.append(replace(binding, scenes=free))
         _index()
     return list(dict.fromkeys(taken.values()))
+
+
+def add_tool(action: str) -> None:
+    """Let the toolbar offer an action of a mod that draws, beside those of ours."""
+    ADDED_TOOLS.append(action)
+    toolbar.cache_clear()
+
+
+def remove_tool(action: str) -> None:
+    """Take back what `add_tool` did."""
+    ADDED_TOOLS.remove(action)
+    toolbar.cache_clear()
 
 
 def remove_binding(binding: Binding) -> None:
@@ -209,7 +224,8 @@ def toolbar(scene: str) -> tuple[tuple[Binding, ...], ...]:
     found = [binding for binding in BINDINGS if scenes & set(binding.scenes)]
     found.sort(key=lambda binding: scene not in binding.scenes)  # keys that work here come first
     offered = {binding.action: binding for binding in reversed(found)}
-    groups = (tuple(offered[action] for action in group if action in offered) for group in TOOLBAR)
+    wanted = ([*group, *(ADDED_TOOLS if PLACE in group else ())] for group in TOOLBAR)
+    groups = (tuple(offered[action] for action in group if action in offered) for group in wanted)
     return tuple(group for group in groups if group)
 
 

@@ -1,0 +1,57 @@
+"""Kinds: elements that a mod adds besides particles, rods, loads and grids."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import Role
+from components.model import ADDED, KINDS, Model
+from components.table import Table, fields_of
+from components.world import Handle
+
+
+def add_kind(mod: str, kind: type[Handle]) -> str:
+    """Let all models made from now on have a table of a mod's kind; returns what files call it.
+
+    Raises ValueError if a model has such elements already, or a Field is none that a mod can add.
+    """
+    others = [*KINDS, *ADDED.values()]
+    fields = {field.name: field for field in fields_of(kind)}
+    for part in ("table", "noun"):
+        word = getattr(kind, part, "")
+        if not word or word in [getattr(other, part) for other in others]:
+            raise ValueError(
+                f"{kind.__name__}: its {part} '{word}' is missing or taken; give it one of its own."
+            )
+    if not kind.table.isidentifier() or hasattr(Model, kind.table):
+        raise ValueError(f"{kind.__name__}: '{kind.table}' cannot be the name of a table; use another plural.")
+    if kind.single:
+        raise ValueError(f"{kind.__name__}: what there is one of is a component of Settings or Environment.")
+    if "name" not in fields or fields["name"].dtype is not str:
+        raise ValueError(f"{kind.__name__} needs a Field 'name' of dtype str: what a person calls each.")
+    for field in fields.values():
+        if field.role is Role.DERIVED:
+            raise ValueError(f"{kind.__name__}.{field.name}: derived columns cannot be added by a mod.")
+    for point in kind.points:
+        if point not in fields or fields[point].shape != (2,) or fields[point].role is not Role.DOCUMENT:
+            raise ValueError(f"{kind.__name__}: its point '{point}' is no Field of shape (2,) of the document.")
+    called = f"{mod}.{kind.__name__}"
+    ADDED[called] = kind
+    return called
+
+
+def outlines(model: Model) -> Iterator[tuple[Table[Any], NDArray[np.float64]]]:
+    """The tables of mods' kinds that have points and elements, with those points (m), shape (n, points, 2)."""
+    for kind in ADDED.values():
+        table = model.tables.get(kind.table)
+        if table is not None and table.count and kind.points:
+            yield table, np.stack([table.column(point) for point in kind.points], axis=1)
+
+
+def all_points(model: Model) -> NDArray[np.float64]:
+    """The points of all elements of mods' kinds (m), shape (n, 2)."""
+    return np.concatenate([np.zeros((0, 2)), *(points.reshape(-1, 2) for _, points in outlines(model))])

@@ -1,0 +1,101 @@
+"""Walls and floors: straight lines that never move, off which particles bounce and on which they rest."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components import Field, FieldError, Handle, Pieces, Selected, Table, Vector
+from components.tags import Hovered
+from systems.render.clip import bounds, clip_segments
+from systems.render.labels import Label, half_size
+from systems.render.marks import Discs, Mark, Strokes
+from systems.render.theme import faded
+
+if TYPE_CHECKING:
+    from game.mods import App
+    from systems.render.sheet import Sheet
+
+WIDTH = 4.0  # points, of the line that is drawn
+
+ICON = (
+    ("line", (-8.5, -3, 8.5, -3)),
+    *(("line", (x, -2.5, x - 4, 4)) for x in (-3.5, 1.5, 6.5)),
+)
+
+
+class Wall(Handle):
+    """A straight line from one point to another; both of its sides and its ends are hard and smooth."""
+
+    __slots__ = ()
+    table, noun = "walls", "wall"
+    points = ("start", "end")
+
+    name: Field[str] = Field(title="name", doc="Unique among the walls.", default="", dtype=str)
+    start: Field[Vector] = Field("m", shape=(2,), title="start", doc="Where it begins.", shown=("cm", 100.0))
+    end: Field[Vector] = Field("m", shape=(2,), title="end", doc="Where it ends.", shown=("cm", 100.0))
+    restitution: Field[float | None] = Field(
+        default=None,
+        nullable=True,
+        minimum=0.0,
+        maximum=1.0,
+        title="restitution",
+        doc="Of impacts with it, whatever that of particles is; automatic: that of the settings.",
+    )
+
+    @classmethod
+    def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
+        """A wall has a length."""
+        points = (table.start[rows] == table.end[rows]).all(axis=1)
+        for row in rows[points][:1].tolist():
+            where = table.world.describe(table[row])
+            raise FieldError(f"{where}: its start and its end are the same point; place one elsewhere.")
+
+
+def as_pieces(walls: Table[Wall]) -> Pieces:
+    """What particles collide with."""
+    ends = np.stack([walls.start, walls.end], axis=1)
+    return Pieces(ends, np.arange(walls.count), restitution=walls.restitution)
+
+
+def draw(sheet: Sheet) -> Iterator[Mark]:
+    """Every wall as a thick line, with its name while it is selected or pointed at."""
+    walls = sheet.model.tables["walls"]
+    ends = sheet.view.camera.to_pixels(np.stack([walls.start, walls.end], axis=1))
+    low, high = bounds(sheet.viewport)
+    width = WIDTH * sheet.unit
+    start, end, rows = clip_segments(ends[:, 0], ends[:, 1], low - 2 * width, high + 2 * width)
+    selected, hovered = (sheet.tagged(tag, "walls") for tag in (Selected, Hovered))
+    layers = [(selected, sheet.theme.selected), (hovered, sheet.theme.hover)]
+    for colour, chosen in sheet.colours_of(rows, layers, sheet.theme.ink):
+        yield Strokes(start[chosen], end[chosen], width, colour)
+        caps = np.concatenate([start[chosen], end[chosen]])
+        yield Discs(caps, np.full(len(caps), 0.5 * width), colour, colour)
+    for row in np.union1d(selected, hovered).tolist():
+        name_wall(sheet, walls.names[row], *ends[row])
+
+
+def name_wall(sheet: Sheet, name: str, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
+    """Beside its middle, where there is room."""
+    size = sheet.font(12.0)
+    half = half_size(name, size, "semibold", sheet.unit)
+    along = (end - start) / max(float(np.hypot(*(end - start))), 1e-9)
+    reach = abs(along[1]) * half[0] + abs(along[0]) * half[1] + WIDTH * sheet.unit
+    places = [
+        tuple((start + share * (end - start) + side * reach * np.array([along[1], -along[0]])).tolist())
+        for share in (0.5, 0.3, 0.7)
+        for side in (-1.0, 1.0)
+    ]
+    backing = faded(sheet.theme.background, 0.86)
+    sheet.labels.append(Label(name, places, size, sheet.theme.text, -1e12, "semibold", backing))
+
+
+def plugin(app: App) -> None:
+    """Register the kind, its shape, its picture and its tool."""
+    app.kind(Wall)
+    app.shape(Wall, as_pieces)
+    app.layer(draw, below=True)
+    app.tool(Wall, key="w", title="wall or floor, from point to point", icon=ICON)
