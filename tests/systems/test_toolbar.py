@@ -9,7 +9,7 @@ from components.toolbar import Button, Tool
 from components.view import drawn_positions
 from game import Session
 from game.actions import ACTIONS
-from systems.input.bindings import BINDINGS, TOOLBAR
+from systems.input.bindings import ADDED_TOOLS, BINDINGS, TOOLBAR
 from systems.render.icons import ICONS
 from systems.render.marks import Stamps
 from systems.render.picture import compose
@@ -45,7 +45,7 @@ def tool(session: Session, action: str) -> Tool:
 
 
 def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
-    offered = [action for group in TOOLBAR for action in group]
+    offered = [*(action for group in TOOLBAR for action in group), *ADDED_TOOLS]
     assert len(offered) == len(set(offered))
     for action in offered:
         assert action in ACTIONS
