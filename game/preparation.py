@@ -14,6 +14,7 @@ from game.mods import MODS
 from game.prepare import FLIGHT, RASTER
 from game.program import has_program
 from game.program_cache import load_compiler
+from game.program_writer import form_of
 from game.raster_program import has_raster, load_raster
 from systems.base import Phase, System
 from systems.edit.pull import Pull
@@ -55,7 +56,7 @@ class Preparation(System):
         model, plan = simulation.model, simulation.schedule.step_plan(simulation.model)
         if simulation.integrator == FLIGHT:
             return self._waits((FLIGHT,), has_flight)
-        job = simulation.integrator, *(system.name for system in plan)
+        job = simulation.integrator, form_of(model), *(system.name for system in plan)
         waited = self._waits(job, lambda: has_program(model, plan, simulation.driver))
         if waited is None and job in self._running:  # then it is new, with a hand that pulls as well
             self._waits((*job, Pull.name), lambda: False)

@@ -1,5 +1,5 @@
-"""Compile ahead of need: `python -m game.prepare DRIVER SYSTEM…` for a step program, `… free_flight` for collisions
-of free particles, or `… raster` for drawing.
+"""Compile ahead of need: `python -m game.prepare DRIVER FORM SYSTEM…` for a step program, `… free_flight` for
+collisions of free particles, or `… raster` for drawing.
 
 The window runs this in another process, because a compiler in its own would hold it up, in a thread too.
 """
@@ -25,7 +25,7 @@ RASTER, FLIGHT = "raster", "free_flight"
 
 def main(words: Sequence[str]) -> None:
     """Compile what is asked for into the cache."""
-    name, *systems = load_as_asked(words)
+    name, *rest = load_as_asked(words)
     if name == RASTER:
         load_raster()
     elif name == FLIGHT:
@@ -35,7 +35,8 @@ def main(words: Sequence[str]) -> None:
         (particle,) = model.create(Particle, 1)
         session = Session(model)
         session.pull.take(Hand(particle, 1.0, 0.0, (0.0, 0.0)))  # in case that the hand is part of it
-        Program(model, session.schedule.named(systems), DRIVERS[name])
+        form, *systems = rest
+        Program(model, session.schedule.named(systems), DRIVERS[name], form)
     forget_unused()
 
 

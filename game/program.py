@@ -15,7 +15,7 @@ from components.model import Model
 from game.program_binding import bind, explain
 from game.program_cache import compile_module, is_compiled, note_compiled
 from game.program_controlled import MARKS, ControlledWriter
-from game.program_writer import Writer
+from game.program_writer import Writer, form_of
 from systems.base import ACCOUNTS, Driver, StepSystem, StopReason
 
 _AT_STRENGTH = 1e-9  # relative distance from its strength at which a rod is said to yield
@@ -30,9 +30,9 @@ ACCOUNT = (
 CONTROL = ("time", "step_size", "step_error", "largest_displacement", "largest_speed")
 
 
-def _writer(model: Model, systems: Sequence[StepSystem], driver: Driver) -> Writer:
+def _writer(model: Model, systems: Sequence[StepSystem], driver: Driver, form: str = "") -> Writer:
     joining = [system for system in systems if system.kernel]
-    return (ControlledWriter if driver.controlled else Writer)(model, joining, driver)
+    return (ControlledWriter if driver.controlled else Writer)(model, joining, driver, form or form_of(model))
 
 
 def has_program(model: Model, systems: Sequence[StepSystem], driver: Driver) -> bool:
@@ -56,12 +56,12 @@ class Program:
     compile_seconds: what writing and compiling it took, or loading it from the cache.
     """
 
-    def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver) -> None:
+    def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver, form: str = "") -> None:
         started = time.perf_counter()
         self.model = model
         self.systems = tuple(system for system in systems if system.kernel)
         self.driver = driver
-        self._writer = _writer(model, systems, driver)
+        self._writer = _writer(model, systems, driver, form)
         self.module = compile_module(self._writer.source(), self._writer.kernels)
         self.measures = np.zeros(8)
         self._state_revision = -1
@@ -92,6 +92,11 @@ class Program:
     def marks(self) -> int:
         """How many numbers it notes of each rod to locate events."""
         return MARKS * len(self._writer.branching)
+
+    @property
+    def form(self) -> str:
+        """Which of the forms of program_writer.py it has."""
+        return self._writer.form
 
     @property
     def resists_motion(self) -> bool:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from components.model import Model
 from game.program_binding import Bound, bind
-from game.program_writer import Writer
+from game.program_loops import RodLoop, indented
+from game.program_writer import DRIFT, RATE, SHIFT, Writer
 from systems.base import ACCOUNTS, Driver, StepSystem
 
 MARKS = 4  # per rod and branching system: branch, margin, its slope as the step starts, whether it is watched
@@ -18,8 +19,8 @@ _STEADY = 1e-8  # a margin that changes less in a step is not watched
 class ControlledWriter(Writer):
     """Writes step programs whose driver needs powers at every stage, events and tangents."""
 
-    def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver) -> None:
-        super().__init__(model, systems, driver)
+    def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver, form: str) -> None:
+        super().__init__(model, systems, driver, form)
         self.events = [(bind(s, model, "branch"), bind(s, model, "margin")) for s in self.branching]
         self.kernels |= {b.call: b.function for pair in self.events for b in pair} | {"lowest": _lowest()}
         self._add_columns(b for pair in self.events for b in pair)
@@ -43,17 +44,14 @@ class ControlledWriter(Writer):
     def _remember(self) -> str:
         """History of all rods at an accepted state."""
         slots = sorted({b.slot for b in self.commits})
-        rods = self._geometry()
-        for b in self.commits:
-            column = b.system.writes[0].replace(".", "_", 1)
-            rods += [f"{column}[r], gone = {self._apply(b, 'r')}", f"lost_{b.slot} += gone"]
+        compute, lost = self._commits(self.commits)
         body = [
             *(f"lost_{slot} = 0.0" for slot in slots),
-            *self._rod_loop(rods),
+            *RodLoop(SHIFT, [*self._geometry(), *compute], scatter=[*lost.values()]).one_by_one(),
             *(f"account[{slot}] += 1000.0 * lost_{slot}" for slot in slots),
         ]
         head = f"def remember(time, dt, displacement, account, {self._columns_text()}):"
-        return "\n".join(["@compiled", head, *_indent(body)])
+        return "\n".join(["@compiled", head, *indented(body)])
 
     def _commit(self) -> str:
         head, _, _ = super()._commit().partition("    accept(")
@@ -69,12 +67,12 @@ class ControlledWriter(Writer):
         body += self._particle_forces(powers=True)
         body += self._rod_loop(self._rod_forces([], powers=True))
         body += [f"power[{slot}] = power_{slot}" for slot in range(len(ACCOUNTS))]
-        return "\n".join(["@compiled", head, *_indent(body)])
+        return "\n".join(["@compiled", head, *indented(body)])
 
     # --- events -----------------------------------------------------------------------------------
 
     def _mark(self) -> str:
-        rods = [*self._geometry(), _RATE]
+        rods = [*self._geometry(), RATE]
         for first, (branch, margin) in zip(range(0, 1000, MARKS), self.events, strict=False):
             rods += [
                 f"branch = {self._apply(branch, 'r')}",
@@ -86,11 +84,11 @@ class ControlledWriter(Writer):
                 "low = min(low, gap)",
             ]
         head = f"def mark(dt, displacement, velocity, marks, {self._columns_text()}):"
-        body = ["low = math.inf", *self._rod_loop(rods), "return low"]
-        return "\n".join(["@compiled", head, *_indent(body)])
+        body = ["low = math.inf", *RodLoop(SHIFT | DRIFT, rods).one_by_one(), "return low"]
+        return "\n".join(["@compiled", head, *indented(body)])
 
     def _passed(self) -> str:
-        rods = [*self._geometry(), _RATE]
+        rods = [*self._geometry(), RATE]
         for first, (_, margin) in zip(range(0, 1000, MARKS), self.events, strict=False):
             rods += [
                 f"branch = marks[r, {first}]",
@@ -106,8 +104,8 @@ class ControlledWriter(Writer):
                 "low = min(low, gap)",
             ]
         head = f"def passed(dt, displacement, velocity, marks, first, {self._columns_text()}):"
-        body = ["low = math.inf", *self._rod_loop(rods), "return low"]
-        return "\n".join(["@compiled", head, *_indent(body)])
+        body = ["low = math.inf", *RodLoop(SHIFT | DRIFT, rods).one_by_one(), "return low"]
+        return "\n".join(["@compiled", head, *indented(body)])
 
     def _margin_and_slope(self, margin: Bound) -> list[str]:
         return [
@@ -130,8 +128,8 @@ class ControlledWriter(Writer):
             "def tangent(time, dt, by_x, by_v, displacement, velocity, direction, along, across, diagonal,"
             f" beside, {self._columns_text()}):"
         )
-        body = [*self._particle_tangents(), *self._rod_loop(self._rod_tangents())]
-        return "\n".join(["@compiled", head, *_indent(body)])
+        body = [*self._particle_tangents(), *RodLoop(SHIFT | DRIFT, self._rod_tangents()).one_by_one()]
+        return "\n".join(["@compiled", head, *indented(body)])
 
     def _particle_tangents(self) -> list[str]:
         body = [
@@ -157,14 +155,14 @@ class ControlledWriter(Writer):
                     f"diagonal[i, {axis}] -= share * (f{'xy'[axis]} - g{'xy'[axis]})",
                     f"beside[i, 0] -= 0.5 * share * (f{'yx'[axis]} - g{'yx'[axis]})",
                 ]
-        return ["for i in range(displacement.shape[0]):", *_indent(body)]
+        return ["for i in range(displacement.shape[0]):", *indented(body)]
 
     def _rod_tangents(self) -> list[str]:
         lines = [
             *self._geometry(),
             "direction[r, 0] = nx",
             "direction[r, 1] = ny",
-            _RATE,
+            RATE,
             *self._axial_force(),
             "total = axial_force",
             "here = elongation",
@@ -198,14 +196,7 @@ class ControlledWriter(Writer):
         return [*lines, "along[r] = stiffness", "across[r] = by_x * total * inverse"]
 
 
-_RATE = "rate = (velocity[b, 0] - velocity[a, 0]) * nx + (velocity[b, 1] - velocity[a, 1]) * ny"
-
-
 def _lowest() -> Any:
     from systems.physics.kernels import lowest  # numba is imported when a program is built, not before
 
     return lowest
-
-
-def _indent(lines: Iterable[str]) -> list[str]:
-    return ["    " + line for line in lines]

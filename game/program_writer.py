@@ -12,7 +12,9 @@ import numpy as np
 from components.model import Model
 from components.rod import is_warm
 from game.program_binding import PROVIDED, TRIAL, Bound, bind, check_names, find
+from game.program_loops import RodLoop, indented
 from systems.base import ACCOUNTS, Commit, Driver, Law, StepSystem
+from systems.physics.automatic import SMALL
 
 REVIEW_INTERVAL = 8192  # steps between reviews of the step size, and between safe states
 
@@ -28,11 +30,25 @@ _ALWAYS = (
 )
 
 
+SHIFT = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
+DRIFT = {f"drift_{d}": f"velocity[b, {i}] - velocity[a, {i}]" for i, d in enumerate("xy")}
+RATE = "rate = drift_x * nx + drift_y * ny"
+
+
+FEW, MANY = "few", "many"  # rods: what is quickest for some is not for others
+
+
+def form_of(model: Model) -> str:
+    """The form of program that suits a model, by the number of its rods; bits do not depend on it."""
+    return FEW if model.rods.count <= SMALL else MANY
+
+
 class Writer:
     """Writes the source of one step program from the bound systems of a plan."""
 
-    def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver) -> None:
+    def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver, form: str) -> None:
         self.model = model
+        self.form = form
         self.warm = is_warm(model)
         self.bound = bound = [bind(system, model) for system in systems]
         check_names(bound)
@@ -144,15 +160,15 @@ class Writer:
         ]
         commits = self.commits if accepted else []
         slots = sorted({b.slot for b in commits})
-        lines += _indent(1, [f"lost_{slot} = 0.0" for slot in slots])
-        lines += _indent(1, self._rod_loop(self._rod_forces(commits)))
-        lines += _indent(1, [f"account[{slot}] += 1000.0 * lost_{slot}" for slot in slots])
+        lines += indented([f"lost_{slot} = 0.0" for slot in slots])
+        lines += indented(self._rod_loop(self._rod_forces(commits)))
+        lines += indented([f"account[{slot}] += 1000.0 * lost_{slot}" for slot in slots])
         return "\n".join(lines)
 
     def _external(self) -> str:
         """Forces on the particles from outside (kN), and those of particle laws that resist motion."""
         head = f"def external(time, dt, displacement, velocity, force, resisting, {self._columns_text()}):"
-        return "\n".join(["@compiled", head, *_indent(1, self._particle_forces())])
+        return "\n".join(["@compiled", head, *indented(self._particle_forces())])
 
     def _particle_forces(self, powers: bool = False) -> list[str]:
         body = ["force[i, 0] = particles_constant_force[i, 0]", "force[i, 1] = particles_constant_force[i, 1]"]
@@ -160,7 +176,7 @@ class Writer:
             body += [f"fx, fy = {self._apply(b, 'i')}", "force[i, 0] += fx", "force[i, 1] += fy"]
             body += [_particle_power(b)] if powers else []
         body += self._particle_rate_forces(powers)
-        lines = ["for i in range(displacement.shape[0]):", *_indent(1, body)]
+        lines = ["for i in range(displacement.shape[0]):", *indented(body)]
         for b in self.loads:
             lines += [
                 f"for k in range({b.prefix}_on.shape[0]):",
@@ -183,13 +199,18 @@ class Writer:
                 body.append(_particle_power(b))
         return body
 
-    def _rod_loop(self, body: list[str]) -> list[str]:
-        return [
-            "for r in range(rods_between.shape[0]):",
-            "    a = rods_between[r, 0]",
-            "    b = rods_between[r, 1]",
-            *_indent(1, body),
-        ]
+    def _rod_loop(self, loop: RodLoop) -> list[str]:
+        return loop.one_by_one() if self.form == FEW else loop.in_stages(self._is_float)
+
+    def _is_float(self, name: str) -> bool:
+        """Whether an array with a row for each rod holds floating-point numbers."""
+        if name == "direction":
+            return True
+        for b in self.bound:
+            if name in b.arrays:
+                return bool(b.arrays[name].dtype == np.float64)
+        table, _, column = name.partition("_")
+        return bool(np.dtype(self.model.tables[table].fields[column].storage) == np.float64)
 
     def _geometry(self) -> list[str]:
         """Elongation (2D + Δu)·Δu / (L + L_original) + misfit: no digits cancel.
@@ -198,8 +219,6 @@ class Writer:
         direction and pulls nowhere, until something else parts them.
         """
         return [
-            "sx = displacement[b, 0] - displacement[a, 0]",
-            "sy = displacement[b, 1] - displacement[a, 1]",
             "dx = rods_difference[r, 0]",
             "dy = rods_difference[r, 1]",
             "x = dx + sx",
@@ -220,31 +239,48 @@ class Writer:
             lines.append(f"axial_force {'=' if b.replaces else '+='} {self._apply(b, 'r')}")
         return lines
 
-    def _rod_forces(self, commits: Sequence[Bound], powers: bool = False) -> list[str]:
-        lines = self._geometry()
-        for b in commits:
-            column = b.system.writes[0].replace(".", "_", 1)
-            lines += [f"{column}[r], gone = {self._apply(b, 'r')}", f"lost_{b.slot} += gone"]
+    def _rod_forces(self, commits: Sequence[Bound], powers: bool = False) -> RodLoop:
+        compute, lost = self._commits(commits)
         if powers and self.working:
-            lines += [*self._axial_force(without=self.working), "stored_force = axial_force"]
-        lines += self._axial_force()
-        lines += _scatter("force", "axial_force")
-        if self.rod_rates or (powers and self.working):
-            lines += ["direction[r, 0] = nx", "direction[r, 1] = ny", *self._rate_forces(powers)]
-        return lines
+            compute += [*self._axial_force(without=self.working), "stored_force = axial_force"]
+        compute += [*self._axial_force(), *_along_axis("pull", "axial_force")]
+        forces = RodLoop(
+            SHIFT,
+            [*self._geometry(), *compute],
+            ["pull_x", "pull_y", *lost],
+            [*lost.values(), *_scatter("force", "pull")],
+            [_column(b) for b in commits],
+        )
+        if not (self.rod_rates or (powers and self.working)):
+            return forces
+        direction = RodLoop({}, [], ["nx", "ny"], ["direction[r, 0] = nx", "direction[r, 1] = ny"])
+        return forces + direction + self._rate_forces(powers)
 
-    def _rate_forces(self, powers: bool = False) -> list[str]:
-        lines = [
-            "rate = (velocity[b, 0] - velocity[a, 0]) * nx + (velocity[b, 1] - velocity[a, 1]) * ny",
-            "damping_force = 0.0",
-        ]
+    def _commits(self, commits: Sequence[Bound]) -> tuple[list[str], dict[str, str]]:
+        """Lines that bring history up to date, and names of what is lost with lines that add it up."""
+        lines, lost = [], {}
+        for b in commits:
+            lines.append(f"{_column(b)}[r], gone_{b.prefix} = {self._apply(b, 'r')}")
+            lost[f"gone_{b.prefix}"] = f"lost_{b.slot} += gone_{b.prefix}"
+        return lines, lost
+
+    def _rate_forces(self, powers: bool = False) -> RodLoop:
+        compute = [RATE, "damping_force = 0.0"]
+        gains = {}
         for b in self.rod_rates:
-            lines += [f"part = {self._apply(b, 'r')}", "damping_force += part"]
+            compute += [f"part = {self._apply(b, 'r')}", "damping_force += part"]
             if powers:
-                lines.append(f"power_{b.slot} {'-' if b.account == 'work' else '+'}= part * rate")
+                gains[f"gain_{b.prefix}"] = (
+                    f"power_{b.slot} {'-' if b.account == 'work' else '+'}= gain_{b.prefix}"
+                )
+                compute.append(f"gain_{b.prefix} = part * rate")
         if powers and self.working:
-            lines.append("power_0 -= (axial_force - stored_force) * rate")
-        return lines + _scatter("resisting", "damping_force")
+            gains["gain_working"] = "power_0 -= gain_working"
+            compute.append("gain_working = (axial_force - stored_force) * rate")
+        compute += _along_axis("drag", "damping_force")
+        return RodLoop(
+            DRIFT, compute, ["drag_x", "drag_y", *gains], [*gains.values(), *_scatter("resisting", "drag")]
+        )
 
     def _resist(self) -> str:
         """Dampers and drag at a velocity, and what each account gains per second."""
@@ -258,16 +294,19 @@ class Writer:
         for b in self.particle_laws:
             particles += [f"fx, fy = {self._apply(b, 'i')}", _particle_power(b)]
         if particles:
-            body += ["for i in range(velocity.shape[0]):", *_indent(1, particles)]
+            body += ["for i in range(velocity.shape[0]):", *indented(particles)]
         if self.rod_rates or self.working:
             needed = {parameter for b in (*self.rod_rates, *self.working) for parameter in b.parameters}
-            rods = ["nx = direction[r, 0]", "ny = direction[r, 1]"]
+            drag = self._rate_forces(powers=True)
             if self.working or needed & {"elongation", "axial_force"}:
                 stored = [*self._axial_force(without=self.working), "stored_force = axial_force"]
-                rods = [*self._geometry(), *(stored if self.working else []), *self._axial_force()]
-            body += self._rod_loop([*rods, *self._rate_forces(powers=True)])
+                compute = [*(stored if self.working else []), *self._axial_force()]
+                body += self._rod_loop(RodLoop(SHIFT, [*self._geometry(), *compute]) + drag)
+            else:  # too little is computed to gain from stages
+                axis = RodLoop({}, ["nx = direction[r, 0]", "ny = direction[r, 1]"])
+                body += (axis + drag).one_by_one()
         body += [f"power[{slot}] = power_{slot}" for slot in range(len(ACCOUNTS))]
-        return "\n".join([*lines, *_indent(1, body)])
+        return "\n".join([*lines, *indented(body)])
 
     def _load_power(self) -> str:
         """What the varying loads do per second at a velocity."""
@@ -280,7 +319,7 @@ class Writer:
                 f"    power += {_load_power(b)}",
             ]
         head = f"def load_power(time, velocity, {self._columns_text()}):"
-        return "\n".join(["@compiled", head, *_indent(1, [*body, "return power"])])
+        return "\n".join(["@compiled", head, *indented([*body, "return power"])])
 
     def _measure(self) -> str:
         """Energies, residual and scales of an accepted state, for judge()."""
@@ -305,7 +344,8 @@ class Writer:
             "        moved = max(moved, abs(displacement[i, d]))",
             "elastic = 0.0",
             "stiffest = 0.0",
-            *self._rod_loop(
+            *RodLoop(
+                SHIFT,
                 [
                     *self._geometry(),
                     *self._axial_force(without=self.working),
@@ -313,8 +353,8 @@ class Writer:
                     "elastic += axial_force * axial_force * flexibility",
                     "largest = max(largest, abs(axial_force))",
                     "stiffest = max(stiffest, 1.0 / flexibility)",
-                ]
-            ),
+                ],
+            ).one_by_one(),
             "measures[0] = 0.5 * kinetic",
             "measures[1] = 1000.0 * power_norm",
             "measures[2] = 500.0 * elastic",
@@ -325,7 +365,7 @@ class Writer:
             "measures[7] = 1000.0 * power",
         ]
         head = f"def measure(displacement, velocity, force, resisting, measures, {self._columns_text()}):"
-        return "\n".join(["@compiled", head, *_indent(1, body)])
+        return "\n".join(["@compiled", head, *indented(body)])
 
     @property
     def _observed_forces(self) -> str:
@@ -338,21 +378,22 @@ class Writer:
             f"external(time, dt, displacement, velocity, applied, resisting, {columns})",
             self._observed_forces,
             f"measure(displacement, velocity, force, resisting, measures, {columns})",
-            *self._rod_loop(
+            *RodLoop(
+                SHIFT,
                 [
                     *self._geometry(),
                     *self._axial_force(),
                     "rods_axial_force[r] = axial_force",
                     "rods_length[r] = length",
                     "rods_strain[r] = elongation / rods_rest_length[r]",
-                ]
-            ),
+                ],
+            ).one_by_one(),
         ]
         head = (
             "def observe(time, dt, displacement, velocity, applied, force, resisting, direction, power, measures,"
             f" rods_axial_force, rods_length, rods_strain, {self._columns_text()}):"
         )
-        return "\n".join(["@entry", head, *_indent(1, body)])
+        return "\n".join(["@entry", head, *indented(body)])
 
     def _commit(self) -> str:
         """The commits at a state that no step has led to."""
@@ -380,21 +421,26 @@ def _load_power(b: Bound) -> str:
     return f"factor * ({b.prefix}_force[k, 0] * velocity[i, 0] + {b.prefix}_force[k, 1] * velocity[i, 1])"
 
 
-def _scatter(target: str, amount: str) -> list[str]:
+def _column(commit: Bound) -> str:
+    """The column that a commit writes, as the program names it."""
+    return commit.system.writes[0].replace(".", "_", 1)
+
+
+def _along_axis(name: str, amount: str) -> list[str]:
+    return [f"{name}_x = {amount} * nx", f"{name}_y = {amount} * ny"]
+
+
+def _scatter(target: str, name: str) -> list[str]:
     return [
-        f"{target}[a, 0] += {amount} * nx",
-        f"{target}[a, 1] += {amount} * ny",
-        f"{target}[b, 0] -= {amount} * nx",
-        f"{target}[b, 1] -= {amount} * ny",
+        f"{target}[a, 0] += {name}_x",
+        f"{target}[a, 1] += {name}_y",
+        f"{target}[b, 0] -= {name}_x",
+        f"{target}[b, 1] -= {name}_y",
     ]
 
 
 def _literal(value: Any) -> str:
     return f"np.array({value.tolist()!r})" if isinstance(value, np.ndarray) else repr(value)
-
-
-def _indent(levels: int, lines: Iterable[str]) -> list[str]:
-    return ["    " * levels + line for line in lines]
 
 
 def _of_energy() -> dict[str, Callable[..., Any]]:

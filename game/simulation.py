@@ -24,7 +24,7 @@ from game.impacts import Impacts
 from game.moment import Moment
 from game.program import Program
 from game.program_binding import ProgramError
-from game.program_writer import REVIEW_INTERVAL
+from game.program_writer import REVIEW_INTERVAL, form_of
 from game.schedule import Schedule
 from game.step_size import automatic_step, first_step, is_outgrown, step_limit
 from systems.base import Driver, StepSystem, StopReason
@@ -254,7 +254,7 @@ class Simulation:
 
     def _key(self, systems: list[StepSystem]) -> tuple[str, ...]:
         warmth = ("rods.misfit",) if is_warm(self.model) else ()
-        return (*(system.name for system in systems), self.driver.name, *warmth)
+        return (*(system.name for system in systems), self.driver.name, form_of(self.model), *warmth)
 
     def _bind(self) -> None:
         """Take hold of the model by the program of its plan, without mods whose systems cannot join it."""

@@ -17,6 +17,7 @@ import pytest
 from game import models, preparation, program_cache
 from game.app import App
 from game.preparation import Preparation
+from game.program_writer import FEW
 from game.session import COMPILING
 from systems.input import pygame_input
 
@@ -65,7 +66,7 @@ def frames(app: App, count: int) -> None:
 def test_it_begins_with_the_model_that_is_open(app: App, compiler: Compiler) -> None:
     (job,) = compiler.jobs
     plan = app.session.schedule.step_plan(app.session.model)
-    assert job == (app.session.simulation.integrator, *(system.name for system in plan))
+    assert job == (app.session.simulation.integrator, FEW, *(system.name for system in plan))
 
 
 def test_a_run_waits_and_says_so_and_goes_on(app: App, compiler: Compiler) -> None:
@@ -141,7 +142,7 @@ CHECK = f"""
 from game import Session
 session = Session.open({ALONE})
 session.simulation.program
-module = session.simulation.program._module
+module = session.simulation.program.module
 for entry in (module.advance, module.observe):
     print(sum(entry.stats.cache_hits.values()), sum(entry.stats.cache_misses.values()))
 """
@@ -153,7 +154,7 @@ def test_another_process_compiles_what_this_one_loads(tmp_path: Path) -> None:
     session = Session.open(json.loads(ALONE))
     names = [system.name for system in session.schedule.step_plan(session.model)]
     folders = {"XDG_CACHE_HOME": str(tmp_path), "LOCALAPPDATA": str(tmp_path), "HOME": str(tmp_path)}
-    command = [sys.executable, "-m", "game.prepare", "--no-mods", session.simulation.integrator, *names]
+    command = [sys.executable, "-m", "game.prepare", "--no-mods", session.simulation.integrator, FEW, *names]
     subprocess.run(command, env=os.environ | folders, check=True, timeout=300)
     assert list(tmp_path.rglob("pinjoint_program_*.done"))
     done = subprocess.run(

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 from components.field import Field, Role
-from game import Session, models
+from game import Session, models, program_loops, program_writer
 from game.program_binding import ProgramError
 from game.program_cache import compile_module
 from systems.base import Commit, Law
 from systems.kernels import compiled
+from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import model, oscillator, particle, rod, square
 from tests.reference.stages import Stages
@@ -52,6 +53,30 @@ def nothing() -> Model:
 )
 def test_fused_is_bit_identical_to_stage_by_stage(document: Model, integrator: str) -> None:
     assert_identical(document, integrator, [])
+
+
+@pytest.fixture
+def in_stages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Loops as in large models, for a few rods at a time."""
+    monkeypatch.setattr(program_writer, "SMALL", 0)
+    monkeypatch.setattr(program_loops, "CHUNK", 4)
+
+
+def test_loops_of_large_models_give_the_same_bits(in_stages: None) -> None:
+    assert_identical(everything(), "velocity_verlet", [Heat(), Ties(), ProgressiveDamper()])
+    assert_identical(nothing(), "taylor2", [])
+
+
+def test_loops_of_large_models_give_the_same_bits_with_any_integrator(
+    in_stages: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    document = everything() | {"settings": {"integrator": "rk4", "time_step": 5e-6}}
+    large, small = (Session.open(document) for _ in range(2))
+    large.run(steps=300)
+    monkeypatch.setattr(program_writer, "SMALL", 200)
+    small.run(steps=300)
+    assert large.simulation.program.form != small.simulation.program.form
+    assert bits.different(bits.columns(large.model), bits.columns(small.model)) == []
 
 
 def assert_identical(document: Model, integrator: str, mods: list[Any], steps: int = 500) -> Session:

@@ -1,0 +1,115 @@
+"""Loops over the rods in the source of step programs: rod by rod, or in stages that processors vectorise.
+
+In stages, what lies at the ends of a few rods is gathered, all of them are computed side by side, and what they
+do to their ends is added: the same operations, and the same order of sums, as rod by rod, hence the same bits.
+What one stage leaves for the next is in one scratch array; the loop that computes reads a few columns besides.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+CHUNK = 64  # rods that go through the stages together: what they need stays in the nearest cache
+_APART = 7  # columns that LLVM makes sure at run time not to overlap scratch; more, and it does not vectorise
+
+_ELEMENT = re.compile(r"\b([A-Za-z_]\w*)\[r(?:, (\d))?\]")
+
+
+@dataclass(frozen=True)
+class RodLoop:
+    """What is done for every rod `r` from particle `a` to `b`.
+
+    gather: names and what they stand for, taken from the ends. compute: lines that take these and entries
+    [r] of columns. scatter: lines that take the names in `made` besides. writes: columns that compute changes.
+    """
+
+    gather: Mapping[str, str]
+    compute: Sequence[str]
+    made: Sequence[str] = ()
+    scatter: Sequence[str] = ()
+    writes: Sequence[str] = ()
+
+    def __add__(self, other: RodLoop) -> RodLoop:
+        """One loop that does both, one after the other in each stage."""
+        return RodLoop(
+            {**self.gather, **other.gather},
+            [*self.compute, *other.compute],
+            [*self.made, *other.made],
+            [*self.scatter, *other.scatter],
+            [*self.writes, *other.writes],
+        )
+
+    def one_by_one(self) -> list[str]:
+        """The loop's lines, rod by rod."""
+        return [
+            "for r in range(rods_between.shape[0]):",
+            "    a = rods_between[r, 0]",
+            "    b = rods_between[r, 1]",
+            *(f"    {name} = {what}" for name, what in self.gather.items()),
+            *indented(self.compute),
+            *indented(self.scatter),
+        ]
+
+    def in_stages(self, floats: Callable[[str], bool]) -> list[str]:
+        """The loop's lines, stage by stage. floats: whether a column holds floating-point numbers."""
+        elements = dict.fromkeys(_ELEMENT.findall("\n".join(self.compute)))
+        plain = [name for name, part in elements if not part and name not in self.writes][:_APART]
+        copied = [(name, part) for name, part in elements if name not in plain and floats(name)]
+        kept: list[str | tuple[str, str]] = [*self.gather, *copied, *self.made]
+        slots = {name: slot for slot, name in enumerate(kept)}
+        scattered = _ELEMENT.findall("\n".join(self.scatter))
+        sliced = dict.fromkeys(name for name, _ in (*elements, *scattered))
+
+        def place(name: str | tuple[str, str]) -> str:
+            return f"scratch[k + {CHUNK * slots[name]}]"
+
+        def there(match: re.Match[str]) -> str:
+            name, part = match.group(1), match.group(2)
+            return f"{name}_[k, {part}]" if part else f"{name}_[k]"
+
+        def here(match: re.Match[str]) -> str:
+            element = match.group(1), match.group(2) or ""
+            return place(element) if element in slots else there(match)
+
+        back = [(name, part) for name, part in copied if name in self.writes]
+        ends = ["a = ends[k, 0]", "b = ends[k, 1]"]
+        stages: list[list[str]] = [
+            [*ends, *(f"{place(name)} = {what}" for name, what in self.gather.items())],
+            [f"{place(e)} = {_entry(e)}" for e in copied],
+            [
+                *(f"{name} = {place(name)}" for name in self.gather),
+                *(_ELEMENT.sub(here, line) for line in self.compute),
+                *(f"{place(name)} = {name}" for name in self.made),
+            ],
+            [
+                *ends,
+                *(f"{name} = {place(name)}" for name in self.made),
+                *(_ELEMENT.sub(there, line) for line in self.scatter),
+                *(f"{_entry(e)} = {place(e)}" for e in back),
+            ],
+        ]
+        body = [
+            f"count = min({CHUNK}, rods_between.shape[0] - start)",
+            "ends = rods_between[start : start + count]",
+            *(f"{name}_ = {name}[start : start + count]" for name in sliced),
+        ]
+        for lines in stages:
+            if lines:
+                body += ["for k in range(count):", *indented(lines)]
+        return [
+            f"scratch = np.empty({CHUNK * max(len(slots), 1)})",
+            f"for start in range(0, rods_between.shape[0], {CHUNK}):",
+            *indented(body),
+        ]
+
+
+def _entry(element: tuple[str, str]) -> str:
+    name, part = element
+    return f"{name}_[k, {part}]" if part else f"{name}_[k]"
+
+
+def indented(lines: Iterable[str], levels: int = 1) -> list[str]:
+    """The lines, so many levels deeper."""
+    return ["    " * levels + line for line in lines]
