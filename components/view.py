@@ -133,8 +133,7 @@ class View:
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model."""
-        points = np.concatenate([drawn_positions(model), all_points(model)])
-        self.camera.fit(points, MARGIN * self.pixel_ratio, self.canvas)
+        self.camera.fit(drawn_places(model), MARGIN * self.pixel_ratio, self.canvas)
 
     @property
     def strip(self) -> Viewport:
@@ -156,3 +155,8 @@ def drawn_positions(model: Model) -> NDArray[np.float64]:
     particles = model.particles
     drawn: NDArray[np.float64] = particles.position + particles.displacement * model.settings.displacement_scale
     return drawn
+
+
+def drawn_places(model: Model) -> NDArray[np.float64]:
+    """All that a picture of a model is to show (m): drawn positions, and points of other elements, shape (n, 2)."""
+    return np.concatenate([drawn_positions(model), all_points(model)])

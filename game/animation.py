@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from components.snapshot import Snapshot
-from components.view import drawn_positions
+from components.view import drawn_places
 
 if TYPE_CHECKING:
     from game.session import Session
@@ -74,4 +74,4 @@ def _times(session: Session, until: float | None, limit: float) -> Iterator[floa
 def _drawn_at(session: Session, moment: Snapshot) -> np.ndarray:
     """Where particles are drawn (m), shape (n, 2), in a state."""
     moment.restore(session.model)
-    return drawn_positions(session.model)
+    return drawn_places(session.model)

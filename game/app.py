@@ -18,7 +18,7 @@ from components.camera import Camera, Viewport
 from components.field import Vector
 from components.model import Model
 from components.toolbar import Toolbar
-from components.view import MARGIN, Plot, View, drawn_positions
+from components.view import MARGIN, Plot, View, drawn_places
 from game.desk import Desk, ModelFile
 from game.performance import FOOTER, LARGER, Performance
 from game.preferences import DEFAULT_THEME, preferred_theme, remember_theme
@@ -256,7 +256,7 @@ def _unused(path: Path) -> Path:
 
 def render_png(session: Session, path: str, size: tuple[int, int], theme: str = "light") -> None:
     """Draw a session to a PNG file, without a display. Raises OSError if it cannot be written."""
-    surface = _drawn(session, size, theme, drawn_positions(session.model))
+    surface = _drawn(session, size, theme, drawn_places(session.model))
     with open(path, "wb") as file:
         pygame.image.save(surface, file, path if path.lower().endswith((".png", ".jpg", ".bmp")) else ".png")
 

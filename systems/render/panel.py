@@ -11,7 +11,7 @@ from components.box import WORD, Box
 from components.camera import Camera, Viewport
 from components.form import Form, Tile
 from components.model import Model
-from components.view import View, drawn_positions
+from components.view import View, drawn_places
 from systems.render.form_layout import CAPTION, LOW, FormLayout, Place, lay_out
 from systems.render.help import draw_help
 from systems.render.marks import Fills, Mark, Panel, Picture, Rectangles, Strokes, Text
@@ -239,7 +239,7 @@ def caret_at(place: Place, box: Box, x: float, unit: float) -> int:
 def thumbnail(model: Model, viewport: Viewport, unit: float, theme: Theme) -> tuple[Mark, ...]:
     """A small picture of a model that does not change any more: rods, supports and particles."""
     camera = Camera(viewport=viewport)
-    camera.fit(drawn_positions(model), _THUMBNAIL_MARGIN * unit)
+    camera.fit(drawn_places(model), _THUMBNAIL_MARGIN * unit)
     sheet = measure(model, View(camera=camera, pixel_ratio=_SMALLER * unit), theme)
     draw_supports(sheet, support_sides(sheet))
     draw_rods(sheet)

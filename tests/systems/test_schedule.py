@@ -149,6 +149,7 @@ PLANS = {
     "hard_disc_gas": (),
     "newtons_cradle": (),
     "pile": (),
+    "staircase": (),
 } | {f"collision_{number}": () for number in ("i", "ii", "iii", "iv", "v", "vi")}
 
 
