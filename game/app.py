@@ -41,7 +41,8 @@ from systems.render.theme import load_theme
 FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points
 SMALLEST_SIZE = (320, 240)
-SELDOM = 200_000  # objects more than before, for the garbage collector to look through what is new
+SELDOM = 1_000_000  # new objects, after which the garbage collector looks through them in mid work
+MANY_NEW = 20_000  # from which on it does while nothing happens
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")  # where Linux says what to draw on
 UNSEEN = ("offscreen", "dummy")  # drivers of SDL whose windows nobody sees
 
@@ -117,7 +118,6 @@ class App:
             raise NoDisplay(str(error)) from None
         self.window.minimum_size = SMALLEST_SIZE
         pygame.key.set_repeat(400, 40)
-        gc.set_threshold(SELDOM)  # else it does many times while 10 000 elements are copied or saved
         self.input = PygameInput()
         raster = preparation.raster if preparation else load_raster
         self.render = PygameRender(self.window.get_surface(), raster)
@@ -199,15 +199,18 @@ class App:
             self.window.title = title
 
     def _clean_up(self) -> None:
-        """While nothing happens, let the garbage collector look through a newly opened model for the last time.
+        """While nothing happens, let the garbage collector look through what is new.
 
-        Its elements stay; to look through those of a large one takes a tenth of a second, else in mid drag.
+        Through a newly opened model it looks for the last time: its elements stay, and looking through those of
+        a large one takes a tenth of a second, else in mid drag.
         """
         if self._desk is not self.session.desk:
             self._desk = self.session.desk
             gc.unfreeze()
             gc.collect()
             gc.freeze()
+        elif gc.get_count()[0] > MANY_NEW:
+            gc.collect(0)
 
     def _follow_theme(self) -> None:
         """Keep what the person chooses for the next time."""

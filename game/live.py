@@ -23,26 +23,41 @@ class Live:
         simulation, clock = self.simulation, self.clock
         if simulation.halted:
             return
+        revision = simulation.armed_revision
         simulation.advance(0)
-        if simulation.halted:  # it cannot be computed
+        edited = revision != simulation.armed_revision
+        if simulation.halted or (
+            edited and self._large
+        ):  # it cannot be computed; or what was done is shown first
             return
-        self._find_pace()
+        if self._find_pace() and self._large:
+            return
         start, before = simulation.model.clock.time, simulation.compute_seconds
         due = clock.due(elapsed)
         taken = simulation.advance(clock.affordable, start + clock.ahead + due)
         clock.took(due, simulation.model.clock.time - start, taken, simulation.compute_seconds - before)
 
-    def _find_pace(self) -> None:
-        """Let the clock follow the pace that suits the model, found after every edit.
+    @property
+    def _size(self) -> int:
+        return self.simulation.model.particles.count + self.simulation.model.rods.count
+
+    @property
+    def _large(self) -> bool:
+        """True if getting ready, finding the pace and taking steps would take too long in one frame."""
+        return self._size > MANY
+
+    def _find_pace(self) -> bool:
+        """Let the clock follow the pace that suits the model, found after every edit; True if it was.
 
         One more or less of many elements hardly changes it, and finding it takes longer than a frame then.
         """
-        revision, model = self.simulation.armed_revision, self.simulation.model
-        size = model.particles.count + model.rods.count
-        hardly_changed = size > MANY and abs(size - self._pace_size) < SHARE * size
-        if revision != self._pace_revision:
-            self.clock.ahead = 0.0
-            if not hardly_changed:
-                self._pace_size = size
-                self.clock.natural = natural_pace(model)
+        revision, size = self.simulation.armed_revision, self._size
+        if revision == self._pace_revision:
+            return False
         self._pace_revision = revision
+        self.clock.ahead = 0.0
+        if self._large and abs(size - self._pace_size) < SHARE * size:
+            return False
+        self._pace_size = size
+        self.clock.natural = natural_pace(self.simulation.model)
+        return True

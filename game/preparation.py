@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import subprocess
 import sys
 import threading
@@ -30,6 +31,7 @@ class Preparation(System):
     """Has the step program of the model that is open compiled as soon as it is known, and the drawing.
 
     First the compiler itself is loaded, in a thread: that takes as long as a person takes to press a key.
+    What is compiled is loaded as soon as nobody waits for anything else.
     """
 
     name = "programs.preparation"
@@ -37,7 +39,8 @@ class Preparation(System):
 
     def __init__(self) -> None:
         self._frames = 0
-        self._compiler = threading.Thread(target=load_compiler, daemon=True)
+        self._seen = -1  # the model's revision in the last frame
+        self._compiler = threading.Thread(target=_load_libraries, daemon=True)
         self._running: dict[Job, subprocess.Popen[bytes]] = {}
         self._since: dict[Job, float] = {}
         self._done: set[Job] = set()
@@ -47,7 +50,15 @@ class Preparation(System):
         self._frames += 1
         if self._frames == 2:  # the first picture comes first
             self._compiler.start()
-        self.waits_for(frame.session.simulation)
+        self._load(frame.session.simulation)
+
+    def _load(self, simulation: Simulation) -> None:
+        """As soon as its program is compiled, and what was done is seen: who needs it first need not wait."""
+        seen, self._seen = self._seen, simulation.model.revision
+        if self.waits_for(simulation) is None and not simulation.ready and seen == self._seen:
+            plan = simulation.schedule.step_plan(simulation.model)
+            if has_program(simulation.model, plan, simulation.driver):
+                simulation.program  # noqa: B018 (it is loaded when asked for)
 
     def waits_for(self, simulation: Simulation) -> float | None:
         """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
@@ -85,6 +96,12 @@ class Preparation(System):
             if process.poll() is None:
                 process.terminate()
                 process.wait()
+
+
+def _load_libraries() -> None:
+    """What steps need besides their programs."""
+    load_compiler()
+    importlib.import_module("scipy.spatial")
 
 
 def _started(job: Job) -> subprocess.Popen[bytes]:

