@@ -26,12 +26,31 @@ class Table(Generic[H]):
     `table.velocity` is the whole column as a read-only view of shape (count, ...), brought up to date
     first if it is derived; `table["B"]` is the handle of the entity with that name. A view follows its
     column until entities of this table are created or deleted; from then on it may show the past: take
-    it again.
+    it again. Assigning, `table.velocity = …`, gives all entities new values, one each or the same to all,
+    as one command.
     """
+
+    name: str
+
+    __slots__ = (
+        "__weakref__",
+        "_by_name",
+        "_columns",
+        "_lowest_number",
+        "_versions",
+        "_world",
+        "count",
+        "entity",
+        "fields",
+        "handles",
+        "kind",
+        "name",
+        "structure",
+    )
 
     def __init__(self, world: World, name: str, kind: type[H]) -> None:
         self._world = weakref.ref(world)
-        self.name = name
+        object.__setattr__(self, "name", name)  # assigning to it names the entities
         self.kind = kind
         self.fields: dict[str, Field[Any]] = {}
         self.count = 0
@@ -83,6 +102,18 @@ class Table(Generic[H]):
         if name.startswith("_") or name not in self.fields:
             raise AttributeError(f"Table {self.name} has no column '{name}'.")
         return self.column(name)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in Table.__slots__ and name != "name":
+            object.__setattr__(self, name, value)
+        elif name in self.fields:
+            self.world.assign(self.handles, name, value)
+        else:
+            raise AttributeError(f"Table {self.name} has no column '{name}'.")
+
+    def __repr__(self) -> str:
+        few = ", ".join(self.names[:6]) if "name" in self.fields else ""
+        return f"<{self.count} {self.name}{': ' + few if few else ''}{', …' if few and self.count > 6 else ''}>"
 
     def column(self, name: str) -> Column:
         """The column as a read-only view, shape (count, ...), derived columns up to date."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,8 @@ def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal
     from systems.statics.path import Goal
 
     if until is None:
+        if not math.isfinite(factor):
+            raise ValueError(f"The load factor is {factor}; give a finite number.")
         return Goal(factor)
     place, _, amount = until.partition("=")
     name, _, axis = place.strip().rpartition(".")

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from game.session import Session
 
 _EXPECTATION = re.compile(
-    r"^(?P<path>.+?)\s*(?P<relation>≈|~|=|<|>)\s*(?P<value>.+?)(?:\s*(?:±|\+-)\s*(?P<slack>\S+))?$"
+    r"^(?P<path>.+?)\s*(?P<relation>≈|~|=|<|>)\s*(?P<value>.+?)(?:\s*(?:±|\+-)\s*(?P<slack>\S+))?\s*$"
 )
 
 
@@ -41,12 +41,13 @@ def _holds(got: Any, relation: str, value: str, slack: str | None) -> bool:
     if isinstance(got, tuple):
         raise ValueError(f"it has two components, {got}; ask for .x or .y.")
     try:
-        wanted = float(value)
+        wanted, within = float(value), float(slack or 0.0)
     except ValueError:
-        raise ValueError(f"it is {got}, which cannot be compared with '{value}'; write a number.") from None
+        said = f"{value} ± {slack}" if slack else value
+        raise ValueError(f"it is {got}, which cannot be compared with '{said}'; write a number.") from None
     if relation in "<>":
         return bool(got < wanted if relation == "<" else got > wanted)
-    tolerance = float(slack) if slack is not None else (0.0 if relation == "=" else 1e-9 * abs(wanted))
+    tolerance = within if slack is not None or relation == "=" else 1e-9 * abs(wanted)
     return math.isfinite(got) and abs(got - wanted) <= tolerance
 
 
@@ -56,11 +57,11 @@ def read(session: Session, path: str) -> Any:
     if head in ("scene", "time", "message"):
         return getattr(session, head)
     if head == "energy":
-        return session.energy.as_dict()[rest]
+        return _one_of(session, session.energy.as_dict(), rest, "energies")
     if head == "force_method":
         return _of_force_method(session, rest)
     if head == "count":
-        return len(session.model.tables[rest])
+        return len(_one_of(session, session.model.tables, rest, "tables"))
     if head not in session.model.tables:
         raise LookupError(session.model.missing("quantities", head, session.model.tables))
     table = session.model.tables[head]
@@ -70,8 +71,16 @@ def read(session: Session, path: str) -> Any:
     name, _, field = rest.rpartition(".")
     if field not in table.fields:
         raise LookupError(session.model.missing(f"quantities of {head}", field, table.fields))
+    if not name and not table.kind.single:
+        raise LookupError(f"{path} names no {table.kind.noun}; write {head}.NAME.{rest}.")
     value = getattr(table[name] if name else table[0], field)
     return value if component is None else value[component]
+
+
+def _one_of(session: Session, found: Mapping[str, Any], name: str, what: str) -> Any:
+    if name not in found:
+        raise LookupError(session.model.missing(what, name, found))
+    return found[name]
 
 
 def _of_force_method(session: Session, quantity: str) -> Any:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -195,6 +197,11 @@ class Session:
         self.desk.saved = self.model.revision
         self.notice = f"Saved as '{path.stem}'."
 
+    def __repr__(self) -> str:
+        name, model = self.file.name or "untitled", self.model
+        size = f"{model.particles.count} particles, {model.rods.count} rods"
+        return f"<Session '{name}': {size}, {self.scene}, t = {self.time:.6g} s>"
+
     def open_here(self, source: str | Path | Mapping[str, Any] | None) -> None:
         """Go on with another model, a new one if None; undo goes back to this one. Raises ModelError."""
         if source is None:
@@ -320,12 +327,13 @@ class Session:
     ) -> str:
         """Let time pass: until "rest" (at most `limit` s of simulated time), by `time` s, or by `steps`.
 
-        Returns "at rest", "time reached", "limit reached" or "diverged"; `message` says more.
+        Returns "at rest", "time reached", "limit reached" or "diverged"; `message` says more. Raises ValueError.
         """
         if sum(option is not None for option in (until, time, steps)) != 1 or until not in (None, "rest"):
             raise ValueError('Say how far to run: until="rest", time=SECONDS or steps=NUMBER, one of them.')
-        if (time is not None and not time >= 0.0) or (steps is not None and steps < 0):
-            raise ValueError("Time only runs forward; undo or restart goes back.")
+        limit = _forward("limit", limit)
+        time = None if time is None else _forward("time", time)
+        steps = None if steps is None else int(_forward("steps", steps, whole=True))
         self._note_beginning()
         self.history.begin_run()
         self.timeline.begin()
@@ -344,11 +352,11 @@ class Session:
         ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
         return ended.get(self.simulation.reason, reached)
 
-    def settle(self, factors: Sequence[float] = (1.0,)) -> str:
+    def settle(self, factors: Sequence[float] | float = (1.0,)) -> str:
         """Go to the static equilibrium at each load factor in turn, without letting time pass.
 
         Can be undone. Returns "equilibrium", or "mechanism", "collapse" or "limit reached" with the last
-        good state; `message` says more. Time moves on to the end of the last load history.
+        good state; `message` says more. Time moves on to the end of the last load history. Raises ValueError.
         """
         from systems.statics.settle import settle
 
@@ -407,6 +415,7 @@ class Session:
 
         Going back stops where something was edited: undo takes that back.
         """
+        steps = operator.index(steps)
         target = self.model.clock.steps + steps
         self._note_beginning()
         if not self.has_program(self.simulation):
@@ -595,7 +604,9 @@ class Session:
         return self.scenes.active.boxes
 
     def point(self, x: float, y: float) -> Vector:
-        """Move the pointer to a point of the model (m); returns its pixel."""
+        """Move the pointer to a point of the model (m); returns its pixel. Raises ValueError."""
+        if not (math.isfinite(x) and math.isfinite(y)):
+            raise ValueError(f"The point is ({x}, {y}); give finite coordinates, in m.")
         x, y = self.focus[1].camera.to_pixels((x, y)).tolist()
         self.focus[1].pointer = x, y
         return x, y
@@ -747,3 +758,14 @@ class Session:
         if self.simulation.reason is StopReason.DIVERGED and self.simulation.halted:
             return self.simulation.message
         return self.simulation.warning or self.simulation.note
+
+
+def _forward(name: str, value: float, *, whole: bool = False) -> float:
+    """How far a run goes, which a script said. Raises ValueError."""
+    number = isinstance(value, int | np.integer | (np.integer if whole else float | np.floating))
+    if not number or isinstance(value, bool) or not math.isfinite(value):
+        kind = "whole" if whole else "finite"
+        raise ValueError(f"{name} is {value!r}; it must be a {kind} number.")
+    if value < 0:
+        raise ValueError(f"{name} is {value}; time only runs forward: undo or restart goes back.")
+    return float(value)

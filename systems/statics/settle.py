@@ -100,7 +100,7 @@ class Start:
 
 def settle(
     model: Model,
-    factors: Sequence[float] = (1.0,),
+    factors: Sequence[float] | float = (1.0,),
     geometry: str = "exact",
     start: Start | None = None,
 ) -> Settlement:
@@ -111,20 +111,30 @@ def settle(
     the forces that hold its present state are exchanged for the load. Ends early, with a status other than
     "equilibrium", where there is no equilibrium to go on to.
     geometry: "linear" for first-order theory about the original positions, with the same yielding.
-    Raises FieldError for numbers too large or too small to compute with.
+    Raises FieldError for numbers too large or too small to compute with, ValueError for no load factors.
     """
-    if len(factors) == 0:
-        raise ValueError("Give at least one load factor, such as 1.")
+    wanted = _factors(factors)
     problem = incomputable(model)
     if problem:
         raise FieldError(problem)
     settling = _Settling(model, geometry, start or Start.present(model))
     states: list[StaticState] = []
-    for factor in factors:
-        states.append(settling.to(float(factor)))
+    for factor in wanted:
+        states.append(settling.to(factor))
         if states[-1].status != "equilibrium":
             break
     return Settlement(tuple(states))
+
+
+def _factors(given: Sequence[float] | float) -> list[float]:
+    try:
+        factors = np.atleast_1d(np.asarray(given, dtype=float))
+    except (TypeError, ValueError):
+        factors = np.empty(0)
+    if factors.ndim != 1 or len(factors) == 0 or not np.isfinite(factors).all():
+        raise ValueError(f"Load factors are {given!r}; give at least one finite number, such as (1.0, 0.0).")
+    found: list[float] = factors.tolist()
+    return found
 
 
 def apply(model: Model, state: StaticState) -> None:

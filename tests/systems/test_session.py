@@ -1,0 +1,119 @@
+"""Sessions as a script drives them, with good and with bad input."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from components import FieldError
+from game import Session
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session.open("isostatic")
+
+
+def test_a_whole_column_is_assigned_as_one_command(session: Session) -> None:
+    session.rods.damping = 0
+    session.particles.force = np.array([[0, 0], [1, 2], [3, 4]])
+    assert session.rods.damping.tolist() == [0.0, 0.0, 0.0]
+    assert session.particles["C"].force == (3.0, 4.0)
+    session.undo()
+    session.undo()
+    assert session.rods["AB"].damping == 100.0
+    assert session.particles["B"].force == (120.0, -160.0)
+    assert not session.can_undo
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "error", "words"),
+    [
+        ("mass", [1, 2], FieldError, "2 values for 3 elements"),
+        ("mass", -1, FieldError, "particle A: mass is -1 kg"),
+        ("name", "x", FieldError, "already"),
+        ("reaction", 0, FieldError, "computed and cannot be set"),
+        ("masss", 1, AttributeError, "no column 'masss'"),
+    ],
+)
+def test_a_column_that_cannot_be_assigned_says_why(
+    session: Session, column: str, value: Any, error: type[Exception], words: str
+) -> None:
+    with pytest.raises(error, match=words):
+        setattr(session.particles, column, value)
+    assert session.particles.names == ["A", "B", "C"]
+    assert session.particles.name == "particles"
+    assert not session.can_undo
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        {},
+        {"time": 1.0, "steps": 1},
+        {"until": "dawn"},
+        {"time": -1.0},
+        {"time": np.nan},
+        {"time": np.inf},
+        {"time": "1"},
+        {"time": True},
+        {"steps": 1.5},
+        {"steps": -1},
+        {"until": "rest", "limit": np.inf},
+    ],
+)
+def test_a_run_that_has_no_end_is_refused(session: Session, how: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=r"how far|must be|only runs forward"):
+        session.run(**how)
+    assert session.time == 0.0
+    assert not session.can_undo
+
+
+def test_numbers_of_numpy_say_how_far_to_run(session: Session) -> None:
+    session.run(steps=np.int64(3))  # type: ignore[arg-type]
+    session.run(time=np.float32(1e-4))  # type: ignore[arg-type]
+    assert session.time > 1e-4
+    with pytest.raises(TypeError):
+        session.step(1.5)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("factors", [(), None, (np.nan,), ("a",), [[1.0]]])
+def test_load_factors_that_are_none_are_refused(session: Session, factors: Any) -> None:
+    with pytest.raises(ValueError, match="Load factors are"):
+        session.settle(factors)
+    assert session.settle(1) == "equilibrium"
+
+
+def test_a_load_path_and_a_pointer_need_finite_numbers(session: Session) -> None:
+    with pytest.raises(ValueError, match="load factor is nan"):
+        session.load_path(np.nan)
+    with pytest.raises(ValueError, match="finite coordinates"):
+        session.click(np.nan, 0.0)
+    with pytest.raises(ValueError, match="finite coordinates"):
+        session.drag((0.0, 0.0), (np.inf, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("energy.heat = 1", "no 'heat' among the energies"),
+        ("count.beams = 1", "no 'beams' among the tables"),
+        ("rods.axial_force = 0", "names no rod; write rods.NAME.axial_force"),
+        ("rods.AB.axial_force ≈ 1 ± x", "cannot be compared with '1 ± x'"),
+    ],
+)
+def test_an_expectation_of_nothing_says_so(session: Session, text: str, words: str) -> None:
+    with pytest.raises((LookupError, ValueError), match=words):
+        session.expect(text)
+
+
+def test_spaces_around_an_expectation_do_not_matter(session: Session) -> None:
+    session.expect(" scene = pause ")
+
+
+def test_sessions_and_tables_tell_what_they_are(session: Session) -> None:
+    assert repr(session) == "<Session 'isostatic': 3 particles, 3 rods, pause, t = 0 s>"
+    assert repr(session.rods) == "<3 rods: AB, BC, CA>"
+    assert repr(session.loads) == "<0 loads>"
