@@ -37,8 +37,8 @@ class Status:
 class Preview:
     """What a tool is about to make or a drag is doing, drawn over the model.
 
-    kind: "rod", "force", "velocity", "pull" or "box". start, end: points of the picture (m); of a box, two
-    opposite corners. label: its value with its unit, or "".
+    kind: "rod", "force", "velocity", "roller", "pinned", "pull" or "box". start, end: points of the picture (m); of a
+    box, two opposite corners; of a support, its point and towards its ground. label: its value with its unit, or "".
     """
 
     kind: str

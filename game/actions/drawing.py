@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from components.field import Vector
 from game.actions.editing import take_up
 from game.actions.registry import ACTIONS, Action, action
-from game.gestures import TOOLS, BoxSelect, Drawing, Move, MovePoint, PullParticle
+from game.gestures import TOOLS, BoxSelect, Drawing, DrawSupport, Move, MovePoint, PullParticle
 from systems.edit.picking import pick_line, pick_particle, pick_point
 from systems.edit.refusal import Refusal
 
@@ -21,7 +21,9 @@ def _drag(session: Session, pixel: Vector) -> None:
     model, view = session.model, session.view
     particle = pick_particle(model, view, pixel)
     tool = session.gesture.tool if isinstance(session.gesture, Drawing) else view.tool
-    if tool:
+    if tool == DrawSupport.tool and particle is not None:
+        session.gesture = DrawSupport(session, particle)
+    elif tool:
         _use_at(session, tool, pixel)
     elif particle is not None and session.scene == "simulation":
         session.gesture = PullParticle(session, particle)

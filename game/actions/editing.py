@@ -45,16 +45,14 @@ def _delete(session: Session, pixel: Vector) -> None:
 
 @action("support")
 def _support(session: Session, pixel: Vector) -> None:
-    """Of the particle under the pointer, or of the selected ones; from the toolbar, of those clicked next."""
+    """Of the particle under the pointer, or of the selected ones; without any, of those clicked or dragged next."""
     hit = pick_particle(session.model, session.view, pixel)
     chosen = [handle for handle in session.selected if isinstance(handle, Particle)]
     if hit is not None and hit not in chosen:
         chosen = [hit]
-    if not chosen and session.view.strip.contains(pixel):
+    if not chosen:
         take_up(session, "support")
         return
-    if not chosen:
-        raise Refusal("Point at a particle, or select some, to support them.")
     support = next_support(session.model, chosen)
     session.notice = f"{_all_of(session, chosen)}: {support}"
 

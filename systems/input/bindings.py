@@ -61,7 +61,7 @@ BINDINGS: list[Binding] = [
     Binding("y", "release y", (FORCE_METHOD,), "release the vertical constraint"),
     Binding("p", "place", LIVE, "new particle under the pointer"),
     Binding("l", "rod", LIVE, "rod from one particle to another"),
-    Binding("c", "support", LIVE, "support: pinned, rollers, none"),
+    Binding("c", "support", LIVE, "support: next kind, or drag to its ground"),
     Binding("f", "force", LIVE, "force, as an arrow from a particle"),
     Binding("v", "velocity", LIVE, "velocity, as an arrow from a particle"),
     Binding("delete", "delete", LIVE, "delete the selection"),

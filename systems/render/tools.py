@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from components.view import Preview
 from systems.render.clip import bounds, clip_segments
 from systems.render.marks import Fills, Mark, Panel, Points, Stamps, Strokes, Text
-from systems.render.sheet import Sheet
+from systems.render.sheet import DIRECTIONS, Sheet
+from systems.render.symbols import SUPPORT_DEPTH
 from systems.render.theme import Colour, faded
 from systems.render.typography import line_height, text_width
 
@@ -16,6 +19,7 @@ _WIDTH = 2.5  # points, of lines
 _COILS = 9  # of the spring that pulls
 
 Pixel = NDArray[np.float64]
+Drawn = Callable[[Sheet, Pixel, Pixel], list[Mark]]
 
 
 def draw_flashes(sheet: Sheet) -> list[Mark]:
@@ -69,6 +73,17 @@ def _pull(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
     return [*_lines(sheet, start + share[:, None] * along + side[:, None] * normal, colour, 1.5), hook]
 
 
+def _support(symbol: str) -> Drawn:
+    """A support's symbol, turned to the side to which it was dragged."""
+
+    def draw(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
+        theme, side = sheet.theme, int(np.argmax(DIRECTIONS @ (end - start)))
+        size = SUPPORT_DEPTH * sheet.unit
+        return [Stamps(symbol, start[None], size, sheet.unit, theme.hover, theme.hollow, side)]
+
+    return draw
+
+
 def _box(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
     low, high = bounds(sheet.viewport)
     (x0, y0), (x1, y1) = np.clip([start, end], low - 10.0, high + 10.0)
@@ -109,4 +124,12 @@ def _label(sheet: Sheet, preview: Preview, at: Pixel) -> list[Mark]:
     ]
 
 
-_KINDS = {"rod": _rod, "force": _force, "velocity": _velocity, "pull": _pull, "box": _box}
+_KINDS: dict[str, Drawn] = {
+    "rod": _rod,
+    "force": _force,
+    "velocity": _velocity,
+    "roller": _support("roller"),
+    "pinned": _support("pinned"),
+    "pull": _pull,
+    "box": _box,
+}

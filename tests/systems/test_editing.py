@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from components.field import Vector
 from components.snapshot import Snapshot
 from components.view import Preview
 from game import Session, models
@@ -376,8 +377,59 @@ def test_c_supports_all_the_selected(two: Session) -> None:
     press_at(two, "c", 5.0, 5.0)
     assert [particle.fixed for particle in two.particles] == [(True, True)] * 2
     two.press("escape")
+    press_at(two, "c", 5.0, 5.0)  # where nothing is: with the clicks and drags that follow
+    assert two.view.tool == "support"
     press_at(two, "c", 5.0, 5.0)
-    assert two.notice.startswith("Point at a particle")
+    assert two.view.tool == ""
+
+
+@pytest.mark.parametrize(
+    ("to", "fixed", "symbol"),
+    [
+        ((0.0, -0.5), (False, True), "roller"),
+        ((0.1, 0.5), (False, True), "roller"),
+        ((-0.5, 0.1), (True, False), "roller"),
+        ((0.4, -0.4), (True, True), "pinned"),
+    ],
+)
+def test_a_support_is_dragged_to_its_ground(
+    two: Session, to: Vector, fixed: tuple[bool, bool], symbol: str
+) -> None:
+    press_at(two, "c", 5.0, 5.0)
+    first, second = two.particles
+    x, y = first.position
+    two.grab(x, y)
+    two.drag_to(x + to[0], y + to[1])
+    assert preview(two).kind == symbol
+    assert "held in" in two.view.status.hint
+    assert first.fixed == (False, False)
+    two.drop()
+    assert first.fixed == fixed
+    assert second.fixed == (False, False)
+    assert two.view.tool == "support"
+    two.press("ctrl+z")
+    assert first.fixed == (False, False)
+
+
+def test_a_support_dragged_back_or_hardly_is_the_next_kind_and_escape_leaves_it(two: Session) -> None:
+    press_at(two, "c", 5.0, 5.0)
+    first = next(iter(two.particles))
+    x, y = first.position
+    two.drag((x, y), (x + 0.02, y))
+    assert first.fixed == (True, True)
+    two.grab(x, y)
+    two.drag_to(x, y - 0.5)
+    two.press("escape")
+    assert first.fixed == (True, True)
+
+
+def test_dragging_one_of_the_selected_supports_all_of_them(two: Session) -> None:
+    two.press("ctrl+a")
+    two.view.tool = "support"
+    x, y = next(iter(two.particles)).position
+    two.drag((x, y), (x, y - 0.5))
+    assert [particle.fixed for particle in two.particles] == [(False, True)] * 2
+    assert two.notice.endswith("and 1 more: on a roller: held in y")
 
 
 def test_a_force_is_drawn_as_an_arrow_to_a_round_scale(triangle: Session) -> None:
