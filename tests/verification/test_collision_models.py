@@ -97,7 +97,7 @@ def test_the_gas_presses_on_its_walls() -> None:
 def test_the_ball_hops_down_the_stairs() -> None:
     session = Session.open("staircase")
     assert session.run(until="rest") == "at rest"
-    first, second = session.impacts.time[:2]
+    first = session.impacts.time[0]
     fall = 1.8 - 0.05 - 1.25
     assert first == pytest.approx(math.sqrt(2 * fall / 9.81), rel=1e-13)
     ball, radius = session.particles["ball"], 0.05
