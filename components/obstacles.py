@@ -49,6 +49,25 @@ class Obstacles:
         return len(self.radius)
 
 
+def check_pieces(table: Table[Any], pieces: Pieces, source: str) -> Pieces:
+    """The pieces that a mod's shape returned. Raises TypeError or ValueError, naming `source`."""
+    if not isinstance(pieces, Pieces):
+        raise TypeError(f"{source} returned {pieces!r}, not Pieces")
+    ends, owner, count = np.asarray(pieces.ends, dtype=np.float64), np.asarray(pieces.owner), len(pieces.owner)
+    if ends.shape != (count, 2, 2):
+        raise ValueError(
+            f"{source}: ends of shape {ends.shape} for {count} pieces; give each two points [x, y]"
+        )
+    radius, restitution = (np.broadcast_to(values, count) for values in (pieces.radius, pieces.restitution))
+    if not np.isfinite(ends).all() or not (radius >= 0.0).all() or not np.isfinite(radius).all():
+        raise ValueError(f"{source}: an end or a radius is not finite, or a radius below 0")
+    if ((restitution < 0.0) | (restitution > 1.0)).any():
+        raise ValueError(f"{source}: a restitution is not from 0 to 1; NaN stands for that of the settings")
+    for row in owner[(owner < 0) | (owner >= table.count)][:1].tolist():
+        raise ValueError(f"{source}: a piece belongs to row {row} of {table.count} {table.name}")
+    return pieces
+
+
 NO_OBSTACLES = Obstacles(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0), np.zeros(0), [])
 
 Shape = Callable[[Table[Any]], Pieces]

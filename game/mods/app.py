@@ -14,7 +14,7 @@ from components.field import FieldError, Vector
 from components.kind import add_kind
 from components.load import HISTORIES, HistoryKind, register_history
 from components.model import ADDED
-from components.obstacles import SHAPES, Pieces, Shape
+from components.obstacles import SHAPES, Pieces, Shape, check_pieces
 from components.settings import INTEGRATORS
 from components.view import Readout
 from components.world import Handle
@@ -106,7 +106,12 @@ class App:
         if kind in SHAPES:
             raise ModError(f"What {kind.table} collide as is registered already.")
         mod, nothing = self._mod, Pieces(np.zeros((0, 2, 2)), np.zeros(0, dtype=np.intp))
-        SHAPES[kind] = lambda table: mod.call(f"the shape of {kind.table}", shape, table, otherwise=nothing)
+        source = getattr(shape, "__name__", "its function")
+        SHAPES[kind] = lambda table: mod.call(
+            f"the shape of {kind.table}",
+            lambda: check_pieces(table, shape(table), source),
+            otherwise=nothing,
+        )
         self._undo.append(lambda: SHAPES.pop(kind))
 
     def system(self, system: Callable[[], System]) -> None:

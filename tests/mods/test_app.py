@@ -139,3 +139,107 @@ class Paint(Component):
     assert main([*words, "--set", "rods.*.apple_coats=-1"]) == 2
     assert main([*words, "--set", "rods.*.apple_colour=blue"]) == 2
     assert "apple_heat" in vars(Environment)
+
+
+# --- kinds of elements and shapes ------------------------------------------------------------------------
+
+GATE = """
+import numpy as np
+from components import Field, Handle, Pieces, Role
+class Gate(Handle):
+    table, noun, points = "gates", "gate", ("foot", "top")
+    name: Field[str] = Field(title="name", doc=".", default="", dtype=str)
+    foot: Field[tuple] = Field("m", shape=(2,), title="foot", doc=".")
+    top: Field[tuple] = Field("m", shape=(2,), title="top", doc=".")
+    swung: Field[float] = Field("rad", title="swung", doc=".", role=Role.STATE)
+"""
+FALLING = {
+    "format": "pinjoint model",
+    "version": 1,
+    "environment": {"acceleration": [0, -10]},
+    "particles": [{"name": "A", "position": [0, 1.05]}],
+    "components": {"apple.Gate": [{"name": "g", "foot": [-1, 0], "top": [1, 0], "swung": 0.5}]},
+}
+
+
+def test_a_kind_of_a_mod_has_a_table_a_section_and_properties(write_mod: Write) -> None:
+    opened(write_mod, "app.kind(Gate)", GATE)
+    session = Session.open(FALLING)
+    [gate] = session.table("gates")
+    assert (gate.foot, gate.swung) == ((-1, 0), 0.5)
+    assert models.document(session.model)["components"] == FALLING["components"]
+    session.select(gate)
+    session.press("return")
+    assert {"foot x", "top y", "name"} <= set(session.boxes)
+    mods.unload(mods.MODS[-1:])
+    without = models.load(FALLING)
+    assert "gates" not in without.tables
+    assert models.document(without)["components"] == FALLING["components"]
+
+
+def test_what_a_shape_says_is_collided_with_and_what_fails_switches_the_mod_off(write_mod: Write) -> None:
+    body = "app.kind(Gate)\napp.shape(Gate, as_pieces)"
+    head = GATE + "\ndef as_pieces(gates):\n    "
+    lines = "ends = np.stack([gates.foot, gates.top], axis=1)\n    return Pieces(ends, np.arange(gates.count))"
+    opened(write_mod, body, head + lines)
+    session = Session.open(FALLING)
+    session.run(time=0.5)
+    assert session.impacts.time[0] == pytest.approx(0.2**0.5)
+    assert session.impacts.as_csv().splitlines()[1].split(",")[1:3] == ["A", "g"]
+    mods.unload(mods.MODS[-1:])
+
+
+@pytest.mark.parametrize(
+    ("shape", "said"),
+    [
+        ("raise KeyError('gone')", "the shape of gates failed: KeyError"),
+        ("return 3", "the shape of gates failed: TypeError: as_pieces returned 3, not Pieces"),
+        ("return Pieces(np.zeros((1, 2, 3)), np.zeros(1, dtype=int))", "ends of shape"),
+        ("return Pieces(np.full((1, 2, 2), np.nan), np.zeros(1, dtype=int))", "not finite"),
+        ("return Pieces(np.zeros((1, 2, 2)), np.array([7]))", "row 7"),
+        ("return Pieces(np.zeros((1, 2, 2)), np.array([0]), radius=-1.0)", "radius"),
+        ("return Pieces(np.zeros((1, 2, 2)), np.array([0]), restitution=1.5)", "restitution"),
+    ],
+)
+def test_a_shape_that_fails_switches_the_mod_off(write_mod: Write, shape: str, said: str) -> None:
+    head = f"{GATE}\ndef as_pieces(gates):\n    {shape}\n"
+    opened(write_mod, "app.kind(Gate)\napp.shape(Gate, as_pieces)", head)
+    session = Session.open(FALLING)
+    session.run(time=0.1)
+    assert said in session.message
+    assert mods.MODS[-1].off
+    assert models.document(session.model)["components"] == FALLING["components"]
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (('"gates"', '"rods"'), "its table 'rods' is missing or taken"),
+        (('"gates"', '"settings of mine"'), "cannot be the name of a table"),
+        (('"gates"', '"execute"'), "cannot be the name of a table"),
+        (('"gate",', '"rod",'), "its noun 'rod' is missing or taken"),
+        (('"foot", "top"', '"foot", "tip"'), "its point 'tip' is no Field"),
+        (("    name:", "    label:"), "needs a Field 'name'"),
+        (("Role.STATE", "Role.DERIVED"), "derived columns cannot be added"),
+        (("class Gate(Handle):", "class Gate(Handle):\n    single = True"), "a component of Settings"),
+    ],
+)
+def test_a_kind_that_cannot_be_is_refused(write_mod: Write, change: tuple[str, str], said: str) -> None:
+    from game.mods import ModError
+
+    with pytest.raises(ModError, match=said):
+        opened(write_mod, "app.kind(Gate)", GATE.replace(*change))
+
+
+def test_a_tool_of_a_mod_draws_its_kind(write_mod: Write) -> None:
+    opened(write_mod, "app.kind(Gate)\napp.tool(Gate, key='q', icon=[('line', (0, 0, 5, 5))])", GATE)
+    session = Session.open(FALLING)
+    session.point(0, 0.5)
+    session.press("q")
+    session.click(1, 0.5)
+    assert [gate.name for gate in session.table("gates")] == ["g", "gate 1"]
+    buttons = [tool.action for group in session.view.toolbar.groups for tool in group]
+    assert "apple.gate" in buttons
+    mods.unload(mods.MODS[-1:])
+    session.update_view()
+    assert "apple.gate" not in [tool.action for group in session.view.toolbar.groups for tool in group]

@@ -4,20 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
+import pygame
 import pytest
 from numpy.typing import NDArray
 
 from components import Model
 from game import SystemCheckError, check_system
-from game.catalogue import step_systems
+from game.catalogue import DRIVERS, step_systems
 from game.checks import BODIES, ELASTIC, EVERYTHING
+from game.included.probes import Sampling
+from game.preparation import Preparation
 from game.registry import SYSTEMS
+from game.spares import SpareKeeper
 from systems.base import Law, Phase, StepSystem, System
+from systems.collision.system import Collision
 from systems.edit.hover import Hover
+from systems.input.pygame_input import PygameInput
 from systems.kernels import compiled
+from systems.physics.drivers import VelocityVerlet
+from systems.render.pygame_render import PygameRender
 
 CABLES = EVERYTHING | {"rods": [rod | {"tension_only": True} for rod in EVERYTHING["rods"]]}
 OURS = {system.name: system for system in [*step_systems(), *(make() for make in SYSTEMS)]}
@@ -39,8 +48,47 @@ def test_our_step_systems_pass(name: str) -> None:
     assert 0.0 < checked.cost < 1e6
 
 
-def test_our_frame_systems_pass() -> None:
-    assert check_system(Hover, [EVERYTHING, BODIES]).needed == 2
+@pytest.mark.parametrize("name", DRIVERS)
+def test_our_integrators_pass(name: str) -> None:
+    assert check_system(type(DRIVERS[name]), ["isostatic"]).needed == 1
+
+
+def test_collisions_pass_in_free_flight_and_with_a_wall_that_steps_end_at() -> None:
+    falling = BODIES | {
+        "environment": {"acceleration": [0.0, -9.81]},
+        "settings": {"restitution": 0.5},
+        "components": {"walls.Wall": [{"name": "floor", "start": [-9.0, -0.1], "end": [9.0, -0.1]}]},
+    }
+    driven = falling | {"environment": {"acceleration": [0.0, -9.81], "drag": 0.1}, "settings": {}}
+    assert check_system(Collision, [falling, driven]).needed == 2
+
+
+def test_our_frame_systems_pass(tmp_path: Path) -> None:
+    pygame.init()
+    surface = pygame.Surface((320, 200))
+    frames = [
+        Hover,
+        Sampling,
+        PygameInput,
+        partial(PygameRender, surface),
+        Preparation,
+        partial(SpareKeeper, tmp_path),
+    ]
+    for make in frames:
+        assert check_system(make, [EVERYTHING, BODIES]).needed == 2
+
+
+def test_an_integrator_that_promises_too_much_is_found_out() -> None:
+    class Hasty(VelocityVerlet):
+        name = "test.hasty"
+
+        @staticmethod
+        def stable_step(frequency: float, decay: float) -> float:
+            return 1.0
+
+    with pytest.raises(SystemCheckError, match=r"test\.hasty: a run with it does not stay finite"):
+        check_system(Hasty, ["isostatic"])
+    assert "hasty" not in DRIVERS
 
 
 @compiled
