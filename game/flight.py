@@ -18,12 +18,12 @@ from components.paths import Paths
 from game.impacts import Impacts
 from game.program_cache import compile_module, is_compiled, note_compiled
 from systems.base import StopReason
-from systems.collision.arrays import CROWD_COUNTS, CROWD_TIMES, MOVING
+from systems.collision.arrays import CROWD_COUNTS, CROWD_NUMBERS, MOVING
 
 if TYPE_CHECKING:
     from systems.collision.discs import Discs
 
-CROWD = len(CROWD_COUNTS) + len(CROWD_TIMES)
+CROWD = len(CROWD_COUNTS) + len(CROWD_NUMBERS)
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
 
 _SOURCE = '''\
@@ -148,6 +148,7 @@ class Flight:
                 restitution=self.model.settings.restitution,
                 time=clock.time,
                 obstacles=obstacles(self.model),
+                lost=clock.dissipated_impact,
             )
             if clock.paths is not None and self._fits(clock.paths):
                 self._flying.follow(clock.paths)
@@ -199,15 +200,13 @@ class Flight:
         return 1, StopReason.DONE
 
     def _fly(self, target: float) -> Discs:
-        """Advance the discs and enter the impacts into the account."""
+        """Advance the discs and record the impacts."""
         discs = self.discs
         _, happened = discs.advance(target)
         if len(happened):
             clock = self.model.clock
             columns = (happened.time, happened.pairs, happened.impulse, happened.loss, happened.point)
             self._impacts.record(np.column_stack(columns))
-            lost = np.cumsum([clock.dissipated_impact, *happened.loss])  # one by one, in whatever calls
-            self.model.writable("clock.dissipated_impact")[0] = lost[-1]
             self.model.writable("clock.collisions")[0] = clock.collisions + len(happened)
         return discs
 
@@ -224,6 +223,7 @@ class Flight:
         displacement, velocity = discs.state_at(now)
         self.model.writable("particles.displacement")[...] = displacement
         self.model.writable("particles.velocity")[...] = velocity
+        self.model.writable("clock.dissipated_impact")[0] = discs.lost_at(now)
         self.model.writable("clock.time")[0] = now
         self.model.writable("clock.steps")[0] += steps
         self.model.writable("clock.paths")[0] = discs.paths()

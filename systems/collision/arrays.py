@@ -72,21 +72,19 @@ class Queue(NamedTuple):
 class Ties(NamedTuple):
     """Pairs whose meetings are not foreseen.
 
-    Those of disc i that do not collide are partners[first[i] : first[i + 1]], with `bonds` as below. Those in
-    lasting contact are a chain of entries from first_lasting[i]: lasting, shape (capacity, 2), holds the other
-    disc and the next entry, forces the force, N. A lasting contact is entered for each of its discs that is
+    Those of disc i that never collide with it are partners[first[i] : first[i + 1]]. Those in lasting contact
+    with it are a chain of entries from first_lasting[i]: lasting, shape (capacity, 2), holds the other disc and
+    the next entry, forces the force, N. A lasting contact is entered for each of its discs that is
     not held. Unused entries are chained from counts[SPARE].
     """
 
     first: Integers
     partners: Integers
-    bonds: Integers
     first_lasting: Integers
     lasting: Integers
     forces: Floats
 
 
-FREE, JOINED, OVERLAPPING = 0, 1, 2  # bonds: none; never collide; do not collide before they have separated
 OTHER, NEXT = 0, 1  # columns of lasting
 
 
@@ -154,7 +152,8 @@ SMALLEST = 7  # m; radius of the smallest disc
 STEP_LENGTH = 8  # s; of the steps of piles, ∞ where nothing is pulled
 STEP_END = 9  # s; of the present one
 WORK_SINCE = 10  # s; since when WORK is counted
-NUMBERS = 11
+LOSS = 11  # J; energy that impacts and piles have taken so far, the present step of a pile in full
+NUMBERS = 12
 
 # `counts`, int64
 QUEUED = 0  # meetings in the queue
@@ -167,11 +166,13 @@ RENEW = 6  # 1: the window must be opened anew before anything else
 SPARE = 7  # first unused entry of the table of lasting contacts
 SPARES = 8  # how many are unused
 STEPPING = 9  # 1: discs take the steps of a pile
-CALM = 10  # steps one after the other in which no contact moved
+CALM = 10  # steps one after the other in which nothing in the pile moved fast
 WORK = 11  # contacts in the events of late
 DISCS = 12  # how many there are
-COUNTS = 13
-CROWD_COUNTS, CROWD_TIMES = (STEPPING, CALM, WORK), (STEP_END, WORK_SINCE)  # what a pile goes on from
+PATIENCE = 13  # calm steps after which a pile seeks its equilibrium
+COUNTS = 14
+CROWD_COUNTS = (STEPPING, CALM, WORK, PATIENCE)  # what a pile goes on from
+CROWD_NUMBERS = (STEP_END, WORK_SINCE, LOSS)
 
 
 class Reason(IntEnum):
@@ -183,3 +184,4 @@ class Reason(IntEnum):
     QUEUE_FULL = 3  # enlarge the queue and go on
     GRID_FULL = 4  # enlarge the grid and go on
     GROUP_FULL = 5  # enlarge the room for contacts and lasting contacts and go on
+    SETTLE = 6  # put the calm pile into its equilibrium and go on

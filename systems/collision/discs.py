@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from components.obstacles import Obstacles
+from components.obstacles import NO_OBSTACLES, Obstacles
 from components.paths import Paths
 from systems.collision import arrays
 from systems.collision.arrays import Floats, Grid, Group, Integers, Queue, Reason, Report, Ties
@@ -64,6 +64,7 @@ class Discs:
         joined: Sequence[tuple[int, int]] | NDArray[Any] = (),
         time: float = 0.0,
         obstacles: Obstacles | None = None,
+        lost: float = 0.0,
     ) -> None:
         """Take over the state at `time` (s).
 
@@ -71,11 +72,12 @@ class Discs:
         (n,), m. inverse_mass: of each direction, shape (n, 2), 1/kg, 0 where it is held. displacement: m;
         acceleration: m/s², without contacts. rest_height: bounces that would rise less, relative to the
         smaller radius, end in lasting contact. joined: pairs that never collide. obstacles: what else there is;
-        in pairs they count on after the discs.
+        in pairs they count on after the discs. lost: energy lost so far, J.
         """
         place = np.atleast_2d(np.asarray(position, dtype=np.float64))
+        self._obstacles = obstacles if obstacles is not None else NO_OBSTACLES
         self.count = len(place)
-        n = self.count + (len(obstacles) if obstacles is not None else 0)
+        n = self.count + len(self._obstacles)
         self.rows = np.zeros((n, arrays.DISC_WIDTH))
         self._columns(arrays.OX)[...] = place
         self._columns(arrays.UX)[...] = displacement
@@ -88,10 +90,9 @@ class Discs:
         self.rows[: self.count, arrays.EPOCH] = time
         self.rows[: self.count, arrays.BOUNCE] = restitution
         self.rows[:, arrays.STEP] = np.inf
-        if obstacles is not None:
-            added = self.rows[self.count :]
-            added[:, [arrays.OX, arrays.OY]], added[:, [arrays.TX, arrays.TY]] = obstacles.start, obstacles.span
-            added[:, arrays.RADIUS], added[:, arrays.BOUNCE] = obstacles.radius, obstacles.restitution
+        added, others = self.rows[self.count :], self._obstacles
+        added[:, [arrays.OX, arrays.OY]], added[:, [arrays.TX, arrays.TY]] = others.start, others.span
+        added[:, arrays.RADIUS], added[:, arrays.BOUNCE] = others.radius, others.restitution
         speed = np.abs(self._columns(arrays.VX)).sum(axis=1)
         self.rows[: self.count, arrays.NOISE] = arrays.SPEED_NOISE * speed
         self.numbers = np.zeros(arrays.NUMBERS)
@@ -104,6 +105,7 @@ class Discs:
         self.numbers[arrays.SMALLEST] = self.rows[: self.count, arrays.RADIUS].min(initial=np.inf)
         self.numbers[arrays.STEP_LENGTH] = STEP_SHARE * self._fall_time()
         self.numbers[arrays.WORK_SINCE] = time
+        self.numbers[arrays.LOSS] = lost
         self.queue = _queue(2 * n + 64)
         self.grid = _grid(n, 2)
         self.group = room_for(n, 4 * n + 64)
@@ -161,6 +163,39 @@ class Discs:
             self.group = room_for(n, size)
             self.report = _report(max(REPORT, size))
             self.ties = _more_lasting(self.ties, 2 * size, self.counts)
+        elif reason is Reason.SETTLE:
+            self._settle()
+
+    def _settle(self) -> None:
+        """Put the calm pile into its equilibrium; if it is not found, the pile goes on from where the search got."""
+        from systems.collision.repose import Pile
+
+        weight, pull = self._columns(arrays.WX), self._columns(arrays.GX)
+        place = self._columns(arrays.OX) + self._columns(arrays.UX)
+        radius = self.rows[: self.count, arrays.RADIUS]
+        end = Pile(place, radius, weight, pull, self._may_collide, self._obstacles).repose()
+        lying, free = self.rows[end.discs], weight[end.discs] > 0.0
+        motion = lying[:, arrays.VX : arrays.VX + 2] ** 2 / 2.0
+        fallen = lying[:, arrays.GX : arrays.GX + 2] * end.displacement[end.discs]
+        self.numbers[arrays.LOSS] += ((motion + fallen)[free] / weight[end.discs][free]).sum()
+        self._columns(arrays.UX)[...] += end.displacement
+        self.rows[end.discs, arrays.VX : arrays.AY + 1] = 0.0
+        self.numbers[arrays.STEP_END] = self.now
+        if not end.found:
+            self.counts[arrays.PATIENCE] += self.counts[arrays.CALM]
+            return
+        self.ties = _more_lasting(_without_lasting(self.ties, self.counts), len(self.ties.lasting), self.counts)
+        both = np.concatenate([end.pairs, end.pairs[:, ::-1]])
+        own = self.rows[both[:, 0], arrays.WX : arrays.WY + 1].any(axis=1)
+        self._note_lasting(both[own], np.tile(end.forces, 2)[own])
+        self.counts[[arrays.STEPPING, arrays.WORK, arrays.RENEW]] = 0, 0, 1
+        self.numbers[arrays.WORK_SINCE] = self.now
+
+    def _may_collide(self, pairs: Integers) -> NDArray[np.bool_]:
+        n = len(self.rows)
+        owners = np.repeat(np.arange(n), np.diff(self.ties.first))
+        may: NDArray[np.bool_] = np.isin(pairs @ [n, 1], owners * n + self.ties.partners, invert=True)
+        return may
 
     def _take(self) -> Impacts:
         k = int(self.counts[arrays.REPORTED])
@@ -176,7 +211,9 @@ class Discs:
         """All that the future follows from besides what the discs are: with it others go on, bit for bit."""
         owners, entries = self._lasting_entries()
         pairs = np.column_stack([owners, self.ties.lasting[entries, arrays.OTHER]])
-        crowd = np.concatenate([self.counts[list(arrays.CROWD_COUNTS)], self.numbers[list(arrays.CROWD_TIMES)]])
+        crowd = np.concatenate(
+            [self.counts[list(arrays.CROWD_COUNTS)], self.numbers[list(arrays.CROWD_NUMBERS)]]
+        )
         return Paths(self.rows[: self.count, list(arrays.MOVING)], pairs, self.ties.forces[entries], crowd)
 
     def follow(self, paths: Paths) -> None:
@@ -184,11 +221,15 @@ class Discs:
         self.rows[: self.count, list(arrays.MOVING)] = paths.motion
         counted = len(arrays.CROWD_COUNTS)
         self.counts[list(arrays.CROWD_COUNTS)] = paths.crowd[:counted]
-        self.numbers[list(arrays.CROWD_TIMES)] = paths.crowd[counted:]
+        self.numbers[list(arrays.CROWD_NUMBERS)] = paths.crowd[counted:]
         self.counts[arrays.RENEW] = 1
-        while len(paths.contacts) > self.counts[arrays.SPARES]:
+        self._note_lasting(paths.contacts, paths.forces)
+
+    def _note_lasting(self, pairs: Integers, forces: Floats) -> None:
+        """Enter lasting contacts of the first disc of each pair with the second."""
+        while len(pairs) > self.counts[arrays.SPARES]:
             self.ties = _more_lasting(self.ties, 2 * len(self.ties.lasting), self.counts)
-        for (i, j), force in zip(paths.contacts[::-1].tolist(), paths.forces[::-1].tolist(), strict=True):
+        for (i, j), force in zip(pairs[::-1].tolist(), forces[::-1].tolist(), strict=True):
             entry = self.counts[arrays.SPARE]
             self.counts[arrays.SPARE] = self.ties.lasting[entry, arrays.NEXT]
             self.counts[arrays.SPARES] -= 1
@@ -243,6 +284,19 @@ class Discs:
         """How many there were."""
         return int(self.counts[arrays.IMPACTS])
 
+    def lost_at(self, time: float) -> float:
+        """Energy (J) lost until a time (s) between the last event and the next.
+
+        What a step of a pile takes is that of its weights on straight lines, at a constant rate, and a jump at first.
+        """
+        lost = float(self.numbers[arrays.LOSS])
+        if self.counts[arrays.STEPPING] and self.numbers[arrays.STEP_END] > time:
+            weight, velocity = self._columns(arrays.WX), self._columns(arrays.VX)
+            held = self._columns(arrays.GX) - self._columns(arrays.AX)
+            rate = (held * velocity)[weight > 0.0] / weight[weight > 0.0]
+            lost -= float(rate.sum()) * float(self.numbers[arrays.STEP_END] - time)
+        return lost
+
     def state_at(self, time: float) -> tuple[Floats, Floats]:
         """Displacements (m) and velocities (m/s) at a time (s) between the last event and the next."""
         s = (time - self.rows[: self.count, arrays.EPOCH])[:, None]
@@ -296,13 +350,18 @@ def _ties(n: int, joined: Any, lasting: int, counts: Integers) -> Ties:
     ties = Ties(
         first=np.searchsorted(ends[:, 0], np.arange(n + 1)),
         partners=np.ascontiguousarray(ends[:, 1]),
-        bonds=np.full(len(ends), arrays.JOINED, dtype=np.int64),
-        first_lasting=np.full(n, arrays.NONE, dtype=np.int64),
+        first_lasting=np.zeros(n, dtype=np.int64),
         lasting=np.zeros((0, 2), dtype=np.int64),
         forces=np.zeros(0),
     )
-    counts[arrays.SPARE] = arrays.NONE
-    return _more_lasting(ties, lasting, counts)
+    return _more_lasting(_without_lasting(ties, counts), lasting, counts)
+
+
+def _without_lasting(ties: Ties, counts: Integers) -> Ties:
+    """The same table without entries, used or not, of lasting contacts."""
+    counts[arrays.SPARE], counts[arrays.SPARES] = arrays.NONE, 0
+    none = np.full(len(ties.first_lasting), arrays.NONE, dtype=np.int64)
+    return ties._replace(first_lasting=none, lasting=np.zeros((0, 2), dtype=np.int64), forces=np.zeros(0))
 
 
 def _more_lasting(ties: Ties, size: int, counts: Integers) -> Ties:

@@ -482,8 +482,13 @@ def test_a_pile_goes_on_from_its_paths_bit_for_bit() -> None:
         resumed = Discs(**scene, **rest, time=time)
         resumed.follow(paths)
     assert through.counts[9] == resumed.counts[9] == 1  # it steps
-    for one, other in zip(through.state_at(0.6), resumed.state_at(0.6), strict=True):
-        assert one.tobytes() == other.tobytes()
+    for time in (0.6, 3.0):
+        through.advance(time)
+        resumed.advance(time)
+        for one, other in zip(through.state_at(time), resumed.state_at(time), strict=True):
+            assert one.tobytes() == other.tobytes()
+        assert through.lost_at(time) == resumed.lost_at(time)
+    assert through.at_rest
 
 
 def test_bystanders_do_not_change_what_happens() -> None:

@@ -25,6 +25,7 @@ from systems.collision.arrays import (
     IMPULSE,
     LAYERS,
     LEVEL,
+    LOSS,
     NEXT,
     NOISE,
     NONE,
@@ -76,7 +77,7 @@ from systems.collision.kernels import compiled, entry
 from systems.collision.pile.kernels import begin_steps, crowded, step
 from systems.collision.projection.kernels import compliance, opening_rate
 from systems.collision.queue.kernels import drop_first, is_void
-from systems.collision.window.kernels import expect, find_bond, open_window
+from systems.collision.window.kernels import expect, is_joined, open_window
 
 DONE, BUSY, REPORT_FULL = int(Reason.DONE), int(Reason.BUSY), int(Reason.REPORT_FULL)
 QUEUE_FULL, GROUP_FULL = int(Reason.QUEUE_FULL), int(Reason.GROUP_FULL)
@@ -270,7 +271,7 @@ def _touch(a, b, discs, ties, now):
     reach = discs[a, RADIUS] + discs[b, RADIUS] + place_noise(discs, a, b, now)
     if dx * dx + dy * dy > reach * reach:
         return False
-    return find_bond(a, b, ties) < 0 and find_lasting(a, b, ties) == NONE
+    return not is_joined(a, b, ties) and find_lasting(a, b, ties) == NONE
 
 
 @compiled
@@ -315,6 +316,7 @@ def _report(touching, discs, group, report, numbers, counts):
         before, after = opening_rate(c, group.initial, group), opening_rate(c, group.motion, group)
         loss -= 0.5 * group.contacts[c, IMPULSE] * (before + after)
         impulses += group.contacts[c, IMPULSE]
+    numbers[LOSS] += loss
     for c in range(touching):
         impulse = group.contacts[c, IMPULSE]
         i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]

@@ -14,8 +14,6 @@ from systems.collision.arrays import (
     CROWDING,
     END,
     EPOCH,
-    FREE,
-    JOINED,
     LAYERS,
     LEVEL,
     NONE,
@@ -66,32 +64,12 @@ SAMPLE = 128  # discs that decide the size of the grid's cells
 
 
 @compiled
-def find_bond(i, j, ties):
-    """Index of the bond of i to j, or −1."""
-    for k in range(ties.first[i], ties.first[i + 1]):
-        if ties.partners[k] == j and ties.bonds[k] != FREE:
-            return k
-    return -1
-
-
-@compiled
 def is_joined(i, j, ties):
     """True if two discs never collide."""
-    bond = find_bond(i, j, ties)
-    return bond >= 0 and ties.bonds[bond] == JOINED
-
-
-@compiled
-def is_left_alone(i, j, gap, ties):
-    """True if two discs overlap from the start; once they have separated, they collide like others."""
-    bond = find_bond(i, j, ties)
-    if bond < 0:
-        return False
-    if gap <= 0.0:
-        return True
-    ties.bonds[find_bond(j, i, ties)] = FREE
-    ties.bonds[bond] = FREE
-    return False
+    k = ties.first[i]
+    while k < ties.first[i + 1] and ties.partners[k] != j:
+        k += 1
+    return k < ties.first[i + 1]
 
 
 @compiled
@@ -115,8 +93,7 @@ def foresee(i, j, discs, ties, end):
     if is_straight(j, discs):
         tx, ty = discs[j, TX], discs[j, TY]
         return start + first_touch(dx, dy, vx, vy, ax, ay, tx, ty, reach, noise, growth, end - start, False)
-    overlapping = is_left_alone(i, j, dx * dx + dy * dy - reach * reach, ties)
-    return start + first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, end - start, overlapping)
+    return start + first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, end - start, False)
 
 
 @compiled

@@ -1,0 +1,209 @@
+"""Repose: the equilibrium near by in which a pile ends that hardly moves any more.
+
+It is a least of the potential energy −f·x under gaps ≥ 0. Since discs are convex, a stable one has as many contacts
+as freedoms, and these alone determine it. It is found by the interior-point method: gaps s and forces λ follow
+    f + Nᵀ λ = 0,   s = gap(x),   λ s = μ,   μ → 0
+by Newton's method, with the normals N at the present x and a little inertia, so that discs that nothing holds yet do
+not run away (Nocedal, Wright, Numerical Optimization (2006), chapter 19).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix, diags
+from scipy.sparse.linalg import splu
+
+from components.obstacles import Obstacles
+from systems.collision.near import Floats, Rows, near_pairs, nearest
+
+AROUND = 0.25  # of its radius around each disc, in which its neighbours are listed
+STRIDE = 0.1  # of its radius, by which a disc moves in an iteration at most
+FARTHEST = 2.0  # radii by which a disc moves in all at most
+FREE_STRIDE = 1.0  # radii by which inertia lets a disc go in an iteration that nothing holds
+FIRST_GAP = 1e-4  # of the radius of the smaller disc of a pair, at first at least
+FIRST_BARRIER = 1e-2  # μ at first, in weight × radius of the lighter and the smaller disc of a pair
+BARRIER_SHARE = 1e-2  # μ at least, of the radii by which discs still move, until they move
+NEARLY = 1e-2  # of their radii or less
+QUICK, SLOW = 0.2, 0.8  # what is left of μ after an iteration that got far, and after others
+FAR = 0.5  # of the way that Newton's method wanted
+TO_EDGE = 0.995  # of the way to where a gap or a force vanishes
+STILL = 1e-10  # of its radius, by which a disc moves at the end, and of the largest weight, what is unbalanced
+CLOSED = 1e-13  # μ at the end
+MOST_ITERATIONS, MOST_OF_ALL = 150, 300  # until discs nearly rest, and until they do
+SYMMETRIC = {"SymmetricMode": True}
+
+
+@dataclass(frozen=True)
+class Repose:
+    """The equilibrium of a pile, or how far it got on the way there.
+
+    found: if it is the equilibrium. discs: that lie in the pile, shape (k,). displacement: of all to there, shape
+    (n, 2), m. pairs: that push each other, shape (c, 2). forces: how strongly, shape (c,), N.
+    """
+
+    found: bool
+    discs: Rows
+    displacement: Floats
+    pairs: Rows
+    forces: Floats
+
+
+@dataclass
+class _Gaps:
+    """Pairs that may touch: their gaps (slack, m) and forces (N) as iterated, and what is natural for them (J)."""
+
+    pairs: Rows
+    slack: Floats
+    force: Floats
+    scale: Floats
+
+
+class Pile:
+    """Discs that lie on one another, on what is held and on obstacles.
+
+    place: centres, shape (n, 2), m. radius: shape (n,), m. inverse_mass: of each direction, shape (n, 2), 1/kg,
+    0 where it is held. pull: acceleration without contacts, shape (n, 2), m/s². may_collide: tells which of the
+    pairs it is given do, in which obstacles count on after the discs.
+    """
+
+    def __init__(
+        self,
+        place: Floats,
+        radius: Floats,
+        inverse_mass: Floats,
+        pull: Floats,
+        may_collide: Callable[[Rows], NDArray[np.bool_]],
+        obstacles: Obstacles,
+    ) -> None:
+        self._start, self._place, self._radius = place, place.copy(), radius
+        self._may_collide, self._obstacles = may_collide, obstacles
+        count = len(place)
+        self._moves: NDArray[np.bool_] = np.zeros(count + len(obstacles), dtype=bool)
+        self._moves[:count] = (inverse_mass > 0.0).any(axis=1)
+        near = np.zeros_like(self._moves)
+        near[self._near()] = True
+        self._moves &= near  # what flies alone does not lie in the pile
+        self._free = (inverse_mass > 0.0) & self._moves[:count, None]
+        self._unknown = np.full((len(self._moves), 2), -1)
+        self._unknown[:count][self._free] = np.arange(self._free.sum())
+        self._force: Floats = (pull / np.where(self._free, inverse_mass, 1.0))[self._free]
+        mass = 1.0 / np.where(self._free.any(axis=1), inverse_mass.max(axis=1), 1.0)
+        everywhere = np.full(len(obstacles), np.inf)
+        self._weight = np.append(mass * float(np.hypot(*pull.T).max(initial=0.0)), everywhere)
+        self._weight[~self._moves] = np.inf
+        self._size = np.append(radius, everywhere)
+        inertia = (self._weight[:count] / (FREE_STRIDE * radius))[:, None]
+        self._inertia = np.broadcast_to(inertia, place.shape)[self._free]
+        self._gaps = self._listed(None, FIRST_BARRIER)
+
+    def _near(self) -> Rows:
+        pairs = near_pairs(self._place, (1.0 + AROUND) * self._radius, self._obstacles)
+        return pairs[self._moves[pairs].any(axis=1) & self._may_collide(pairs)]
+
+    def repose(self) -> Repose:
+        """The equilibrium; or, if it is not found soon and near, places of less energy on the way there."""
+        found = len(self._force) > 0 and self._iterate()
+        if not found and not self._force @ (self._place - self._start)[self._free] > 0.0:
+            self._place = self._start
+        pairs, slack, force = self._gaps.pairs, self._gaps.slack, self._gaps.force
+        weight, size = self._weight[pairs].min(axis=1), self._size[pairs].min(axis=1)
+        pushing = force / weight > slack / size
+        displacement = self._place - self._start
+        return Repose(found, np.flatnonzero(self._moves), displacement, pairs[pushing], force[pushing])
+
+    def _iterate(self) -> bool:
+        """Newton's method as far as it leads; True if to the equilibrium."""
+        barrier, listed = FIRST_BARRIER, self._place
+        for turn in range(MOST_OF_ALL):
+            try:
+                motion, opening, change, left = self._newton(barrier)
+            except RuntimeError:  # singular
+                return False
+            stride, gaps = self._farthest(motion), self._gaps
+            forward = min(_share(gaps.slack, opening), STRIDE / stride if stride > 0.0 else 1.0)
+            stronger = _share(gaps.force, change)
+            place = self._place + forward * motion
+            late = turn >= MOST_ITERATIONS and stride > NEARLY
+            if late or not self._farthest(place - self._start) <= FARTHEST:
+                return False
+            self._place = place
+            gaps.slack += forward * opening
+            gaps.force += stronger * change
+            present = float((gaps.force * gaps.slack / gaps.scale).mean())
+            if stride <= STILL and left <= STILL and present <= CLOSED:
+                return True
+            barrier = max((QUICK if min(forward, stronger) > FAR else SLOW) * present, 0.1 * CLOSED)
+            if stride > NEARLY:
+                barrier = max(barrier, BARRIER_SHARE * min(stride, 1.0))
+            if self._farthest(place - listed) > 0.5 * AROUND:
+                self._gaps, listed = self._listed(gaps, barrier), place
+        return False
+
+    def _farthest(self, motion: Floats) -> float:
+        """The longest of displacements, in the radius of its disc."""
+        return float((np.abs(motion).max(axis=1) / self._radius).max())
+
+    def _listed(self, known: _Gaps | None, barrier: float) -> _Gaps:
+        """The pairs that are near now, with the gaps and forces of those that are known."""
+        pairs = self._near()
+        size = self._size[pairs].min(axis=1)
+        scale = self._weight[pairs].min(axis=1) * size
+        gap, _ = self._gap(pairs)
+        slack = np.maximum(gap, FIRST_GAP * size)
+        force = barrier * scale / slack
+        if known is not None:
+            count = len(self._moves)
+            keys, old = pairs @ [count, 1], known.pairs @ [count, 1]
+            _, here, there = np.intersect1d(keys, old, assume_unique=True, return_indices=True)
+            slack[here], force[here] = known.slack[there], known.force[there]
+        return _Gaps(pairs, slack, force, scale)
+
+    def _gap(self, pairs: Rows) -> tuple[Floats, Floats]:
+        """Gaps, and unit vectors from the first of each pair to what is nearest of the second."""
+        others = self._obstacles
+        place = np.concatenate([self._place, others.start])
+        span = np.concatenate([np.zeros_like(self._place), others.span])
+        radius = np.append(self._radius, others.radius)
+        line = nearest(place[pairs[:, 1]] - place[pairs[:, 0]], span[pairs[:, 1]])
+        distance = np.hypot(line[:, 0], line[:, 1])
+        return distance - radius[pairs].sum(axis=1), line / distance[:, None]
+
+    def _newton(self, barrier: float) -> tuple[Floats, Floats, Floats, float]:
+        """Newton's step: of places, gaps and forces; and how much of the largest weight is unbalanced before it."""
+        gaps = self._gaps
+        gap, normal = self._gap(gaps.pairs)
+        slack, force = gaps.slack, gaps.force
+        np.maximum(slack, gap, out=slack)
+        opens = self._derivative(gaps.pairs, normal)
+        pushes = opens.T.tocsr()
+        unbalanced = self._force + pushes @ force
+        stiffness = force / slack
+        matrix = (pushes @ diags(stiffness) @ opens + diags(self._inertia)).tocsc()
+        factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
+        missing = gap - slack
+        wanted = barrier * gaps.scale / slack
+        moved = factors.solve(self._force + pushes @ (wanted - stiffness * missing))
+        opening = opens @ moved + missing
+        motion = np.zeros_like(self._place)
+        motion[self._free] = moved
+        left = float(np.abs(unbalanced).max() / self._weight[self._moves].max())
+        return motion, opening, wanted - force - stiffness * opening, left
+
+    def _derivative(self, pairs: Rows, normal: Floats) -> csr_matrix:
+        """N: how gaps follow from the unknown displacements."""
+        unknown = self._unknown[pairs]
+        known = unknown >= 0
+        rows = np.broadcast_to(np.arange(len(pairs))[:, None, None], unknown.shape)
+        values = np.stack([-normal, normal], axis=1)
+        shape = len(pairs), len(self._force)
+        return csr_matrix((values[known], (rows[known], unknown[known])), shape=shape)
+
+
+def _share(value: Floats, change: Floats) -> float:
+    """How much of a change leaves all values positive, at most all of it."""
+    shrinking = change < 0.0
+    return min(1.0, TO_EDGE * float((-value[shrinking] / change[shrinking]).min(initial=np.inf)))
