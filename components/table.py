@@ -99,7 +99,9 @@ class Table(Generic[H]):
         return self.handles[key]
 
     def __getattr__(self, name: str) -> Column:
-        if name.startswith("_") or name not in self.fields:
+        if name in Table.__slots__ or name.startswith("_"):
+            raise AttributeError(name)
+        if name not in self.fields:
             raise AttributeError(f"Table {self.name} has no column '{name}'.")
         return self.column(name)
 

@@ -8,7 +8,7 @@ import weakref
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar, NoReturn, TypeVar
 
 import esper
 import numpy as np
@@ -110,6 +110,11 @@ class World:
             if kind.single:
                 self._create(Create(kind, 1, {}))
 
+    def __reduce_ex__(self, protocol: object) -> NoReturn:
+        raise TypeError(
+            "A model cannot be copied or pickled; save it, or open its document (game.models) again."
+        )
+
     def activate(self) -> None:
         """Make this world's esper context the current one."""
         if esper.current_world != self.context:
@@ -143,6 +148,14 @@ class World:
             raise LookupError(f"This {handle.noun} was deleted; undo brings it back.")
         return row
 
+    def _ids(self, handles: Collection[Handle]) -> list[int]:
+        """The esper ids of entities. Raises LookupError for handles of another model, whose ids mean others here."""
+        ids = [handle.entity for handle in handles if handle._world() is self]
+        if len(ids) < len(handles):
+            other = next(handle for handle in handles if handle._world() is not self)
+            raise LookupError(f"{other!r} belongs to another model; take the {other.noun} of this one.")
+        return ids
+
     def read(self, handle: Handle, field: Field[Any]) -> Any:
         """The value of one Field of one entity."""
         table = self.tables[handle.table]
@@ -160,9 +173,10 @@ class World:
         """
         if not handles:
             return
+        ids = self._ids(handles)
         table = self.tables[handles[0].table]
         first = self.describe(handles[0])
-        rows = self.row_of_entity[[handle.entity for handle in handles]]
+        rows = self.row_of_entity[ids]
         for row in np.flatnonzero(rows < 0)[:1].tolist():
             self.row(handles[row])  # raises
         field = self._settable(table, field_name, first)
@@ -172,7 +186,7 @@ class World:
         if same(table.current(field.name)[rows], column):
             return
         with self.transaction(f"{field.title} of {first}"):
-            self.execute(Assign(table.name, field.name, tuple(h.entity for h in handles), column))
+            self.execute(Assign(table.name, field.name, tuple(ids), column))
             table.kind.after_change(table, rows, {field.name})
 
     def _settable(self, table: Table[Any], name: str, where: str) -> Field[Any]:
@@ -309,7 +323,7 @@ class World:
             if handle.single:
                 raise ValueError(f"There is exactly one {handle.noun}; it cannot be deleted.")
         if doomed:
-            self.execute(Delete(tuple(handle.entity for handle in doomed)))
+            self.execute(Delete(tuple(self._ids(doomed))))
 
     def execute(self, command: Command) -> None:
         """Apply a command and report its inverse to the log; of a group that raises, nothing happened."""
@@ -447,6 +461,7 @@ class World:
 
     def tag(self, handle: Handle, tag: type) -> None:
         """Mark an entity with an (empty) component, such as Selected."""
+        self._ids([handle])
         self.activate()
         if handle.exists and not esper.has_component(handle.entity, tag):
             esper.add_component(handle.entity, tag())
@@ -461,7 +476,7 @@ class World:
     def tag_only(self, handles: Iterable[Handle], tag: type) -> None:
         """Let exactly these entities carry a mark."""
         self.activate()
-        entities = np.array([handle.entity for handle in handles], dtype=np.int64)
+        entities = np.array(self._ids(list(handles)), dtype=np.int64)
         wanted = set(entities[self.row_of_entity[entities] >= 0].tolist())
         present = {entity for entity, _ in esper.get_component(tag)}
         for entity in present - wanted:

@@ -7,7 +7,7 @@ import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, NoReturn, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -196,6 +196,11 @@ class Session:
         self.desk.file = ModelFile(path, path.stem)
         self.desk.saved = self.model.revision
         self.notice = f"Saved as '{path.stem}'."
+
+    def __reduce_ex__(self, protocol: object) -> NoReturn:
+        raise TypeError(
+            "A session cannot be copied or pickled; save its model, and open that in another session."
+        )
 
     def __repr__(self) -> str:
         name, model = self.file.name or "untitled", self.model

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -117,3 +120,25 @@ def test_sessions_and_tables_tell_what_they_are(session: Session) -> None:
     assert repr(session) == "<Session 'isostatic': 3 particles, 3 rods, pause, t = 0 s>"
     assert repr(session.rods) == "<3 rods: AB, BC, CA>"
     assert repr(session.loads) == "<0 loads>"
+
+
+def test_elements_of_another_model_are_refused(session: Session) -> None:
+    """Their ids are those of other elements here: deleting a rod of one deleted a particle of the other."""
+    other = Session.open("hyperstatic")
+    stranger = other.rods["AC"]
+    for change in (
+        lambda: session.model.delete([stranger]),
+        lambda: session.model.assign([stranger], "damping", 1.0),
+        lambda: session.select(stranger),
+    ):
+        with pytest.raises(LookupError, match="rod AC> belongs to another model"):
+            change()
+    assert session.particles.names == ["A", "B", "C"]
+    assert session.selected == []
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, pickle.dumps])
+def test_sessions_and_models_are_not_copied_by_halves(session: Session, copied: Callable[[Any], Any]) -> None:
+    for whole in (session, session.model):
+        with pytest.raises(TypeError, match="cannot be copied or pickled; save"):
+            copied(whole)
