@@ -10,25 +10,16 @@ from components.world import Handle
 class Clock(Handle):
     """Simulated time and the energy account of the run. There is exactly one.
 
-    time = origin + (steps − origin_steps) × time step, so that no rounding accumulates in it.
+    time = origin + (steps − origin_steps) × time step, so that no rounding accumulates in it. Step programs
+    take what they need in the order in which it is declared here.
     """
 
     __slots__ = ()
     table, noun, single = "clock", "clock", True
 
     time: Field[float] = Field("s", role=Role.STATE, title="time", doc="Simulated time.")
-    steps: Field[int] = Field(dtype=int, default=0, role=Role.STATE, title="steps", doc="Fixed steps taken.")
-    origin: Field[float] = Field(
-        "s", role=Role.STATE, title="time origin", doc="Time at which the present step size began."
-    )
-    origin_steps: Field[int] = Field(
-        dtype=int, default=0, role=Role.STATE, title="origin steps", doc="Steps at the time origin."
-    )
     step_size: Field[float] = Field(
         "s", role=Role.STATE, title="step size", doc="Present fixed step; 0: not yet chosen."
-    )
-    step_limit: Field[float] = Field(
-        "s", role=Role.STATE, title="step limit", doc="Largest step when the steps were last reviewed."
     )
     step_error: Field[float] = Field(
         role=Role.STATE, title="step error", doc="Estimated error of the last step; 1 is the tolerance."
@@ -45,23 +36,17 @@ class Clock(Handle):
         title="largest speed",
         doc="Largest Euclidean norm of all velocities, the scale of their error.",
     )
-    initial_energy: Field[float] = Field(
-        "J",
-        role=Role.STATE,
-        title="initial energy",
-        doc="Kinetic and elastic energy at the start of the run.",
+    origin: Field[float] = Field(
+        "s", role=Role.STATE, title="time origin", doc="Time at which the present step size began."
+    )
+    step_limit: Field[float] = Field(
+        "s", role=Role.STATE, title="step limit", doc="Largest step when the steps were last reviewed."
     )
     work: Field[float] = Field(
         "J",
         role=Role.STATE,
         title="work",
         doc="Of varying loads, edits and constant forces up to the last edit.",
-    )
-    potential_reference: Field[float] = Field(
-        "J",
-        role=Role.STATE,
-        title="potential reference",
-        doc="Σ constant force · displacement at the last edit.",
     )
     dissipated_damping: Field[float] = Field(
         "J", role=Role.STATE, title="dissipated by damping", doc="By axial dampers and drag."
@@ -71,6 +56,18 @@ class Clock(Handle):
     )
     dissipated_impact: Field[float] = Field(
         "J", role=Role.STATE, title="dissipated by impacts", doc="Kinetic energy lost in impacts."
+    )
+    initial_energy: Field[float] = Field(
+        "J",
+        role=Role.STATE,
+        title="initial energy",
+        doc="Kinetic and elastic energy at the start of the run.",
+    )
+    potential_reference: Field[float] = Field(
+        "J",
+        role=Role.STATE,
+        title="potential reference",
+        doc="Σ constant force · displacement at the last edit.",
     )
     force_scale: Field[float] = Field(
         "kN", role=Role.STATE, title="force scale", doc="Largest force of the run, the scale for being at rest."
@@ -83,6 +80,10 @@ class Clock(Handle):
         role=Role.STATE,
         title="guard energy",
         doc="What the integrator conserves, less the work, when the present step size began.",
+    )
+    steps: Field[int] = Field(dtype=int, default=0, role=Role.STATE, title="steps", doc="Fixed steps taken.")
+    origin_steps: Field[int] = Field(
+        dtype=int, default=0, role=Role.STATE, title="origin steps", doc="Steps at the time origin."
     )
     collisions: Field[int] = Field(
         dtype=int, default=0, role=Role.STATE, title="collisions", doc="Impacts so far."

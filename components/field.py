@@ -19,6 +19,14 @@ Column = NDArray[Any]
 
 _FEW = 8  # rows up to which checking values one by one is faster than as an array
 _LARGEST_REFERENCE = 2**32 - 1
+_STORAGE: dict[Any, Any] = {
+    float: np.float64,
+    bool: np.bool_,
+    int: np.int64,
+    str: object,
+    object: object,
+    "reference": np.uint32,
+}
 # What numbers and flags given for a whole column may be: numpy's kinds, or the types in a list.
 _PLAIN: dict[Any, tuple[str, set[type]]] = {
     float: ("fiu", {float, int, np.float64, np.int64}),
@@ -34,6 +42,8 @@ class Role(Enum):
     DOCUMENT = "document"  # a person made it: saved, changed by commands, undoable
     STATE = "state"  # time made it: saved, kept by snapshots
     DERIVED = "derived"  # computed from the others: never saved
+
+    __hash__ = object.__hash__  # each is one of a kind, and looked up at every change
 
 
 class FieldError(ValueError):
@@ -108,6 +118,8 @@ class Field(Generic[T]):
         self.overridden_by = overridden_by
         self.choices = choices
         self.checker = checker
+        self.storage: np.dtype[Any] = np.dtype(_STORAGE[dtype])  # the numpy type of the column
+        self._has_objects = self.storage.hasobject
         self._key = key
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -133,19 +145,10 @@ class Field(Generic[T]):
 
     # --- storage ---------------------------------------------------------------------------------
 
-    @property
-    def storage(self) -> np.dtype[Any]:
-        """The numpy type of the column."""
-        if self.dtype == "reference":
-            return np.dtype(np.uint32)
-        return np.dtype(
-            {float: np.float64, bool: np.bool_, int: np.int64, str: object, object: object}[self.dtype]
-        )
-
     def allocate(self, rows: int) -> Column:
         """A column of `rows` rows holding the default."""
         column = np.empty((rows, *self.shape), dtype=self.storage)
-        if self.storage == np.dtype(object):
+        if self._has_objects:
             column.fill(self.default)
         else:
             column[...] = self.stored(self.default)
@@ -157,7 +160,7 @@ class Field(Generic[T]):
 
     def loaded(self, value: Any) -> Any:
         """A column's entry as a plain Python value."""
-        if self.storage == np.dtype(object):
+        if self._has_objects:
             return value
         if self.shape:
             return tuple(value.tolist())

@@ -28,6 +28,9 @@ class Model(World):
 
     def __init__(self) -> None:
         super().__init__((*KINDS, *ADDED.values()), DERIVATIONS)
+        self._environment = cast(Environment, self.tables["environment"][0])
+        self._settings = cast(Settings, self.tables["settings"][0])
+        self._clock = cast(Clock, self.tables["clock"][0])
         self.title = ""
         self.description = ""
         self.foreign: dict[int, dict[str, Any]] = {}
@@ -51,12 +54,12 @@ class Model(World):
 
     @property
     def environment(self) -> Environment:
-        return cast(Environment, self.tables["environment"][0])
+        return self._environment
 
     @property
     def settings(self) -> Settings:
-        return cast(Settings, self.tables["settings"][0])
+        return self._settings
 
     @property
     def clock(self) -> Clock:
-        return cast(Clock, self.tables["clock"][0])
+        return self._clock

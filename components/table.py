@@ -50,12 +50,13 @@ class Table(Generic[H]):
 
     def __init__(self, world: World, name: str, kind: type[H]) -> None:
         self._world = weakref.ref(world)
+        self._by_role: dict[tuple[Role, ...], list[Field[Any]]] = {}
         object.__setattr__(self, "name", name)  # assigning to it names the entities
         self.kind = kind
         self.fields: dict[str, Field[Any]] = {}
         self.count = 0
         self.structure = 0  # revision of the last creation or deletion
-        self.entity: NDArray[np.int64] = np.empty(_SMALLEST_CAPACITY, dtype=np.int64)
+        self.entity: NDArray[np.int64] = np.empty(1 if kind.single else _SMALLEST_CAPACITY, dtype=np.int64)
         self.handles: list[H] = []
         self._columns: dict[str, Column] = {}
         self._versions: dict[str, int] = {}
@@ -63,11 +64,26 @@ class Table(Generic[H]):
         self._lowest_number = 1  # no "rod n" below it is free
         for field in fields_of(kind):
             self.add_column(field)
+        self._blocks = self._side_by_side() if kind.single else {}
+
+    def _side_by_side(self) -> dict[tuple[str, ...], Column]:
+        """Let numbers of what there is one of lie in one array for each type and role, to be handled as one."""
+        alike: dict[tuple[Any, Role], list[str]] = {}
+        for name, field in self.fields.items():
+            if field.dtype in (float, int) and not field.shape:
+                alike.setdefault((field.dtype, field.role), []).append(name)
+        blocks = {}
+        for names in alike.values():
+            blocks[tuple(names)] = block = np.concatenate([self._columns[name] for name in names])
+            for place, name in enumerate(names):
+                self._columns[name] = block[place : place + 1]
+        return blocks
 
     @property
     def world(self) -> World:
         """The world it is part of. Raises LookupError if that is gone."""
-        return living(self._world, f"these {self.name}")
+        world = self._world()
+        return world if world is not None else living(self._world, f"these {self.name}")
 
     def add_column(self, field: Field[Any]) -> None:
         """Add a column that holds the field's default in every row."""
@@ -77,6 +93,8 @@ class Table(Generic[H]):
         if field.references is not None and field.references not in earlier:
             raise ValueError(f"{self.name}.{field.name} must refer to a table declared before {self.name}.")
         self.fields[field.name] = field
+        self._by_role.clear()
+        self.world.forget_layouts()
         self._columns[field.name] = field.allocate(len(self.entity))
         self._versions[field.name] = 0
 
@@ -132,6 +150,12 @@ class Table(Generic[H]):
         """esper ids in row order, shape (count,)."""
         return _read_only(self.entity[: self.count])
 
+    def groups(self, role: Role) -> list[tuple[str, ...]]:
+        """The names of all columns with this role, those together that are stored as one array."""
+        blocks = [block for block in self._blocks if self.fields[block[0]].role is role]
+        known = set(itertools.chain(*blocks))
+        return [*blocks, *((field.name,) for field in self.fields_in(role) if field.name not in known)]
+
     @property
     def names(self) -> list[str]:
         """Names in row order."""
@@ -143,14 +167,35 @@ class Table(Generic[H]):
 
     def fields_in(self, *roles: Role) -> list[Field[Any]]:
         """The fields with one of these roles, in order of declaration."""
-        return [field for field in self.fields.values() if field.role in roles]
+        if roles not in self._by_role:
+            self._by_role[roles] = [field for field in self.fields.values() if field.role in roles]
+        return self._by_role[roles]
 
     # --- writing (for World, and for systems through World.writable) --------------------------------
 
     def writable(self, name: str) -> Column:
         """The column as a writable view, shape (count, ...), marked as changed now."""
-        self._versions[name] = self.world.next_revision()
+        self._versions[name] = self.world.next_revision(self.fields[name].role)
         return self._columns[name][: self.count]
+
+    def storage(self, *group: str) -> Column:
+        """The array of one column, shape (count, ...), or of a group of columns, to write to.
+
+        It is neither marked as changed nor brought up to date: who writes to it marks it then.
+        """
+        return self._columns[group[0]][: self.count] if len(group) == 1 else self._blocks[group]
+
+    def together(self, names: Sequence[str]) -> Column:
+        """Numbers of what there is one of, declared one after the other, as storage of shape (len(names),)."""
+        for known, block in self._blocks.items():
+            first = known.index(names[0]) if names[0] in known else len(known)
+            if known[first : first + len(names)] == tuple(names):
+                return block[first : first + len(names)]
+        raise ValueError(f"{', '.join(names)} of {self.name} are not declared one after the other.")
+
+    def mark(self, names: Iterable[str], role: Role) -> None:
+        """Mark columns, all with this role, as changed now."""
+        self._versions.update(dict.fromkeys(names, self.world.next_revision(role)))
 
     def free_names(self, count: int, besides: Iterable[str] = ()) -> list[str]:
         """The `count` names of the form "rod n" with the smallest n that neither are used nor among `besides`."""
@@ -229,7 +274,7 @@ class Table(Generic[H]):
         self._by_name.update(zip(names, handles, strict=False))
 
     def _structure_changed(self) -> None:
-        self.structure = self.world.next_revision()
+        self.structure = self.world.restructured({field.role for field in self.fields.values()})
 
     def _reserve(self, rows: int) -> None:
         capacity = len(self.entity)

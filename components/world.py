@@ -18,6 +18,8 @@ from components.commands import Assign, Command, Create, Custom, Delete, Group, 
 from components.field import Column, Field, FieldError, Role, same
 from components.table import Table, living
 
+Layout = tuple[tuple[str, tuple[str, ...]], ...]
+
 _world_numbers = itertools.count(1)
 
 
@@ -41,7 +43,8 @@ class Handle:
     @property
     def world(self) -> World:
         """The world it belongs to. Raises LookupError if that is gone."""
-        return living(self._world, f"this {self.noun}")
+        world = self._world()
+        return world if world is not None else living(self._world, f"this {self.noun}")
 
     @property
     def row(self) -> int:
@@ -90,6 +93,10 @@ class World:
     def __init__(self, kinds: Sequence[type[Handle]], derivations: Iterable[Derivation] = ()) -> None:
         self.context = f"pinjoint {next(_world_numbers)}"
         self.revision = 0
+        self.structure = 0  # of the last creation or deletion
+        self._orders: tuple[int, dict[str, NDArray[np.int64]]] = (-1, {})
+        self._layouts: dict[tuple[Role, tuple[str, ...]], Layout] = {}
+        self._newest = dict.fromkeys(Role, 0)
         self.on_command: Callable[[Command], None] | None = None
         self.before_change: Callable[[], None] | None = None
         self.before_command: Callable[[], None] | None = None
@@ -101,6 +108,7 @@ class World:
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}
         self._derived_at: dict[Derivation, int] = {}  # revision at which it was last up to date
+        self._roots: dict[Derivation, tuple[Role, ...]] = {}
         weakref.finalize(self, _delete_context, self.context)
         for kind in kinds:
             self.tables[kind.table] = Table(self, kind.table, kind)
@@ -122,9 +130,16 @@ class World:
 
     # --- revisions -------------------------------------------------------------------------------
 
-    def next_revision(self) -> int:
-        """A new revision number, greater than all before."""
+    def restructured(self, roles: Iterable[Role]) -> int:
+        """A new revision number, at which rows of columns with these roles come or go."""
+        self.structure = self.next_revision(*roles)
+        return self.structure
+
+    def next_revision(self, *roles: Role) -> int:
+        """A new revision number, greater than all before, at which columns with these roles change."""
         self.revision += 1
+        for role in roles:
+            self._newest[role] = self.revision
         return self.revision
 
     def version(self, column: str) -> int:
@@ -135,15 +150,36 @@ class World:
 
     def newest(self, *roles: Role) -> int:
         """The revision of the newest change to any column with one of these roles."""
-        return max(
-            table.version(field.name) for table in self.tables.values() for field in table.fields_in(*roles)
-        )
+        return self._newest[roles[0]] if len(roles) == 1 else max(self._newest[role] for role in roles)
+
+    # --- all columns with a role ---------------------------------------------------------------------
+
+    def layout(self, role: Role, tables: tuple[str, ...]) -> Layout:
+        """How the columns with a role of these tables (none given: of all) are stored: groups by table."""
+        key = (role, tables)
+        if key not in self._layouts:
+            groups = (
+                (name, group) for name in tables or self.tables for group in self.tables[name].groups(role)
+            )
+            self._layouts[key] = tuple(groups)
+        return self._layouts[key]
+
+    def forget_layouts(self) -> None:
+        """Columns were added."""
+        self._layouts.clear()
+
+    @property
+    def orders(self) -> dict[str, NDArray[np.int64]]:
+        """esper ids in row order by table, which later creations and deletions leave as they are."""
+        if self._orders[0] != self.structure:
+            self._orders = self.structure, {name: t.entities.copy() for name, t in self.tables.items()}
+        return self._orders[1]
 
     # --- reading and writing one value -------------------------------------------------------------
 
     def row(self, handle: Handle) -> int:
         """The row of a handle. Raises LookupError if its entity is deleted."""
-        row = int(self.row_of_entity[handle.entity])
+        row: int = self.row_of_entity.item(handle.entity)
         if row < 0:
             raise LookupError(f"This {handle.noun} was deleted; undo brings it back.")
         return row
@@ -158,9 +194,11 @@ class World:
 
     def read(self, handle: Handle, field: Field[Any]) -> Any:
         """The value of one Field of one entity."""
-        table = self.tables[handle.table]
-        row = self.row(handle)
-        return field.loaded(table.current(field.name)[row])
+        if field.role is Role.DERIVED:
+            self.refresh(f"{handle.table}.{field.name}")
+        row = self.row_of_entity.item(handle.entity)
+        column = self.tables[handle.table]._columns[field.name]
+        return field.loaded(column[row if row >= 0 else self.row(handle)])
 
     def write(self, handle: Handle, field: Field[Any], value: Any) -> None:
         """Execute the command that gives one Field of one entity a value. Raises FieldError."""
@@ -264,17 +302,33 @@ class World:
         for target in derivation.targets:
             self._derivations[target] = derivation
         self._derived_at[derivation] = -1
+        self._roots.clear()
 
     def refresh(self, name: str) -> None:
         """Bring a derived column, named "table.field", up to date."""
         derivation = self._derivations.get(name)
         if derivation is None or self._derived_at[derivation] == self.revision:
             return
+        if max(self.newest(*self._roots_of(derivation)), self.structure) <= self._derived_at[derivation]:
+            return
         newest = max(self.version(source) for source in derivation.sources)
         new_rows = max(self.tables[target.split(".")[0]].structure for target in derivation.targets)
         if max(newest, new_rows) > self._derived_at[derivation]:
             derivation.compute(self)
         self._derived_at[derivation] = self.revision
+
+    def _roots_of(self, derivation: Derivation) -> tuple[Role, ...]:
+        """The roles of all columns that a derivation follows from, in the end."""
+        if derivation not in self._roots:
+            roots = set[Role]()
+            for source in derivation.sources:
+                table, field = source.split(".")
+                further = self._derivations.get(source)
+                roots |= (
+                    {self.tables[table].fields[field].role} if further is None else {*self._roots_of(further)}
+                )
+            self._roots[derivation] = tuple(roots)
+        return self._roots[derivation]
 
     # --- commands ------------------------------------------------------------------------------------
 
@@ -499,7 +553,7 @@ class World:
 
     def tagged_rows(self, tag: type, table: str) -> NDArray[np.intp]:
         """Rows of the entities of one table with a mark, ascending."""
-        now = (self.tags_revision, max(t.structure for t in self.tables.values()))
+        now = (self.tags_revision, self.structure)
         at, rows = self._tagged.get(tag, (None, {}))
         if at != now:
             self.activate()
