@@ -34,7 +34,9 @@ class Table(Generic[H]):
 
     __slots__ = (
         "__weakref__",
+        "_blocks",
         "_by_name",
+        "_by_role",
         "_columns",
         "_lowest_number",
         "_versions",

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from components.field import Column
 from components.load import load_breaks, loads_end
-from game.program import ACCOUNT, CONTROL, at_strength
+from game.program import ACCOUNT, CONTROL
 from game.program_batch import BatchProgram
 from game.program_writer import REVIEW_INTERVAL
 from game.simulation import Energy
@@ -138,15 +138,20 @@ class Batch:
     def observe(self) -> None:
         """Bring the derived columns and the measures up to date."""
         stack = self.stack
-        applied = stack["particles.applied_force"]
-        force, resisting = np.zeros_like(applied), np.zeros_like(applied)
-        derived = {f"rods_{name}": stack[f"rods.{name}"] for name in ("axial_force", "length", "strain")}
-        self._call("observe", self._all, applied=applied, force=force, resisting=resisting, **derived)
-        held = stack["particles.fixed"]
-        stack["particles.reaction"][...] = np.where(held, 0.0 - (force + resisting), 0.0)
-        limits = stack["rods.tension_limit"], stack["rods.compression_limit"]
-        yielding = at_strength(stack["rods.axial_force"], *limits) & stack["settings.plasticity"]
-        stack["rods.yielding"][...] = yielding
+        self._call(
+            "observe",
+            self._all,
+            applied=stack["particles.applied_force"],
+            reaction=stack["particles.reaction"],
+            rods_axial_force=stack["rods.axial_force"],
+            rods_length=stack["rods.length"],
+            rods_strain=stack["rods.strain"],
+            yielding=stack["rods.yielding"],
+            fixed=stack["particles.fixed"],
+            tension=stack["rods.tension_limit"],
+            compression=stack["rods.compression_limit"],
+            yields=stack.single("settings.plasticity"),
+        )
 
     def _advance(
         self, blocks: NDArray[np.intp], steps: int, until: float = math.inf, landing: float = math.inf

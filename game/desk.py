@@ -57,7 +57,7 @@ class Desk:
 
     def begin(self) -> None:
         """Time begins to pass from the present state."""
-        self.beginning = Snapshot.take(self.model)
+        self.beginning = self.simulation.present()
         self.beside.begin(self.beginning)
 
     @property

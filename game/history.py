@@ -4,45 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from components.commands import Assign, Command, Group
 from components.field import Role
 from components.model import Model
-from components.snapshot import Snapshot
+from game.log import Edit, Entry, Log, Run
 from game.moment import Moment
-from game.shelf import Shelf, Shelved
+from game.shelf import Shelf
 from game.simulation import Simulation
 
-
-@dataclass(frozen=True)
-class Edit:
-    """One step that a person took; applying `inverse` takes it back.
-
-    clock: the clock to return to then. key: edits in a row with the same key are one entry.
-    """
-
-    inverse: Command
-    clock: Moment
-    key: Hashable | None = None
-
-
-@dataclass(frozen=True)
-class Run:
-    """Time that passed; returning to `before` takes it back (or, in the redo log, repeats it).
-
-    single: it was stepped through one by one; such runs in a row are one entry.
-    shelved: where the state of `before` is if it was put aside.
-    """
-
-    before: Moment
-    single: bool = False
-    shelved: Shelved | None = None
-
-
-Entry = Edit | Run
-
-_NOTHING = Snapshot({}, {})
 MEMORY = 256 * 2**20  # bytes that the states before runs may take; older ones are put on a shelf
 
 
@@ -56,13 +27,11 @@ class History:
         on_edit: Callable[[], None],
         memory: int = MEMORY,
     ) -> None:
-        self._memory = memory
-        self._shelf = Shelf()
+        shelf = Shelf()
+        self._done, self._undone = Log(shelf, memory), Log(shelf, memory)
         self._model = model
         self._simulation = simulation
         self._on_edit = on_edit
-        self._done: list[Entry] = []
-        self._undone: list[Entry] = []
         self._run: Run | None = None
         self._run_revision = -1
         self._key: Hashable | None = None
@@ -84,7 +53,7 @@ class History:
         run, self._run = self._run, None
         if run is not None and not self._add_run(run):
             edit = replace(edit, clock=run.before)
-        if self._key is not None and self._done and _key_of(self._done[-1]) == self._key:
+        if self._key is not None and _key_of(self._done.last) == self._key:
             edit = merged(self._done.pop(), edit)
         self._add(edit)
         self._on_edit()
@@ -92,7 +61,7 @@ class History:
             self.begin_run(single=run.single)
 
     def _add(self, entry: Entry) -> None:
-        self._done.append(entry)
+        self._done.push(entry)
         self._undone.clear()
 
     @contextmanager
@@ -106,7 +75,7 @@ class History:
 
     def retract(self, key: Hashable) -> None:
         """Take back the last entry, if it has this key, as if it had never been."""
-        if self._done and _key_of(self._done[-1]) == key:
+        if _key_of(self._done.last) == key:
             self.undo()
             self._undone.pop()
 
@@ -130,42 +99,24 @@ class History:
         """Enter a run in the log; False if no time passed in it."""
         if self._model.clock.steps == run.before.steps:
             return False
-        last = self._done[-1] if self._done else None
+        last = self._done.last
         if run.single and isinstance(last, Run) and last.single:
-            run = last
-            self._done.pop()
-        self._add(run)
-        self._put_aside(self._done)
+            self._undone.clear()
+        else:
+            self._add(run)
         return True
-
-    def _put_aside(self, entries: list[Entry]) -> None:
-        """Keep in memory only as many states as there is room for, the newest."""
-        room = self._memory
-        for index in range(len(entries) - 1, -1, -1):
-            entry = entries[index]
-            if not isinstance(entry, Run):
-                continue
-            if entry.shelved is not None:
-                return  # and so are all older ones
-            room -= entry.before.size
-            if room < 0:
-                try:
-                    shelved = self._shelf.put(entry.before.state)
-                except OSError:  # no room on the disk either
-                    return
-                entries[index] = Run(replace(entry.before, state=_NOTHING), entry.single, shelved)
 
     # --- going through the log -------------------------------------------------------------------------
 
     @property
     def can_undo(self) -> bool:
         """True if there is something to take back."""
-        return bool(self._done) or self._run is not None
+        return len(self._done) > 0 or self._run is not None
 
     @property
     def can_redo(self) -> bool:
         """True if there is something to repeat."""
-        return bool(self._undone)
+        return len(self._undone) > 0
 
     def redo_all(self) -> None:
         """Repeat all that was taken back."""
@@ -186,21 +137,17 @@ class History:
         self.end_run()
         return self._move(self._undone, self._done)
 
-    def _move(self, source: list[Entry], target: list[Entry]) -> str:
-        if not source:
+    def _move(self, source: Log, target: Log) -> str:
+        if len(source) == 0:
             return ""
         entry = source.pop()
         if isinstance(entry, Run):
-            before = entry.before
-            if entry.shelved is not None:
-                before = replace(before, state=self._shelf.take(entry.shelved))
-            target.append(Run(self._simulation.moment(), entry.single))
-            self._put_aside(target)
-            self._simulation.resume(before)
+            target.push(Run(self._simulation.moment(), entry.single))
+            self._simulation.resume(entry.before)
             title = "run"
         else:
             now = self._simulation.moment("clock")
-            target.append(Edit(self._model.apply(entry.inverse), now, entry.key))
+            target.push(Edit(self._model.apply(entry.inverse), now, entry.key))
             self._simulation.resume(entry.clock)
             title = _title(entry.inverse)
         self._clock = None
@@ -208,7 +155,7 @@ class History:
         return title
 
 
-def _key_of(entry: Entry) -> Hashable | None:
+def _key_of(entry: Entry | None) -> Hashable | None:
     return entry.key if isinstance(entry, Edit) else None
 
 

@@ -8,14 +8,14 @@ from components.field import Column
 from components.snapshot import Snapshot
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Moment:
     """The state at a fixed step, and how far edits are accounted for in it. The document is not part of it.
 
     state: all of it, or of the clock only where nothing else can have changed since.
     armed: the energy account and the step size fit the document.
     before_edit: measures of the state before edits that are not accounted for yet.
-    stable_step, warning: of the simulation then. size: bytes that the state takes.
+    stable_step, warning: of the simulation then. binding: which of its programs it ran by.
     """
 
     state: Snapshot
@@ -24,9 +24,9 @@ class Moment:
     before_edit: Column | None
     stable_step: float
     warning: str
-    size: int
+    binding: int
 
     @property
     def whole(self) -> bool:
         """True if it keeps all of the state."""
-        return "particles" in self.state.entities
+        return any(table == "particles" for table, _ in self.state.layout)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,6 @@ from game.program_controlled import MARKS, ControlledWriter
 from game.program_writer import Writer, form_of
 from systems.base import ACCOUNTS, Driver, StepSystem, StopReason
 
-_AT_STRENGTH = 1e-9  # relative distance from its strength at which a rod is said to yield
 ACCOUNT = (
     *ACCOUNTS,
     "initial_energy",
@@ -28,6 +27,15 @@ ACCOUNT = (
     "guard_energy",
 )
 CONTROL = ("time", "step_size", "step_error", "largest_displacement", "largest_speed")
+_ORIGIN = ("origin", "step_limit")
+_COUNTS = ("steps", "origin_steps")
+_OF_PARTICLES = ("displacement", "velocity")
+_OBSERVED = {
+    "particles": ("applied_force", "reaction"),
+    "rods": ("axial_force", "length", "strain", "yielding"),
+}
+_GIVEN = ("particles.fixed", "rods.tension_limit", "rods.compression_limit")
+_REASONS = tuple(StopReason)
 
 
 def _writer(model: Model, systems: Sequence[StepSystem], driver: Driver, form: str = "") -> Writer:
@@ -39,12 +47,6 @@ def has_program(model: Model, systems: Sequence[StepSystem], driver: Driver) -> 
     """True if the program of this plan need not be compiled any more, only loaded."""
     writer = _writer(model, systems, driver)
     return is_compiled(writer.source(), writer.kernels)
-
-
-def at_strength(axial_force: Column, tension_limit: Column, compression_limit: Column) -> Column:
-    """Which rods are at a strength, as far as forces (kN) can tell."""
-    pulled: Column = axial_force >= tension_limit * (1.0 - _AT_STRENGTH)
-    return pulled | (axial_force <= -compression_limit * (1.0 - _AT_STRENGTH))
 
 
 class Program:
@@ -77,7 +79,7 @@ class Program:
             self.advance(0)
             self.observe()
             if self._writer.commits:  # of no rods, since a commit at all changes history
-                state, columns = ([a[:0] for a in arrays] for arrays in (self._state(), self._columns))
+                state, columns = ([a[:0] for a in arrays] for arrays in (self._state, self._columns))
                 self.module.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *columns)
         except NumbaError as error:
             raise explain(self._writer.bound, self.model, error) from error
@@ -105,29 +107,66 @@ class Program:
 
     def bind(self) -> None:
         """Take hold of the model's columns; needed after every change of its document."""
-        particles, rods = self.model.particles.count, self.model.rods.count
+        model = self.model
+        particles, rods = model.particles.count, model.rods.count
         extra: dict[str, Any] = {}
         for system in self.systems:
-            extra.update(bind(system, self.model).arrays)
-        written = {w.replace(".", "_", 1) for b in self._writer.commits for w in b.system.writes}
+            extra.update(bind(system, model).arrays)
+        written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
+        extra |= {name: self._storage(path) for name, path in written.items()}
         self._columns = [
-            extra[name] if name in extra else self._column(name, name in written)
+            extra[name] if name in extra else model.column(name.replace("_", ".", 1))
             for name in self._writer.columns
         ]
+        self._changes = _by_table_and_role(model, written.values())
+        self._bind_clock()
+        self._displacement, self._velocity = (self._storage(f"particles.{name}") for name in _OF_PARTICLES)
         self._force, self._resisting, self._predicted = (np.zeros((particles, 2)) for _ in range(3))
         self._direction = np.zeros((rods, 2))
+        self._state = (self._displacement, self._velocity, self._force, self._resisting, self._direction)
         self._power, self._gained = np.zeros(len(ACCOUNTS)), np.zeros(len(ACCOUNTS))
-        self._loads_end = loads_end(self.model)
-        self._breaks = load_breaks(self.model)
+        self._loads_end = loads_end(model)
+        self._breaks = [*load_breaks(model), math.inf]
         self._work = np.zeros((self.driver.particle_rows, particles, 2))
         self._rod_work = np.zeros((self.driver.rod_rows, rods))
         self._marks = np.zeros((rods, self.marks))
         self._stage_power = np.zeros(len(ACCOUNTS))
+        self._bind_observed()
+        settings = model.settings
+        controls = self.driver.estimates_error and settings.time_step is None
+        self._tolerance = settings.tolerance if controls else 0.0
         self._state_revision = -1
 
-    def _column(self, name: str, written: bool) -> Any:
-        table, _, column = name.partition("_")
-        return self.model.writable(f"{table}.{column}") if written else self.model.column(f"{table}.{column}")
+    def _storage(self, path: str) -> Column:
+        """A column, "table.field", to write to; it is marked as changed whenever that was done."""
+        table, _, name = path.partition(".")
+        return self.model.tables[table].storage(name)
+
+    def _bind_clock(self) -> None:
+        clock = self.model.tables["clock"]
+        self._account, self._control = clock.together(ACCOUNT), clock.together(CONTROL)
+        self._origin = clock.together(_ORIGIN)
+        self._counts = [clock.storage(name) for name in _COUNTS]
+        self._controller = np.zeros(len(CONTROL) + 2)
+        self._search = np.zeros(7)
+
+    def _bind_observed(self) -> None:
+        """What observe() takes from the end of the state on."""
+        model, zeros = self.model, np.zeros_like
+        applied, reaction, *of_rods = (
+            self._storage(f"{table}.{name}") for table, names in _OBSERVED.items() for name in names
+        )
+        for path in _GIVEN:
+            model.column(path)  # up to date
+        self._observed = (
+            applied,
+            reaction,
+            *(zeros(array) for array in (self._force, self._resisting, self._direction, self._power)),
+            self.measures,
+            *of_rods,
+            *(self._storage(path) for path in _GIVEN),
+            model.settings.plasticity,
+        )
 
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
         """Take up to `steps` steps; returns how many, and why it stopped.
@@ -137,139 +176,118 @@ class Program:
         """
         if self.driver.controlled:
             return self._advance_controlled(steps, until, landing)
-        clock = self.model.clock
+        time, size = self._control[:2].tolist()
         if until < math.inf:
-            steps = min(steps, max(int((until - clock.time) / clock.step_size * (1.0 + 1e-12)), 0))
-        fresh = self._state_revision == self.model.newest(Role.STATE)
-        total, first = clock.steps, clock.steps - clock.origin_steps
-        account = self._accounts()
-        taken, reason = self._call(
-            "advance",
+            steps = min(steps, max(int((until - time) / size * (1.0 + 1e-12)), 0))
+            if steps == 0:
+                return 0, StopReason.DONE
+        origin = float(self._origin[0])
+        total, since = (int(count[0]) for count in self._counts)
+        taken, reason = self.module.advance(
             steps,
-            fresh,
+            self._is_fresh,
             total,
-            first,
-            clock.origin,
-            clock.step_size,
-            np.append(self._breaks, math.inf),
+            total - since,
+            origin,
+            size,
+            self._coming_breaks(math.inf),
             self._loads_end,
-            *self._state(),
+            *self._state,
             self._predicted,
             self._power,
             self._gained,
-            account,
+            self._account,
             self.measures,
+            *self._columns,
         )
         if taken:
-            for name, value in zip(ACCOUNT, account, strict=True):
-                self.model.writable(f"clock.{name}")[0] = value
-            self.model.writable("clock.steps")[0] = total + taken
-            self.model.writable("clock.time")[0] = clock.origin + (first + taken) * clock.step_size
+            self._counts[0][0] = total + taken
+            self._control[0] = origin + (total - since + taken) * size
+            self._mark_changes()
         self._state_revision = self.model.newest(Role.STATE)
-        return taken, StopReason(reason)
+        return taken, _REASONS[reason]
 
     def _advance_controlled(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
-        clock, model = self.model.clock, self.model
-        fresh = self._state_revision == model.newest(Role.STATE)
-        total = clock.steps
-        account = self._accounts()
-        control = np.array([*self._of_clock(CONTROL), 0.0, 0.0])
-        controls_error = self.driver.estimates_error and model.settings.time_step is None
-        breaks = np.sort(np.append(self._breaks, [landing, math.inf]))
-        taken, reason = self._call(
-            "advance",
+        control = self._controller
+        control[: len(CONTROL)] = self._control
+        origin, limit = self._origin.tolist()
+        total, since = (int(count[0]) for count in self._counts)
+        taken, reason = self.module.advance(
             steps,
-            fresh,
+            self._is_fresh,
             total,
-            total - clock.origin_steps,
-            clock.origin,
-            model.settings.tolerance if controls_error else 0.0,
-            clock.step_limit or math.inf,
-            breaks,
+            total - since,
+            origin,
+            self._tolerance,
+            limit or math.inf,
+            self._coming_breaks(landing),
             float(until),
             self._loads_end,
             control,
-            np.zeros(7),
-            *self._state(),
+            self._search,
+            *self._state,
             self._work,
             self._rod_work,
             self._marks,
             self._power,
             self._gained,
             self._stage_power,
-            account,
+            self._account,
             self.measures,
+            *self._columns,
         )
-        if control[0] > clock.time:
-            if control[0] == landing and not controls_error:
+        time = float(control[0])
+        if time > self._control[0]:
+            if time == landing and not self._tolerance:
                 taken += 1  # the piece that it takes to land
-            for name, value in zip((*ACCOUNT, *CONTROL), (*account, *control), strict=False):
-                model.writable(f"clock.{name}")[0] = value
-            model.writable("clock.steps")[0] = total + taken
-            if controls_error or control[0] == landing:
-                model.writable("clock.origin")[0] = control[0]
-                model.writable("clock.origin_steps")[0] = total + taken
-        self._state_revision = model.newest(Role.STATE)
-        return taken, StopReason(reason)
+            self._control[...] = control[: len(CONTROL)]
+            self._counts[0][0] = total + taken
+            if self._tolerance or time == landing:
+                self._origin[0] = time
+                self._counts[1][0] = total + taken
+            self._mark_changes()
+        self._state_revision = self.model.newest(Role.STATE)
+        return taken, _REASONS[reason]
+
+    @property
+    def _is_fresh(self) -> bool:
+        """True if the forces are still those of the present state."""
+        return self._state_revision == self.model.newest(Role.STATE)
+
+    def _coming_breaks(self, landing: float) -> Column:
+        """Times that no step passes, ascending, the last one infinite."""
+        return np.array(sorted([*self._breaks, landing]) if landing < math.inf else self._breaks)
+
+    def _mark_changes(self) -> None:
+        for table, names, role in self._changes:
+            self.model.tables[table].mark(names, role)
 
     def commit(self) -> None:
         """Let history take note of a state that no step has led to, outside the energy account."""
         if self._writer.commits:
-            clock = self.model.clock
-            self._call("commit", clock.time, clock.step_size, *self._state(), np.zeros(len(ACCOUNT)))
+            time, size = self._control[:2].tolist()
+            self.module.commit(time, size, *self._state, np.zeros(len(ACCOUNT)), *self._columns)
+            self._mark_changes()
 
     def observe(self) -> None:
         """Bring the derived columns of rods and particles, and the measures, up to date."""
-        model, clock = self.model, self.model.clock
-        count = model.rods.count
-        axial_force, length, strain = (
-            model.writable(f"rods.{name}") for name in ("axial_force", "length", "strain")
-        )
-        displacement, velocity = model.particles.displacement, model.particles.velocity
-        applied, force, resisting = (np.zeros_like(displacement) for _ in range(3))
-        self._call(
-            "observe",
-            clock.time,
-            clock.step_size,
-            displacement,
-            velocity,
-            applied,
-            force,
-            resisting,
-            np.zeros((count, 2)),
-            np.zeros(len(ACCOUNTS)),
-            self.measures,
-            axial_force,
-            length,
-            strain,
-        )
-        self._derive_supports_and_yielding(axial_force, applied, force + resisting)
-
-    def _derive_supports_and_yielding(self, axial_force: Column, applied: Column, net_force: Column) -> None:
-        model = self.model
-        model.writable("particles.applied_force")[...] = applied
-        model.writable("particles.reaction")[...] = np.where(model.particles.fixed, 0.0 - net_force, 0.0)
-        limits = model.rods.tension_limit, model.rods.compression_limit
-        model.writable("rods.yielding")[...] = at_strength(axial_force, *limits) & model.settings.plasticity
+        time, size = self._control[:2].tolist()
+        self.module.observe(time, size, self._displacement, self._velocity, *self._observed, *self._columns)
+        for table, names in _OBSERVED.items():
+            self.model.tables[table].mark(names, Role.DERIVED)
 
     def conserved_energy(self) -> float:
         """What the integrator conserves, less the work done so far (J), in the state last observed."""
-        dt = self.model.clock.step_size
         conserved = self.module.conserved.py_func  # by itself it would have to be compiled in every process
-        return float(conserved(self.measures, self._accounts(), dt, self.module.SHADOW))
+        return float(conserved(self.measures, self._account, float(self._control[1]), self.module.SHADOW))
 
-    def _accounts(self) -> Column:
-        return np.array(self._of_clock(ACCOUNT))
 
-    def _of_clock(self, names: Sequence[str]) -> list[float]:
-        """Values of the clock, without the way over its handle, which takes longer than some runs."""
-        table = self.model.tables["clock"]
-        return [table.current(name)[0] for name in names]
-
-    def _state(self) -> tuple[Column, ...]:
-        displacement = self.model.writable("particles.displacement")
-        velocity = self.model.writable("particles.velocity")
-        return displacement, velocity, self._force, self._resisting, self._direction
-
-    def _call(self, entry: str, *arguments: Any) -> Any:
-        return getattr(self.module, entry)(*arguments, *self._columns)
+def _by_table_and_role(model: Model, written: Iterable[str]) -> list[tuple[str, list[str], Role]]:
+    """What steps change, besides what commits write: columns of one table and role together."""
+    paths = [f"clock.{name}" for name in (*CONTROL, *_ORIGIN, *_COUNTS, *ACCOUNT)]
+    paths += [*(f"particles.{name}" for name in _OF_PARTICLES), *written]
+    found: dict[tuple[str, Role], list[str]] = {}
+    for path in dict.fromkeys(paths):
+        table, _, name = path.partition(".")
+        found.setdefault((table, model.tables[table].fields[name].role), []).append(name)
+    return [(table, names, role) for (table, role), names in found.items()]

@@ -68,7 +68,7 @@ class BatchProgram:
             "",
         ]
         for name, parameters in self._parameters.items():
-            one_for_all = (*_SHARED, *self._scratch(name))
+            one_for_all = (*_SHARED, *self._scratch_shapes)
             arguments = [p if p in one_for_all else f"{p}[k]" for p in parameters]
             lines += [
                 '@njit(error_model="numpy", nogil=True, cache=True)',
@@ -78,11 +78,6 @@ class BatchProgram:
                 "",
             ]
         return "\n".join(lines)
-
-    def _scratch(self, entry: str) -> tuple[str, ...]:
-        """The parameters of an entry that nobody reads afterwards; observing tells the forces."""
-        told = ("force", "resisting") if entry == "observe" else ()
-        return tuple(name for name in self._scratch_shapes if name not in told)
 
     def columns(self, stack: Stack, varied: bool) -> dict[str, Column]:
         """What the compiled functions end with, by name; varied: arrays of systems differ between blocks."""
@@ -120,7 +115,7 @@ class BatchProgram:
         taken, reason = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
 
         def work(some: NDArray[np.intp]) -> None:
-            scratch = {name: np.zeros(self._scratch_shapes[name]) for name in self._scratch(entry)}
+            scratch = {name: np.zeros(shape) for name, shape in self._scratch_shapes.items()}
             given = [scratch[p] if p in scratch else arguments[p] for p in self._parameters[entry]]
             getattr(self._module, f"{entry}_each")(some, taken, reason, *given)
 

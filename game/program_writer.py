@@ -18,6 +18,7 @@ from systems.physics.automatic import SMALL
 
 REVIEW_INTERVAL = 8192  # steps between reviews of the step size, and between safe states
 
+_AT_STRENGTH = 1.0 - 1e-9  # of its strength, from which on a rod is said to yield
 _ALWAYS = (
     "particles_mobility",
     "particles_mass",
@@ -372,12 +373,18 @@ class Writer:
         return f"forces(time, dt, displacement, velocity, force, resisting, direction, {self._columns_text()})"
 
     def _observe(self) -> str:
-        """The derived columns of rods and particles, and the measures, at a state."""
+        """The derived columns of rods and particles, and the measures, at a state.
+
+        A rod yields where its axial force is at its strength, but for round-off.
+        """
         columns = self._columns_text()
         body = [
             f"external(time, dt, displacement, velocity, applied, resisting, {columns})",
             self._observed_forces,
             f"measure(displacement, velocity, force, resisting, measures, {columns})",
+            "for i in range(displacement.shape[0]):",
+            "    for d in range(2):",
+            "        reaction[i, d] = 0.0 - (force[i, d] + resisting[i, d]) if fixed[i, d] else 0.0",
             *RodLoop(
                 SHIFT,
                 [
@@ -386,12 +393,15 @@ class Writer:
                     "rods_axial_force[r] = axial_force",
                     "rods_length[r] = length",
                     "rods_strain[r] = elongation / rods_rest_length[r]",
+                    f"low, high = {-_AT_STRENGTH} * compression[r], {_AT_STRENGTH} * tension[r]",
+                    "yielding[r] = yields and (axial_force >= high or axial_force <= low)",
                 ],
             ).one_by_one(),
         ]
         head = (
-            "def observe(time, dt, displacement, velocity, applied, force, resisting, direction, power, measures,"
-            f" rods_axial_force, rods_length, rods_strain, {self._columns_text()}):"
+            "def observe(time, dt, displacement, velocity, applied, reaction, force, resisting, direction, power,"
+            " measures, rods_axial_force, rods_length, rods_strain, yielding, fixed, tension, compression, yields,"
+            f" {columns}):"
         )
         return "\n".join(["@entry", head, *indented(body)])
 

@@ -107,6 +107,8 @@ class Simulation:
         self._programs: dict[tuple[str, ...], Program | Flight] = {}
         self._driver: Driver | None = None
         self._program: Program | Flight | None = None
+        self._binding = 0  # how often a program was bound
+        self._present: tuple[int, Snapshot] | None = None  # the state at this revision
         self._collides = False
         self._armed = False  # the energy account and the step size fit the present document
         self._armed_revision = -1
@@ -198,22 +200,29 @@ class Simulation:
 
     def moment(self, *tables: str) -> Moment:
         """The present, to return to: the state of these tables (none given: of all)."""
-        state, paths = Snapshot.take(self.model, *tables), self.model.clock.paths
-        columns = sum(column.nbytes for column in state.columns.values())
         return Moment(
-            state,
+            Snapshot.take(self.model, *tables) if tables else self.present(),
             self.model.clock.steps,
             self._armed,
             self._before_edit,
             self.stable_step,
             self.warning,
-            size=columns + (paths.nbytes if paths is not None else 0),
+            self._binding,
         )
+
+    def present(self) -> Snapshot:
+        """All of the state now; the same as before if nothing has changed."""
+        revision = self.model.newest(Role.STATE)
+        if self._present is None or self._present[0] != revision:
+            self._present = revision, Snapshot.take(self.model)
+        return self._present[1]
 
     def resume(self, moment: Moment) -> None:
         """Return to a moment in which the document was as it is now."""
+        program = self._program if moment.binding == self._binding else None
         moment.state.restore(self.model)
         self.forget()
+        self._program = program
         self._armed, self._before_edit = moment.armed, moment.before_edit
         if moment.whole:  # else what limits the step is found out anew
             self._safe = moment.state
@@ -249,7 +258,7 @@ class Simulation:
         elif self._safe is None:
             self._find_stable_step()
         if self._safe is None:
-            self._safe = Snapshot.take(self.model)
+            self._safe = self.present()
         return self.program
 
     def _key(self, systems: list[StepSystem]) -> tuple[str, ...]:
@@ -263,6 +272,7 @@ class Simulation:
             self._collides = any(isinstance(system, Collision) for system in systems)
             try:
                 self._program = self._bound(systems)
+                self._binding += 1
             except ProgramError as error:
                 if not blame_mod(error):
                     raise
@@ -401,31 +411,33 @@ class Simulation:
         """True if the run ended by itself, at rest or diverged, and nothing was edited since."""
         return self._armed and self.reason in (StopReason.REST, StopReason.DIVERGED)
 
-    def advance(self, steps: int, until: float = math.inf) -> int:
+    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> int:
         """Take up to `steps` steps, none of which ends after `until` (s); returns how many.
 
-        Stops at rest and before garbage.
+        Stops at rest and before garbage. A step that would pass `landing` (s) may be cut to end there.
         """
         self._arm()
         started, clock = time.perf_counter(), self.model.clock
-        first = clock.steps
-        while clock.steps - first < steps and not self.halted:
-            ahead = steps - (clock.steps - first)
-            ahead = ahead if self.watch is None else min(ahead, self.watch())
-            self._arm()
-            taken, reason = self._take(ahead, until)
+        first, done = clock.steps, 0
+        while done < steps and not self.halted:
+            ahead = steps - done if self.watch is None else min(steps - done, self.watch())
+            taken, reason = self._take(ahead, until, landing)
             if taken == 0 and reason is StopReason.DONE:
                 break
             self._heed(reason)
+            self._arm()
+            done = clock.steps - first
         self.compute_seconds += time.perf_counter() - started
-        return clock.steps - first
+        return done
 
-    def _take(self, steps: int, until: float) -> tuple[int, StopReason]:
+    def _take(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         """Take up to `steps` steps, looking out for what meets on the way if anything can."""
         program = self.program
-        if isinstance(program, Program) and self._collides:
+        if not isinstance(program, Program):
+            return program.advance(steps, until)
+        if self._collides:
             return self._encounters.advance(program, steps, until)
-        return program.advance(steps, until)
+        return program.advance(steps, until, landing)
 
     def _heed(self, reason: StopReason) -> None:
         """Do what a program that returned for this reason asks for."""
@@ -439,7 +451,7 @@ class Simulation:
         elif reason is StopReason.DIVERGED and not (self._go_on_without_mod() or self._retry()):
             self._give_up("energy appeared from nowhere")
         elif reason is StopReason.REVIEW:
-            self._safe, self._retries = Snapshot.take(self.model), 0
+            self._safe, self._retries = self.present(), 0
             self._review_step()
 
     def _go_on_without_mod(self) -> bool:
@@ -471,7 +483,8 @@ class Simulation:
         self._arm()
         clock = self.model.clock
         while not self.halted and target - clock.time > 4.0 * math.ulp(target):
-            if self.advance(REVIEW_INTERVAL, target) == 0 and not self.halted:
+            landing = math.inf if whole_steps else target
+            if self.advance(REVIEW_INTERVAL, target, landing) == 0 and not self.halted:
                 if whole_steps:
                     return
                 self._heed(self._land(target))
@@ -500,7 +513,7 @@ class Simulation:
     def at(self, target: float) -> Iterator[None]:
         """The model as it is at a time (s) within the next step, inside the `with`; then as it was before."""
         self._arm()
-        before = Snapshot.take(self.model)
+        before = self.present()
         if target > self.model.clock.time:
             self._land(target)
         try:

@@ -78,12 +78,13 @@ class Timeline:
         return self._interval - beyond
 
     def _keep(self) -> None:
-        if self._now in self._moments:
+        now = self._now
+        if now in self._moments:
             return
-        moment = self._moments[self._now] = self._simulation.moment()
-        if len(self._moments) > max(min(MOST_MOMENTS, self._memory // max(moment.size, 1)), 2):
+        moment = self._moments[now] = self._simulation.moment()
+        if len(self._moments) > max(min(MOST_MOMENTS, self._memory // max(moment.state.size, 1)), 2):
             self._interval *= 2
-            kept = {self.first, self._now}
+            kept = {self.first, now}
             self._moments = {
                 at: moment for at, moment in self._moments.items() if at % self._interval == 0 or at in kept
             }
