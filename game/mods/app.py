@@ -32,7 +32,7 @@ from systems.base import Driver, System
 from systems.edit.refusal import Refusal
 from systems.input.bindings import LIVE, Binding, add_binding, add_tool, remove_binding, remove_tool
 from systems.render.icons import ICONS, Part
-from systems.render.picture import ABOVE, BELOW, Layer
+from systems.render.layers import ABOVE, BELOW, Layer
 
 if TYPE_CHECKING:
     from game.session import Session

@@ -14,6 +14,7 @@ from components.model import Model
 from components.view import View, drawn_places
 from systems.render.form_layout import CAPTION, LOW, FormLayout, Place, lay_out
 from systems.render.help import draw_help
+from systems.render.layers import BELOW
 from systems.render.marks import Fills, Mark, Panel, Picture, Rectangles, Strokes, Text
 from systems.render.sheet import FEW, Sheet, measure
 from systems.render.structure import draw_particles, draw_rods
@@ -237,10 +238,12 @@ def caret_at(place: Place, box: Box, x: float, unit: float) -> int:
 
 @lru_cache(maxsize=128)
 def thumbnail(model: Model, viewport: Viewport, unit: float, theme: Theme) -> tuple[Mark, ...]:
-    """A small picture of a model that does not change any more: rods, supports and particles."""
+    """A small picture of a model that does not change any more: walls, rods, supports and particles."""
     camera = Camera(viewport=viewport)
     camera.fit(drawn_places(model), _THUMBNAIL_MARGIN * unit)
     sheet = measure(model, View(camera=camera, pixel_ratio=_SMALLER * unit), theme)
+    for layer in BELOW:
+        sheet.marks += layer(sheet)
     draw_supports(sheet, support_sides(sheet))
     draw_rods(sheet)
     draw_particles(sheet)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from components.form import Form
@@ -10,13 +9,14 @@ from components.toolbar import Toolbar
 from components.view import View, drawn_positions
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.labels import place_labels
-from systems.render.marks import Mark, Picture
+from systems.render.layers import ABOVE, BELOW
+from systems.render.marks import Picture
 from systems.render.overlays import draw_overlays, draw_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
 from systems.render.readouts import draw_readouts
 from systems.render.shape import draw_shape
-from systems.render.sheet import Sheet, measure
+from systems.render.sheet import measure
 from systems.render.structure import draw_ghost, draw_grid, draw_halos, draw_particles, draw_rods, label_names
 from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Theme
@@ -26,12 +26,7 @@ from systems.render.tools import draw_flashes, draw_preview
 if TYPE_CHECKING:
     from components.model import Model
 
-__all__ = ["ABOVE", "BELOW", "Layer", "compose", "drawn_positions"]
-
-Layer = Callable[[Sheet], Iterable[Mark]]
-
-BELOW: list[Layer] = []  # what mods draw below the elements of a model
-ABOVE: list[Layer] = []  # and above them
+__all__ = ["compose", "drawn_positions"]
 
 
 def compose(model: Model | Form | Toolbar, view: View, theme: Theme) -> Picture:

@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from components import FieldError, Handle
+from components.camera import Viewport
 from components.view import Preview
 from game import Session, models
 from game.document import ModelError
 from systems.collision.system import normals
 from systems.render.marks import Strokes
+from systems.render.panel import thumbnail
 from systems.render.picture import compose
 from systems.render.theme import load_theme
 
@@ -169,6 +171,15 @@ def test_it_is_drawn_and_marked() -> None:
     picture = compose(session.model, session.view, theme)
     assert any(isinstance(mark, Strokes) and mark.colour == theme.selected for mark in picture.marks)
     assert "floor" in picture.texts
+
+
+def test_small_pictures_show_it() -> None:
+    """Those from which a model is chosen: the stairs without steps were only a ball."""
+    shown = thumbnail(models.load("staircase"), Viewport(0, 0, 180, 108), 1.0, load_theme("light"))
+    ends = np.concatenate([mark.end for mark in shown if isinstance(mark, Strokes)])
+    walls = Session.open("staircase").table("walls")
+    assert len(walls) > 1
+    assert len(ends) >= len(walls)
 
 
 def test_impacts_name_it_and_a_ball_comes_to_rest_on_it() -> None:
