@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from components.field import Vector
 
-DEFAULT_SCALE = 100.0  # pixels per metre at the default zoom
+DEFAULT_SCALE = 100.0  # points per metre at the default zoom
 SMALLEST_SCALE, LARGEST_SCALE = 1e-6, 1e9
 
 
@@ -73,25 +73,31 @@ class Camera:
         """Move the picture by so many pixels (right, down)."""
         self.centre = (self.centre[0] - pixels[0] / self.scale, self.centre[1] + pixels[1] / self.scale)
 
-    def fit(self, points: NDArray[np.float64], margin: float = 110.0, within: Viewport | None = None) -> None:
-        """Show all points, shape (n, 2), with a margin in pixels (less where there is little room).
+    def fit(
+        self,
+        points: NDArray[np.float64],
+        margin: float = 110.0,
+        within: Viewport | None = None,
+        unit: float = 1.0,
+    ) -> None:
+        """Show all points, shape (n, 2), with a margin in points (less where there is little room).
 
-        within: the part of the viewport to show them in, if not all of it.
+        within: the part of the viewport to show them in, if not all of it. unit: pixels per point.
         """
         room = within or self.viewport
         points = points[np.isfinite(points).all(axis=1)]
         if len(points) == 0:
-            self.centre, self.scale = (0.0, 0.0), DEFAULT_SCALE
+            self.centre, self.scale = (0.0, 0.0), DEFAULT_SCALE * unit
         else:
-            self._fit(points, margin, room)
+            self._fit(points, margin * unit, room, (4.0 if len(points) > 1 else 1.0) * DEFAULT_SCALE * unit)
         (x, y), (there_x, there_y) = self.middle, room.middle
         self.pan((there_x - x, there_y - y))
 
-    def _fit(self, points: NDArray[np.float64], margin: float, within: Viewport) -> None:
+    def _fit(self, points: NDArray[np.float64], margin: float, within: Viewport, largest: float) -> None:
         low, high = points.min(axis=0), points.max(axis=0)
         size = np.array([within.width, within.height], dtype=np.float64)
         room = np.maximum(size - 2.0 * np.minimum(margin, 0.2 * size), 1.0)
         extent = np.maximum(high - low, 1e-9)
         scale = float((room / extent).min())
         self.centre = (float((low[0] + high[0]) / 2), float((low[1] + high[1]) / 2))
-        self.scale = min(max(scale, SMALLEST_SCALE), 4.0 * DEFAULT_SCALE if len(points) > 1 else DEFAULT_SCALE)
+        self.scale = min(max(scale, SMALLEST_SCALE), largest)

@@ -13,7 +13,33 @@ from components.kind import all_points
 from components.model import Model
 from components.toolbar import Toolbar
 
+MAGNIFICATIONS = (
+    0.5,
+    0.65,
+    0.8,
+    0.9,
+    1.0,
+    1.1,
+    1.25,
+    1.5,
+    1.75,
+    2.0,
+    2.5,
+    3.0,
+    4.0,
+)  # that one can choose from
+COMFORTABLE = 1080.0  # points of height for which type and symbols are made; in a higher window they grow
+LEAST_HEIGHT = 240.0  # points that are always left, however large they are wanted
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
+
+
+def magnified(height: float, chosen: float) -> float:
+    """How many times larger than usual type and symbols are in a window so many points high.
+
+    chosen: how much larger than by itself a person wants them.
+    """
+    by_itself = max(factor for factor in MAGNIFICATIONS if factor <= max(height / COMFORTABLE, 1.0))
+    return min(by_itself * chosen, max(height / LEAST_HEIGHT, 1.0))
 
 
 @dataclass(frozen=True)
@@ -133,7 +159,7 @@ class View:
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model."""
-        self.camera.fit(drawn_places(model), MARGIN * self.pixel_ratio, self.canvas)
+        self.camera.fit(drawn_places(model), MARGIN, self.canvas, self.pixel_ratio)
 
     @property
     def strip(self) -> Viewport:

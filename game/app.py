@@ -18,10 +18,16 @@ from components.camera import Camera, Viewport
 from components.field import Vector
 from components.model import Model
 from components.toolbar import Toolbar
-from components.view import MARGIN, Plot, View, drawn_places
+from components.view import MAGNIFICATIONS, MARGIN, Plot, View, drawn_places, magnified
 from game.desk import Desk, ModelFile
 from game.performance import FOOTER, LARGER, Performance
-from game.preferences import DEFAULT_THEME, preferred_theme, remember_theme
+from game.preferences import (
+    DEFAULT_THEME,
+    preferred_magnification,
+    preferred_theme,
+    remember_magnification,
+    remember_theme,
+)
 from game.preparation import Preparation
 from game.raster_program import load_raster
 from game.scenes.load import Load
@@ -69,7 +75,7 @@ def open_window(
     expected in vain is returned.
     """
     path, source = record
-    app = App(model, file, _spares(), theme or preferred_theme(), Preparation())
+    app = App(model, file, _spares(), theme or preferred_theme(), Preparation(), preferred_magnification())
     app.session.lesson = lesson
     if path is not None:
         with open(path, "w", encoding="utf-8") as script:
@@ -109,6 +115,7 @@ class App:
         spares: SpareKeeper | None = None,
         theme: str = DEFAULT_THEME,
         preparation: Preparation | None = None,
+        magnification: float = 1.0,
     ) -> None:
         os.environ.setdefault("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
         try:
@@ -129,6 +136,7 @@ class App:
         self.session.spares = self.spares = spares
         self.session.preparation = self.preparation = preparation
         self._theme = theme
+        self._magnification = magnification
         self._clock, self._before = pygame.time.Clock(), time.perf_counter()
         self._follow_size()
         self.session.view.fit(model)
@@ -178,10 +186,12 @@ class App:
         return frame
 
     def _follow_size(self) -> None:
-        """Let the viewport and the size of type follow the window, and the display's pixel density."""
+        """Let the viewport and the size of type follow the window, the display's pixel density and the person."""
         surface = self.window.get_surface()
         self.render.surface = surface
-        (width, height), ratio = surface.get_size(), surface.get_width() / max(self.window.size[0], 1)
+        width, height = surface.get_size()
+        self.input.density = density = width / max(self.window.size[0], 1)
+        ratio = density * magnified(height / density, self._magnification)
         view, footer = self.session.view, self.session.footer
         if footer is not None:
             low = min(round(FOOTER * ratio), height - 1)
@@ -232,6 +242,14 @@ class App:
         """Put a text on the system's clipboard."""
         pygame.scrap.put_text(text)
 
+    def magnify(self, by: int) -> str:
+        """Draw type and symbols a step larger, or smaller if negative; 0: as they suit the window. Returns which."""
+        at = MAGNIFICATIONS.index(self._magnification) + by
+        chosen = MAGNIFICATIONS[min(max(at, 0), len(MAGNIFICATIONS) - 1)] if by else 1.0
+        self._magnification = chosen
+        remember_magnification(chosen)
+        return f"{100.0 * chosen:.0f} %"
+
     def toggle_full_screen(self) -> None:
         """Fill the screen, or stop doing so."""
         self._full_screen = not self._full_screen
@@ -276,7 +294,7 @@ def _drawn(session: Session, size: tuple[int, int], theme: str, around: Points) 
     status = replace(session.view.status, hint="")  # nobody presses keys in a picture
     camera = Camera(viewport=Viewport(0, 0, *size))
     view = replace(session.view, camera=camera, toolbar=Toolbar(), heading="", status=status)
-    view.camera.fit(around, MARGIN * view.pixel_ratio, view.canvas)
+    view.camera.fit(around, MARGIN, view.canvas, view.pixel_ratio)
     Canvas(load_raster).draw(surface, compose(session.model, view, load_theme(theme)))
     return surface
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from platformdirs import user_config_path
 
+from components.view import MAGNIFICATIONS
 from systems.render.theme import theme_names
 
 CONFIG_VARIABLE = "PINJOINT_CONFIG"  # names another folder than the system's own
@@ -43,13 +44,28 @@ def preferred_keys() -> list[tuple[str, str, str]]:
     ]
 
 
+def preferred_magnification() -> float:
+    """How much larger than by itself everything but the model is to be drawn; 1 where that cannot be read."""
+    factor = _read().get("magnification")
+    return float(factor) if factor in MAGNIFICATIONS else 1.0
+
+
 def remember_theme(name: str) -> None:
     """Keep the choice of a theme; all other entries stay. Where nothing can be written, it is not kept."""
+    _remember("theme", name)
+
+
+def remember_magnification(factor: float) -> None:
+    """Keep the choice of a magnification in the same way."""
+    _remember("magnification", factor)
+
+
+def _remember(entry: str, value: Any) -> None:
     path = settings_path()
     unfinished = path.with_suffix(".tmp")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        unfinished.write_text(json.dumps({**_read(), "theme": name}, indent=1) + "\n", encoding="utf-8")
+        unfinished.write_text(json.dumps({**_read(), entry: value}, indent=1) + "\n", encoding="utf-8")
         os.replace(unfinished, path)
     except OSError:
         with suppress(OSError):

@@ -82,6 +82,9 @@ class Window(Protocol):
     def toggle_full_screen(self) -> None:
         """Fill the screen, or stop doing so."""
 
+    def magnify(self, by: int) -> str:
+        """Draw type and symbols a step larger or smaller; 0: as they suit the window. Returns which it is."""
+
     def screenshot(self) -> str:
         """Save a picture of the window; returns where. Raises OSError."""
 

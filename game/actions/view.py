@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from components.field import Vector
-from game.actions.registry import action
+from game.actions.registry import Action, action
 from game.shapes import NoShape
 from systems.edit.refusal import Refusal
 from systems.render.theme import load_theme
@@ -82,6 +82,20 @@ def _pan(session: Session, pixel: Vector) -> None:
 def _toggle_full_screen(session: Session, pixel: Vector) -> None:
     if session.window is not None:
         session.window.toggle_full_screen()
+
+
+def _magnify(by: int) -> Action:
+    """Larger or smaller type, symbols and panels, in a window."""
+
+    def act(session: Session, pixel: Vector) -> None:
+        if session.window is not None:
+            session.notice = f"Size of type and symbols: {session.window.magnify(by)}"
+
+    return act
+
+
+for _name, _by in (("larger", 1), ("smaller", -1), ("usual size", 0)):
+    action(_name, while_drawing=True)(_magnify(_by))
 
 
 @action("screenshot", while_drawing=True)

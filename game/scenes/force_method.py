@@ -178,7 +178,7 @@ def _fit(model: Model, view: View) -> None:
     v, u = view.camera.viewport, view.pixel_ratio
     above, below = round(min(CAPTION * u, 0.4 * v.height)), round(min(SCALE * u, 0.1 * v.height))
     within = Viewport(v.left, v.top + above, v.width, max(v.height - above - below, 1))
-    view.camera.fit(drawn_positions(model), MARGIN * u, within)
+    view.camera.fit(drawn_positions(model), MARGIN, within, u)
 
 
 def _third(middle: Viewport, index: int) -> Viewport:

@@ -13,7 +13,7 @@ from systems.base import Phase, System
 from systems.input.bindings import TEXT, repeats
 
 CLICK_REACH = (
-    4.0  # px that the pointer may move between pressing and releasing a button in a click; more: a drag
+    4.0  # points that the pointer may move between pressing and releasing a button in a click; more: a drag
 )
 IDLE_PAUSE = 0.016  # s between looks for events while nothing moves
 IDLE_LOOKS = 16  # until a frame goes by without any
@@ -49,13 +49,17 @@ def _awaited() -> list[pygame.event.Event]:
 
 
 class PygameInput(System):
-    """Turns events into pressed keys and buttons; `closed` once the window's close icon was clicked."""
+    """Turns events into pressed keys and buttons; `closed` once the window's close icon was clicked.
+
+    density: pixels for each of the points in which the window counts.
+    """
 
     name = "input.pygame"
     phase = Phase.INPUT
 
     def __init__(self) -> None:
         self.closed = False
+        self.density = 1.0
         self._held: set[int] = set()  # keys that are down
         self._grip: tuple[str, Vector] | None = None  # the kind of click and where, while the button is down
         self._dragging = False
@@ -69,8 +73,7 @@ class PygameInput(System):
             self._handle(event, frame)
 
     def _handle(self, event: pygame.event.Event, frame: Any) -> None:
-        view = frame.session.view
-        ratio = view.pixel_ratio
+        view, ratio = frame.session.view, self.density
         if event.type in (pygame.QUIT, pygame.WINDOWCLOSE):
             self.closed = True
         elif event.type == pygame.KEYDOWN:
@@ -109,12 +112,13 @@ class PygameInput(System):
 
     def _drag(self, event: pygame.event.Event, frame: Any, ratio: float) -> None:
         _, middle, right = event.buttons
+        reach = CLICK_REACH * frame.session.view.pixel_ratio
         if middle or right:
             frame.pressed.append(("drag middle", _scaled(event.rel, ratio)))
         elif self._grip is not None:
             button, start = self._grip
             end = _scaled(event.pos, ratio)
-            if not self._dragging and math.dist(start, end) > CLICK_REACH * ratio:
+            if not self._dragging and math.dist(start, end) > reach:
                 self._dragging = True
                 frame.pressed.append((button.replace("click", "drag"), start))
             if self._dragging:

@@ -14,7 +14,7 @@ from systems.render.theme import Theme, faded
 from systems.render.typography import line_height, shortened, text_width
 
 _PAD, _GAP = 22.0, 26.0  # points: inside the card, between columns
-_SIZES = (13.0, 12.0, 11.0, 10.0, 9.0)  # points, the first that fits
+_SIZES = (*((points, 1.1) for points in (13.0, 12.0, 11.0, 10.0, 9.0)), (9.0, 1.0))  # points, and lines apart
 
 
 class Drawn(Protocol):
@@ -39,20 +39,18 @@ def draw_help(sheet: Drawn) -> list[Mark]:
     right, bottom = v.left + v.width, v.top + v.height
     corners = np.array([[(v.left, v.top), (right, v.top), (right, bottom), (v.left, bottom)]], dtype=np.float64)
     veil = Fills(corners, faded(sheet.theme.background, 0.75))
-    for points in _SIZES:
-        card = _Card(sheet, keys, points)
-        if card.fits or points == _SIZES[-1]:
-            break
+    cards = (_Card(sheet, keys, *size) for size in _SIZES)
+    card = next((card for card in cards if card.fits), _Card(sheet, keys, *_SIZES[-1]))
     return [veil, *card.marks()]
 
 
 class _Card:
     """The help at one size of type: columns that are as wide as what stands in them."""
 
-    def __init__(self, sheet: Drawn, keys: list[tuple[str, str]], points: float) -> None:
+    def __init__(self, sheet: Drawn, keys: list[tuple[str, str]], points: float, spacing: float) -> None:
         self.sheet, self.u, v = sheet, sheet.unit, sheet.viewport
         self.size = sheet.font(points)
-        self.step = 1.1 * line_height(self.size)
+        self.step = spacing * line_height(self.size)
         self.pad = min(_PAD * self.u, 0.03 * v.width)
         self.gap = min(_GAP * self.u, 0.03 * v.width)
         self.head = 16.0 * self.u + 0.8 * self.step
@@ -106,5 +104,6 @@ def _joined(keys: list[tuple[str, str]]) -> list[tuple[str, str]]:
 def written_key(key: str) -> str:
     """A key's name as a keyboard shows it: "ctrl+shift+z" → "Ctrl+Shift+Z"; a speck of ink by its name."""
     key = {".": "period", ",": "comma"}.get(key, key)
-    parts = key.split("+") if key != "+" else [key]
-    return "+".join(part[:1].upper() + part[1:] for part in parts if part).replace("-", "−")
+    *modifiers, last = key[:-1].split("+")  # the last character may be a plus itself
+    parts = [*modifiers, last + key[-1]]
+    return "+".join(part[:1].upper() + part[1:] for part in parts).replace("-", "−")

@@ -27,7 +27,7 @@ def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     blank = sheet.model.particles.count == 0 and sheet.view.page is None
     empty = _empty(sheet, bottom) if blank else []
     caption, top = _caption(sheet, top)
-    return marks + heading + legend + caption + empty + _problem(sheet, top, bottom), (top, bottom)
+    return marks + heading + legend + caption + empty, (top, bottom)
 
 
 # --- what numbers look like ------------------------------------------------------------------------
@@ -190,9 +190,9 @@ def _backing(sheet: Sheet, left: float, y: float, width: float, size: int) -> Ma
     return Panel(left - 4.0 * u, y - 0.7 * size, width + 8.0 * u, 1.4 * size, 3.0 * u, paper)
 
 
-def _problem(sheet: Sheet, top: float, bottom: float) -> list[Mark]:
+def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
     """Why it stopped or what an action did, wrapped, above the status bar or at the top if that is freer."""
-    status = sheet.view.status
+    status, (top, bottom) = sheet.view.status, ends
     said = status.problem or status.notice
     if not said:
         return []

@@ -6,7 +6,7 @@ import numpy as np
 
 from components.view import Page
 from systems.render.marks import Mark, Rectangles, Text
-from systems.render.overlays import BAR, draw_overlays
+from systems.render.overlays import BAR, draw_notice, draw_overlays
 from systems.render.sheet import Sheet
 from systems.render.typography import line_height, text_width, wrapped
 
@@ -17,7 +17,9 @@ _ABOVE, _BELOW = 6.0, 6.0  # points
 
 def draw_page(sheet: Sheet) -> list[Mark]:
     """Lines, a table with aligned columns, and the status line below them."""
-    overlays, (_, bottom) = draw_overlays(sheet)
+    overlays, room = draw_overlays(sheet)
+    overlays += draw_notice(sheet, room)
+    _, bottom = room
     page, v = sheet.view.page, sheet.viewport
     if page is None or not (page.lines or page.table):
         return overlays

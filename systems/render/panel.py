@@ -240,7 +240,7 @@ def caret_at(place: Place, box: Box, x: float, unit: float) -> int:
 def thumbnail(model: Model, viewport: Viewport, unit: float, theme: Theme) -> tuple[Mark, ...]:
     """A small picture of a model that does not change any more: walls, rods, supports and particles."""
     camera = Camera(viewport=viewport)
-    camera.fit(drawn_places(model), _THUMBNAIL_MARGIN * unit)
+    camera.fit(drawn_places(model), _THUMBNAIL_MARGIN, unit=unit)
     sheet = measure(model, View(camera=camera, pixel_ratio=_SMALLER * unit), theme)
     for layer in BELOW:
         sheet.marks += layer(sheet)

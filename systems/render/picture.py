@@ -11,7 +11,7 @@ from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.labels import place_labels
 from systems.render.layers import ABOVE, BELOW
 from systems.render.marks import Picture
-from systems.render.overlays import draw_overlays, draw_scale
+from systems.render.overlays import draw_notice, draw_overlays, draw_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
 from systems.render.readouts import draw_readouts
@@ -59,6 +59,7 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme) -> Picture:
         sheet.marks += layer(sheet)
     overlays, room = draw_overlays(sheet)
     overlays += draw_readouts(sheet, room)
+    overlays += draw_notice(sheet, room)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit)
     scale = draw_scale(sheet, room) if model.particles.count else []
     over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays]

@@ -40,6 +40,10 @@ class FakeWindow:
     def toggle_full_screen(self) -> None:
         self.asked += 1
 
+    def magnify(self, by: int) -> str:
+        self.asked += 1
+        return "110 %"
+
     def screenshot(self) -> str:
         self.asked += 1
         return "picture.png"
@@ -155,6 +159,9 @@ PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
     ("release another", FORCE_METHOD): _part(7),
     ("toggle full screen", ""): _window,
     ("screenshot", ""): _window,
+    ("larger", ""): _window,
+    ("smaller", ""): _window,
+    ("usual size", ""): _window,
     ("scroll up", PROPERTIES): _at_end,
     ("scroll up", SAVE): _at_end,
     ("scroll up", LOAD): _at_end,

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from components.view import magnified
 from game import Session, preferences
 from game.actions.view import THEMES
 from systems.render.theme import theme_names
@@ -58,3 +59,35 @@ def test_where_nothing_can_be_written_nothing_is_kept(folder: Path) -> None:
 def test_a_session_without_a_window_writes_no_settings(folder: Path) -> None:
     Session.open("isostatic").press("t")
     assert not folder.exists()
+
+
+def test_the_magnification_is_kept_beside_the_theme(folder: Path) -> None:
+    preferences.remember_theme("dark")
+    preferences.remember_magnification(1.5)
+    assert preferences.preferred_magnification() == 1.5
+    assert preferences.preferred_theme() == "dark"
+
+
+@pytest.mark.parametrize(
+    "damaged", ["", '{"magnification": "large"}', '{"magnification": 1e9}', '{"magnification": [2]}']
+)
+def test_a_damaged_magnification_is_the_usual_one(folder: Path, damaged: str) -> None:
+    preferences.settings_path().parent.mkdir(parents=True, exist_ok=True)
+    preferences.settings_path().write_text(damaged)
+    assert preferences.preferred_magnification() == 1.0
+
+
+@pytest.mark.parametrize(
+    ("height", "chosen", "magnification"),
+    [
+        (480, 1.0, 1.0),
+        (720, 1.0, 1.0),
+        (1080, 1.0, 1.0),
+        (1440, 1.0, 1.25),
+        (2160, 1.0, 2.0),
+        (2160, 0.5, 1.0),
+        (480, 4.0, 2.0),
+    ],
+)
+def test_type_grows_with_the_window_and_leaves_room(height: float, chosen: float, magnification: float) -> None:
+    assert magnified(height, chosen) == magnification
