@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 CHECKOUT = Path(__file__).resolve().parent.parent
-NAMES = ("speed", "accuracy", "stability", "drawing", "editing", "mods", "collisions", "sweeps")
+NAMES = ("speed", "accuracy", "stability", "drawing", "editing", "mods", "collisions", "sweeps", "start")
 
 Row = Mapping[str, Any]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import textwrap
 from collections.abc import Callable, Iterable, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -416,10 +417,16 @@ class Writer:
         """A driver's source, "module:function" or with "=new name", the model's columns for *columns."""
         where, _, name = where.partition("=")
         function = find(where, self.driver.name)
-        source = textwrap.dedent(inspect.getsource(function)).replace("*columns", self._columns_text())
+        source = _source_of(function).replace("*columns", self._columns_text())
         return f"@{decorator}\n" + source.replace(
             f"def {function.__name__}(", f"def {name or function.__name__}(", 1
         )
+
+
+@cache
+def _source_of(function: Callable[..., Any]) -> str:
+    """Its source, which takes a millisecond to find."""
+    return textwrap.dedent(inspect.getsource(function))
 
 
 def _particle_power(b: Bound) -> str:
