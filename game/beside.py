@@ -1,4 +1,4 @@
-"""Beside: theory beside the run of one model, found when somebody asks, and again after an edit."""
+"""Beside: theory beside the run of one model, and its error, found when somebody asks, and again after an edit."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from game.catalogue import step_systems
 from systems.base import Law, StopReason
 
 if TYPE_CHECKING:
+    from game.finer import MeasuredError
     from game.simulation import Simulation
     from systems.statics.events import Event
     from systems.statics.verify import Comparison, Theories
@@ -32,11 +33,12 @@ class Beside:
         self.undisturbed = True
         self._theories: tuple[int, Theories] | None = None
         self._remarks: tuple[tuple[int, int], tuple[Event, ...]] | None = None
+        self._error: tuple[tuple[int, int], MeasuredError | None] | None = None
 
     def begin(self, beginning: Snapshot) -> None:
         """A run begins in this state."""
         self._beginning, self.undisturbed = beginning, True
-        self._theories = self._remarks = None
+        self._theories = self._remarks = self._error = None
 
     def disturb(self) -> None:
         """Something was changed during the run."""
@@ -86,6 +88,22 @@ class Beside:
 
             self._remarks = key, tuple(remarks(self._model, self.theories))
         return self._remarks[1]
+
+    def error(self, *, at_any_cost: bool = False) -> MeasuredError | None:
+        """How far the displacements are from the exact motion; None where that is not known.
+
+        at_any_cost: also if it takes long to measure; else only if it does not, or has been measured.
+        """
+        from game.finer import is_quick, measure_error
+
+        key = (self._simulation.armed_revision, self._model.clock.steps)
+        if self._error is not None and self._error[0] == key:
+            return self._error[1]
+        begun = self._begun
+        if begun is None or not self.undisturbed or not (at_any_cost or is_quick(self._simulation)):
+            return None
+        self._error = key, measure_error(self._simulation, begun)
+        return self._error[1]
 
     def _is_comparable(self) -> bool:
         """True if the run is that of a structure under one load, at once or by one history, and nothing else."""

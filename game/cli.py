@@ -7,6 +7,7 @@ import json
 import os
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -136,9 +137,12 @@ def _run(words: Sequence[str]) -> int:
     parser.add_argument("--format", choices=tuple(_FORMATS), default="table")
     _add_output(parser)
     parser.add_argument("--events", type=writable, metavar="FILE", help="write all impacts to a file, as CSV")
+    parser.add_argument(
+        "--measure-error", action="store_true", help="by a run with finer steps, even if that takes long"
+    )
     options = parser.parse_args(words)
     session = _session(options)
-    run = _analysis(options).run_in(session, options.model)
+    run = replace(_analysis(options), measures_error=options.measure_error).run_in(session, options.model)
     write(_FORMATS[options.format](run), options.output)
     if options.events is not None:
         write(session.impacts.as_csv(), options.events)

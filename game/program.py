@@ -54,7 +54,7 @@ class Program:
 
     measures: kinetic, fᵀM⁻¹f, elastic, potential energy (J), residual, largest force, round-off (kN) of
         the state last observed.
-    module: what is compiled.
+    module: what is compiled. tolerance: of each step; 0 where the error is not controlled.
     compile_seconds: what writing and compiling it took, or loading it from the cache.
     """
 
@@ -134,7 +134,7 @@ class Program:
         self._bind_observed()
         settings = model.settings
         controls = self.driver.estimates_error and settings.time_step is None
-        self._tolerance = settings.tolerance if controls else 0.0
+        self.tolerance = settings.tolerance if controls else 0.0
         self._state_revision = -1
 
     def _storage(self, path: str) -> Column:
@@ -218,7 +218,7 @@ class Program:
             total,
             total - since,
             origin,
-            self._tolerance,
+            self.tolerance,
             limit or math.inf,
             self._coming_breaks(landing),
             float(until),
@@ -238,11 +238,11 @@ class Program:
         )
         time = float(control[0])
         if time > self._control[0]:
-            if time == landing and not self._tolerance:
+            if time == landing and not self.tolerance:
                 taken += 1  # the piece that it takes to land
             self._control[...] = control[: len(CONTROL)]
             self._counts[0][0] = total + taken
-            if self._tolerance or time == landing:
+            if self.tolerance or time == landing:
                 self._origin[0] = time
                 self._counts[1][0] = total + taken
             self._mark_changes()

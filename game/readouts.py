@@ -35,6 +35,9 @@ def _energy(session: Session) -> Readout:
         (name.replace("_", " "), f"{value:.5g} J".replace("-", "−"))
         for name, value in session.energy.as_dict().items()
     ]
+    error = session.desk.beside.error() if not session.busy else None  # measuring takes a run of its own
+    if error is not None:
+        rows.append(("error of displacements, measured", f"{error.relative:.1e} of the largest"))
     return Readout("Energy account", tuple(rows))
 
 

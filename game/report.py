@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,12 +32,13 @@ class Analysis:
     """What is asked of a model: its equilibria, its state at certain times, or its state at rest.
 
     load_factors: settle at each in turn (statics). times: run through these, in s, ascending; None for both:
-    run until at rest, at most `limit` s of simulated time.
+    run until at rest, at most `limit` s of simulated time. measures_error: also where that takes long.
     """
 
     load_factors: tuple[float, ...] | None = None
     times: tuple[float, ...] | None = None
     limit: float = DEFAULT_LIMIT
+    measures_error: bool = False
 
     def run(self, simulation: Simulation, name: str) -> Run:
         """Compute it; `name` is what the result calls the model. Raises AnalysisError, ResultError, FieldError."""
@@ -53,7 +54,13 @@ class Analysis:
             return self.run(session.simulation, name)
         session.run(steps=0)  # the beginning is noted, for theory beside the run
         found = self.run(session.simulation, name)
-        return {**found, "message": session.message, "events": _records(session.model, session.remarks)}
+        error = session.desk.beside.error(at_any_cost=self.measures_error)
+        return {
+            **found,
+            "message": session.message,
+            "events": _records(session.model, session.remarks),
+            "error_estimate": asdict(error) if error is not None else None,
+        }
 
 
 def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:

@@ -169,6 +169,9 @@ def as_table(run: Run) -> str:
         step = f" of {as_written(run['time_step'])} s" if run["time_step"] else ""
         taken = f"time {as_written(run['time'])} s, {run['steps']} steps{step}"
         lines.append(f"{taken}, integrator {run['integrator']}")
+    if error := run.get("error_estimate"):
+        relative = as_written(error["relative"])
+        lines.append(f"error of the displacements, measured by finer steps: {relative} of the largest")
     lines.append(
         f"computed in {as_written(run['wall_seconds'])} s, compiled in {as_written(run['compile_seconds'])} s"
     )

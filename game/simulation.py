@@ -6,7 +6,7 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 from components.extremes import incomputable
 from components.field import Column, Role
@@ -367,9 +367,9 @@ class Simulation:
             model.writable(f"clock.{name}")[0] = 0.0
         if chosen is None and self.driver.estimates_error:
             self._limit_step()
-            self._begin_step_size(first_step(found.frequency, found.decay, model.clock.step_limit))
+            self.begin_step_size(first_step(found.frequency, found.decay, model.clock.step_limit))
         else:
-            self._begin_step_size(chosen if chosen is not None else self._automatic_step(found.frequency))
+            self.begin_step_size(chosen if chosen is not None else self._automatic_step(found.frequency))
 
     def _limit_step(self) -> None:
         """Where the error is controlled, stability and the eye limit the step."""
@@ -385,7 +385,7 @@ class Simulation:
             return
         wanted = self._automatic_step(found.frequency)
         if is_outgrown(self.model.clock.step_size, wanted, self.stable_step):
-            self._begin_step_size(wanted)
+            self.begin_step_size(wanted)
 
     def _automatic_step(self, frequency: float) -> float:
         shown = self._longest_shown() if self.driver is FREE_FLIGHT else math.inf
@@ -395,7 +395,7 @@ class Simulation:
         """What one step may last (s) so that a person sees it."""
         return SHOWN * natural_pace(self.model) if self.smooth else math.inf
 
-    def _begin_step_size(self, size: float) -> None:
+    def begin_step_size(self, size: float) -> None:
         """From now on steps have this size; the guard against divergence compares with this moment."""
         model, clock = self.model, self.model.clock
         model.writable("clock.origin")[0] = clock.time
@@ -473,7 +473,7 @@ class Simulation:
         assert self._safe is not None
         size = self.model.clock.step_size
         self._safe.restore(self.model)
-        self._begin_step_size(0.5 * size)
+        self.begin_step_size(0.5 * size)
         self._retries += 1
         self.reason = StopReason.DONE
         return True
@@ -503,10 +503,10 @@ class Simulation:
                 _, reason = self.program.advance(REVIEW_INTERVAL, target, target)
             return reason
         size = clock.step_size
-        self._begin_step_size(target - clock.time)
+        self.begin_step_size(target - clock.time)
         _, reason = self.program.advance(1)
         self.model.writable("clock.time")[0] = target
-        self._begin_step_size(size)
+        self.begin_step_size(size)
         return reason
 
     @contextmanager
@@ -520,6 +520,19 @@ class Simulation:
             yield
         finally:
             before.restore(self.model)
+
+    @contextmanager
+    def aside(self, beginning: Snapshot) -> Iterator[None]:
+        """What is run inside starts from another state, and is taken back as if it had not been."""
+        before = self.moment()
+        said = self.reason, self.message, self.note, self._armed_revision
+        self.resume(replace(before, state=beginning, armed=False, before_edit=None))
+        try:
+            self._arm()
+            yield
+        finally:
+            self.resume(before)
+            self.reason, self.message, self.note, self._armed_revision = said
 
     def run_until_rest(self, limit: float) -> bool:
         """Advance until at rest, at most to the time `limit` (s); True if it came to rest."""

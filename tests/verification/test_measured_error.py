@@ -1,0 +1,146 @@
+"""The error that a run is shown with, against its true error."""
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from game import Session
+from game.cli import main
+from game.finer import FINEST_TOLERANCE
+from game.readouts import own_readouts
+from tests.benchmarks.problems import Problem, tightly, transient, under_damped, yielding_step
+from tests.reference import bits
+from tests.reference.elements import Model
+from tests.reference.models import oscillator, pendulum, square, triangle
+
+
+def _free(zeta: float) -> Problem:
+    made = oscillator(2 * math.pi, zeta, velocity=[0.1, 0])
+    return Problem(f"ζ = {zeta}", made, 3.3, lambda: tightly(made, 3.3))
+
+
+def _stiff(made: Model, time: float) -> Problem:
+    return Problem("stiff", made, time, lambda: tightly(made, time))
+
+
+PROBLEMS = {
+    "undamped mass": _free(0.0),
+    "under-damped mass": under_damped(),
+    "critically damped mass": _free(1.0),
+    "over-damped mass": _free(20.0),
+    "triangle, undamped": _stiff(triangle(stiffness=164640), 2e-3),
+    "triangle, damped": transient(),
+    "square": _stiff(square(force=(0, -200), stiffness=164640, damping=10), 3e-3),
+    "pendulum": _stiff(pendulum(math.pi / 2), 0.05),
+}
+
+
+def _run(problem: Problem, **settings: Any) -> Session:
+    session = Session.open(problem.document | {"settings": {"collisions": False} | settings})
+    session.simulation.smooth = False  # steps as long as accuracy allows
+    session.run(time=problem.time)
+    return session
+
+
+def _true_error(session: Session, problem: Problem) -> float:
+    return float(np.hypot(*(session.particles.displacement - problem.exact()).T).max())
+
+
+def _limit(problem: Problem, integrator: str) -> float:
+    session = Session.open(problem.document | {"settings": {"collisions": False, "integrator": integrator}})
+    session.simulation.advance(0)
+    return session.simulation.stable_step
+
+
+@pytest.mark.parametrize("share", [0.9, 0.2])
+@pytest.mark.parametrize("problem", PROBLEMS.values(), ids=PROBLEMS)
+def test_verlets_error_is_known_within_a_factor_2(problem: Problem, share: float) -> None:
+    step = share * _limit(problem, "velocity_verlet")
+    session = _run(problem, integrator="velocity_verlet", time_step=step)
+    found = session.desk.beside.error()
+    assert found is not None
+    assert 0.5 < found.displacement / _true_error(session, problem) < 2.0
+    largest = np.hypot(*session.particles.displacement.T).max()
+    assert 0.0 < found.relative <= found.displacement / largest * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("steps", [150, 400, 1000])
+def test_the_error_of_yielding_between_steps_is_known_within_a_factor_3(steps: int) -> None:
+    problem = yielding_step()
+    session = _run(problem, integrator="velocity_verlet", time_step=problem.time / steps)
+    assert session.energy.dissipated_plastic > 0.0
+    found = session.desk.beside.error()
+    assert found is not None
+    assert 1 / 3 < found.displacement / _true_error(session, problem) < 3.0
+
+
+@pytest.mark.parametrize(
+    ("problem", "settings"),
+    [
+        (under_damped(), {"integrator": "dop853", "tolerance": 1e-6}),
+        (transient(), {"integrator": "esdirk4", "tolerance": 1e-5}),
+        (under_damped(), {"integrator": "rk4", "time_step": 0.02}),
+        (under_damped(), {"integrator": "semi_implicit_euler", "time_step": 1e-3}),
+    ],
+    ids=lambda value: value.title if isinstance(value, Problem) else value["integrator"],
+)
+def test_the_error_of_other_integrators_is_known_within_a_factor_2(
+    problem: Problem, settings: dict[str, Any]
+) -> None:
+    session = _run(problem, **settings)
+    found = session.desk.beside.error()
+    assert found is not None
+    assert 0.5 < found.displacement / _true_error(session, problem) < 2.0
+
+
+def test_measuring_leaves_no_trace() -> None:
+    problem = under_damped()
+    asked, other = (_run(problem, integrator="velocity_verlet", time_step=0.01) for _ in range(2))
+    asked.desk.beside.error()
+    assert bits.different(bits.columns(asked.model), bits.columns(other.model)) == []
+    for session in (asked, other):
+        session.run(time=0.1)
+    assert bits.different(bits.columns(asked.model), bits.columns(other.model)) == []
+    asked.undo()
+    asked.undo()
+    assert asked.time == 0.0
+
+
+def test_there_is_no_error_to_be_known_of_what_was_edited_or_has_not_begun() -> None:
+    session = Session.open(under_damped().document | {"settings": {"collisions": False}})
+    assert session.desk.beside.error() is None
+    session.run(time=0.1)
+    session.rods[0].damping = 0.2
+    session.run(time=0.1)
+    assert session.desk.beside.error() is None
+
+
+def test_there_is_none_below_what_a_tolerance_can_tell() -> None:
+    session = _run(under_damped(), integrator="dop853", tolerance=2 * FINEST_TOLERANCE)
+    assert session.desk.beside.error() is None
+
+
+def test_the_error_is_in_the_report(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["run", "isostatic", "--at", "0.002", "--integrator", "velocity_verlet", "--format"]
+    assert main([*words, "json"]) == 0
+    found = json.loads(capsys.readouterr().out)["error_estimate"]
+    assert 0.0 < found["displacement"] < 0.01 * found["relative"]  # of some millimetres
+    assert main([*words, "table"]) == 0
+    assert f"measured by finer steps: {found['relative']:.7g} of the largest" in capsys.readouterr().out
+
+
+def test_the_error_is_in_the_energy_panel_while_nothing_moves() -> None:
+    session = _run(under_damped(), integrator="velocity_verlet", time_step=0.01)
+    session.view.energy = True
+    (readout,) = own_readouts(session)
+    assert readout.rows[-1] == (
+        "error of displacements, measured",
+        "1.1e-03 of the largest",
+    )  # e^−ζωt (ωh)²/24 ωt
+    session.press("space")
+    assert session.busy
+    (readout,) = own_readouts(session)
+    assert readout.rows[-1][0] == "imbalance"
