@@ -74,6 +74,8 @@ def check_history(value: Any, where: str) -> History:
 
 def _check_parameter(value: Any, default: Any, name: str, where: str) -> Any:
     if isinstance(default, tuple):
+        if isinstance(value, np.ndarray):
+            value = value.tolist()
         if not isinstance(value, list | tuple):
             raise FieldError(f"{where}: history {name} is {value!r}; it must be a list of numbers.")
         return tuple(_check_parameter(item, 0.0, name, where) for item in value)

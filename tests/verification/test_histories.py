@@ -129,6 +129,15 @@ def test_loads_count_in_statics_as_documented(session: Session) -> None:
     session.undo()
 
 
+def test_a_table_may_be_of_numpy() -> None:
+    session = Session.open(oscillators())
+    load = session.loads[0]
+    load.history = {"kind": "table", "times": np.linspace(0.0, 1.0, 3), "factors": np.array([0, 1, 0])}
+    assert load.history == {"kind": "table", "times": (0.0, 0.5, 1.0), "factors": (0.0, 1.0, 0.0)}
+    with pytest.raises(FieldError, match="history times is"):
+        load.history = {"kind": "table", "times": np.float64(1.0), "factors": [1.0]}
+
+
 # --- base acceleration ---------------------------------------------------------------------------------------
 
 
