@@ -67,7 +67,7 @@ class Preparation(System):
         model, plan = simulation.model, simulation.schedule.step_plan(simulation.model)
         if simulation.integrator == FLIGHT:
             return self._waits((FLIGHT,), has_flight)
-        job = simulation.integrator, form_of(model), *(system.name for system in plan)
+        job = simulation.integrator, form_of(model, simulation.driver), *(system.name for system in plan)
         waited = self._waits(job, lambda: has_program(model, plan, simulation.driver))
         if waited is None and job in self._running:  # then it is new, with a hand that pulls as well
             self._waits((*job, Pull.name), lambda: False)

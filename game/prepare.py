@@ -14,8 +14,8 @@ from components.particle import Particle
 from game.catalogue import DRIVERS
 from game.flight import load_flight
 from game.mods.command import load_as_asked
-from game.program import Program
 from game.program_cache import forget_unused
+from game.program_in_blocks import make_program
 from game.raster_program import load_raster
 from game.session import Session
 from systems.edit.pull import Hand
@@ -36,7 +36,7 @@ def main(words: Sequence[str]) -> None:
         session = Session(model)
         session.pull.take(Hand(particle, 1.0, 0.0, (0.0, 0.0)))  # in case that the hand is part of it
         form, *systems = rest
-        Program(model, session.schedule.named(systems), DRIVERS[name], form)
+        make_program(model, session.schedule.named(systems), DRIVERS[name], form)
     forget_unused()
 
 

@@ -13,9 +13,10 @@ from components.field import Column, Role
 from components.load import load_breaks, loads_end
 from components.model import Model
 from game.program_binding import bind, explain
+from game.program_blocks import BlockWriter
 from game.program_cache import compile_module, is_compiled, note_compiled
 from game.program_controlled import MARKS, ControlledWriter
-from game.program_writer import Writer, form_of
+from game.program_writer import VERY_MANY, Writer, form_of
 from systems.base import ACCOUNTS, Driver, StepSystem, StopReason
 
 ACCOUNT = (
@@ -30,7 +31,7 @@ CONTROL = ("time", "step_size", "step_error", "largest_displacement", "largest_s
 _ORIGIN = ("origin", "step_limit")
 _COUNTS = ("steps", "origin_steps")
 _OF_PARTICLES = ("displacement", "velocity")
-_OBSERVED = {
+OBSERVED = {
     "particles": ("applied_force", "reaction"),
     "rods": ("axial_force", "length", "strain", "yielding"),
 }
@@ -38,14 +39,15 @@ _GIVEN = ("particles.fixed", "rods.tension_limit", "rods.compression_limit")
 _REASONS = tuple(StopReason)
 
 
-def _writer(model: Model, systems: Sequence[StepSystem], driver: Driver, form: str = "") -> Writer:
+def _writer(model: Model, systems: Sequence[StepSystem], driver: Driver, form: str) -> Writer:
     joining = [system for system in systems if system.kernel]
-    return (ControlledWriter if driver.controlled else Writer)(model, joining, driver, form or form_of(model))
+    plain = BlockWriter if form == VERY_MANY else Writer
+    return (ControlledWriter if driver.controlled else plain)(model, joining, driver, form)
 
 
 def has_program(model: Model, systems: Sequence[StepSystem], driver: Driver) -> bool:
     """True if the program of this plan need not be compiled any more, only loaded."""
-    writer = _writer(model, systems, driver)
+    writer = _writer(model, systems, driver, form_of(model, driver))
     return is_compiled(writer.source(), writer.kernels)
 
 
@@ -58,7 +60,7 @@ class Program:
     compile_seconds: what writing and compiling it took, or loading it from the cache.
     """
 
-    def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver, form: str = "") -> None:
+    def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver, form: str) -> None:
         started = time.perf_counter()
         self.model = model
         self.systems = tuple(system for system in systems if system.kernel)
@@ -79,11 +81,14 @@ class Program:
             self.advance(0)
             self.observe()
             if self._writer.commits:  # of no rods, since a commit at all changes history
-                state, columns = ([a[:0] for a in arrays] for arrays in (self._state, self._columns))
-                self.module.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *columns)
+                state = [array[:0] for array in self._state]
+                self.module.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
         except NumbaError as error:
             raise explain(self._writer.bound, self.model, error) from error
         note_compiled(self.module)
+
+    def _of_no_rods(self) -> list[Column]:
+        return [column[:0] for column in self._columns]
 
     @property
     def columns(self) -> dict[str, Column]:
@@ -115,7 +120,7 @@ class Program:
         written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
         extra |= {name: self._storage(path) for name, path in written.items()}
         self._columns = [
-            extra[name] if name in extra else model.column(name.replace("_", ".", 1))
+            extra[name] if name in extra else self._column(name.replace("_", ".", 1))
             for name in self._writer.columns
         ]
         self._changes = _by_table_and_role(model, written.values())
@@ -137,6 +142,10 @@ class Program:
         self.tolerance = settings.tolerance if controls else 0.0
         self._state_revision = -1
 
+    def _column(self, path: str) -> Any:
+        """A column, "table.field", to read."""
+        return self.model.column(path)
+
     def _storage(self, path: str) -> Column:
         """A column, "table.field", to write to; it is marked as changed whenever that was done."""
         table, _, name = path.partition(".")
@@ -154,7 +163,7 @@ class Program:
         """What observe() takes from the end of the state on."""
         model, zeros = self.model, np.zeros_like
         applied, reaction, *of_rods = (
-            self._storage(f"{table}.{name}") for table, names in _OBSERVED.items() for name in names
+            self._storage(f"{table}.{name}") for table, names in OBSERVED.items() for name in names
         )
         for path in _GIVEN:
             model.column(path)  # up to date
@@ -273,7 +282,7 @@ class Program:
         """Bring the derived columns of rods and particles, and the measures, up to date."""
         time, size = self._control[:2].tolist()
         self.module.observe(time, size, self._displacement, self._velocity, *self._observed, *self._columns)
-        for table, names in _OBSERVED.items():
+        for table, names in OBSERVED.items():
             self.model.tables[table].mark(names, Role.DERIVED)
 
     def conserved_energy(self) -> float:

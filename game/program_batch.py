@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import os
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -126,8 +125,3 @@ class BatchProgram:
                 list(pool.map(work, np.array_split(blocks, self.threads * _PIECES)))
         note_compiled(self._module)
         return taken, reason
-
-
-def cores() -> int:
-    """How many cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 CHUNK = 64  # rods that go through the stages together: what they need stays in the nearest cache
 _APART = 7  # columns that LLVM makes sure at run time not to overlap scratch; more, and it does not vectorise
 
+ALL = "0, rods_between.shape[0]"
+
 _ELEMENT = re.compile(r"\b([A-Za-z_]\w*)\[r(?:, (\d))?\]")
 
 
@@ -41,10 +43,10 @@ class RodLoop:
             [*self.writes, *other.writes],
         )
 
-    def one_by_one(self) -> list[str]:
-        """The loop's lines, rod by rod."""
+    def one_by_one(self, span: str = ALL) -> list[str]:
+        """The loop's lines, rod by rod. span: from which row to which."""
         return [
-            "for r in range(rods_between.shape[0]):",
+            f"for r in range({span}):",
             "    a = rods_between[r, 0]",
             "    b = rods_between[r, 1]",
             *(f"    {name} = {what}" for name, what in self.gather.items()),
@@ -52,7 +54,7 @@ class RodLoop:
             *indented(self.scatter),
         ]
 
-    def in_stages(self, floats: Callable[[str], bool]) -> list[str]:
+    def in_stages(self, floats: Callable[[str], bool], span: str = ALL) -> list[str]:
         """The loop's lines, stage by stage. floats: whether a column holds floating-point numbers."""
         elements = dict.fromkeys(_ELEMENT.findall("\n".join(self.compute)))
         plain = [name for name, part in elements if not part and name not in self.writes][:_APART]
@@ -73,6 +75,7 @@ class RodLoop:
             element = match.group(1), match.group(2) or ""
             return place(element) if element in slots else there(match)
 
+        begin, end = span.split(", ")
         back = [(name, part) for name, part in copied if name in self.writes]
         ends = ["a = ends[k, 0]", "b = ends[k, 1]"]
         stages: list[list[str]] = [
@@ -91,7 +94,7 @@ class RodLoop:
             ],
         ]
         body = [
-            f"count = min({CHUNK}, rods_between.shape[0] - start)",
+            f"count = min({CHUNK}, {end} - start)",
             "ends = rods_between[start : start + count]",
             *(f"{name}_ = {name}[start : start + count]" for name in sliced),
         ]
@@ -100,7 +103,7 @@ class RodLoop:
                 body += ["for k in range(count):", *indented(lines)]
         return [
             f"scratch = np.empty({CHUNK * max(len(slots), 1)})",
-            f"for start in range(0, rods_between.shape[0], {CHUNK}):",
+            f"for start in range({begin}, {end}, {CHUNK}):",
             *indented(body),
         ]
 

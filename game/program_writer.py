@@ -32,17 +32,23 @@ _ALWAYS = (
 )
 
 
+EVERY = "displacement.shape[0]"
+_IN_BLOCK = "{0}[block], {0}[block + 1]"
+
 SHIFT = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
 DRIFT = {f"drift_{d}": f"velocity[b, {i}] - velocity[a, {i}]" for i, d in enumerate("xy")}
 RATE = "rate = drift_x * nx + drift_y * ny"
 
 
-FEW, MANY = "few", "many"  # rods: what is quickest for some is not for others
+FEW, MANY, VERY_MANY = "few", "many", "very many"  # rods: what is quickest for some is not for others
+BLOCKS_FROM = 20_000  # rods: below, cores wait for each other longer than they help
 
 
-def form_of(model: Model) -> str:
-    """The form of program that suits a model, by the number of its rods; bits do not depend on it."""
-    return FEW if model.rods.count <= SMALL else MANY
+def form_of(model: Model, driver: Driver) -> str:
+    """The form of program that suits a model: rod by rod, in stages, or in blocks shared by cores."""
+    if model.rods.count <= SMALL:
+        return FEW
+    return MANY if model.rods.count < BLOCKS_FROM or driver.controlled else VERY_MANY
 
 
 class Writer:
@@ -172,16 +178,17 @@ class Writer:
         head = f"def external(time, dt, displacement, velocity, force, resisting, {self._columns_text()}):"
         return "\n".join(["@compiled", head, *indented(self._particle_forces())])
 
-    def _particle_forces(self, powers: bool = False) -> list[str]:
+    def _particle_forces(self, powers: bool = False, span: str = EVERY) -> list[str]:
         body = ["force[i, 0] = particles_constant_force[i, 0]", "force[i, 1] = particles_constant_force[i, 1]"]
         for b in self.particle_laws:
             body += [f"fx, fy = {self._apply(b, 'i')}", "force[i, 0] += fx", "force[i, 1] += fy"]
             body += [_particle_power(b)] if powers else []
         body += self._particle_rate_forces(powers)
-        lines = ["for i in range(displacement.shape[0]):", *indented(body)]
+        lines = [f"for i in range({span}):", *indented(body)]
         for b in self.loads:
+            acting = f"{b.prefix}_on.shape[0]" if span == EVERY else _IN_BLOCK.format(f"block_{b.prefix}")
             lines += [
-                f"for k in range({b.prefix}_on.shape[0]):",
+                f"for k in range({acting}):",
                 f"    i = {b.prefix}_on[k]",
                 f"    factor = {b.call}(time, {b.prefix}_values, {b.prefix}_first[k])",
                 f"    force[i, 0] += factor * {b.prefix}_force[k, 0]",
@@ -203,6 +210,9 @@ class Writer:
 
     def _rod_loop(self, loop: RodLoop) -> list[str]:
         return loop.one_by_one() if self.form == FEW else loop.in_stages(self._is_float)
+
+    def _short_rod_loop(self, loop: RodLoop) -> list[str]:
+        return loop.one_by_one()
 
     def _is_float(self, name: str) -> bool:
         """Whether an array with a row for each rod holds floating-point numbers."""
@@ -286,17 +296,20 @@ class Writer:
 
     def _resist(self) -> str:
         """Dampers and drag at a velocity, and what each account gains per second."""
-        lines = [
-            "@compiled",
+        head = (
             "def resist(time, dt, displacement, velocity, resisting, direction, power,"
-            f" {self._columns_text()}):",
-        ]
+            f" {self._columns_text()}):"
+        )
+        body = [*self._resistance(), *(f"power[{slot}] = power_{slot}" for slot in range(len(ACCOUNTS)))]
+        return "\n".join(["@compiled", head, *indented(body)])
+
+    def _resistance(self, span: str = EVERY) -> list[str]:
         body = [f"power_{slot} = 0.0" for slot in range(len(ACCOUNTS))]
         particles = self._particle_rate_forces(powers=True)
         for b in self.particle_laws:
             particles += [f"fx, fy = {self._apply(b, 'i')}", _particle_power(b)]
         if particles:
-            body += ["for i in range(velocity.shape[0]):", *indented(particles)]
+            body += [f"for i in range({span}):", *indented(particles)]
         if self.rod_rates or self.working:
             needed = {parameter for b in (*self.rod_rates, *self.working) for parameter in b.parameters}
             drag = self._rate_forces(powers=True)
@@ -306,9 +319,8 @@ class Writer:
                 body += self._rod_loop(RodLoop(SHIFT, [*self._geometry(), *compute]) + drag)
             else:  # too little is computed to gain from stages
                 axis = RodLoop({}, ["nx = direction[r, 0]", "ny = direction[r, 1]"])
-                body += (axis + drag).one_by_one()
-        body += [f"power[{slot}] = power_{slot}" for slot in range(len(ACCOUNTS))]
-        return "\n".join([*lines, *indented(body)])
+                body += self._short_rod_loop(axis + drag)
+        return body
 
     def _load_power(self) -> str:
         """What the varying loads do per second at a velocity."""
@@ -346,17 +358,7 @@ class Writer:
             "        moved = max(moved, abs(displacement[i, d]))",
             "elastic = 0.0",
             "stiffest = 0.0",
-            *RodLoop(
-                SHIFT,
-                [
-                    *self._geometry(),
-                    *self._axial_force(without=self.working),
-                    "flexibility = rods_rest_length[r] / rods_stiffness[r]",
-                    "elastic += axial_force * axial_force * flexibility",
-                    "largest = max(largest, abs(axial_force))",
-                    "stiffest = max(stiffest, 1.0 / flexibility)",
-                ],
-            ).one_by_one(),
+            *self._stored().one_by_one(),
             "measures[0] = 0.5 * kinetic",
             "measures[1] = 1000.0 * power_norm",
             "measures[2] = 500.0 * elastic",
@@ -368,6 +370,16 @@ class Writer:
         ]
         head = f"def measure(displacement, velocity, force, resisting, measures, {self._columns_text()}):"
         return "\n".join(["@compiled", head, *indented(body)])
+
+    def _stored(self) -> RodLoop:
+        compute = [
+            *self._geometry(),
+            *self._axial_force(without=self.working),
+            "flexibility = rods_rest_length[r] / rods_stiffness[r]",
+            "largest = max(largest, abs(axial_force))",
+            "stiffest = max(stiffest, 1.0 / flexibility)",
+        ]
+        return RodLoop(SHIFT, compute, scatter=["elastic += axial_force * axial_force * flexibility"])
 
     @property
     def _observed_forces(self) -> str:

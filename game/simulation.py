@@ -24,6 +24,7 @@ from game.impacts import Impacts
 from game.moment import Moment
 from game.program import Program
 from game.program_binding import ProgramError
+from game.program_in_blocks import make_program
 from game.program_writer import REVIEW_INTERVAL, form_of
 from game.schedule import Schedule
 from game.step_size import automatic_step, first_step, is_outgrown, step_limit
@@ -263,7 +264,12 @@ class Simulation:
 
     def _key(self, systems: list[StepSystem]) -> tuple[str, ...]:
         warmth = ("rods.misfit",) if is_warm(self.model) else ()
-        return (*(system.name for system in systems), self.driver.name, form_of(self.model), *warmth)
+        return (
+            *(system.name for system in systems),
+            self.driver.name,
+            form_of(self.model, self.driver),
+            *warmth,
+        )
 
     def _bind(self) -> None:
         """Take hold of the model by the program of its plan, without mods whose systems cannot join it."""
@@ -296,7 +302,7 @@ class Simulation:
     def _made(self, systems: list[StepSystem]) -> Program | Flight:
         if self.driver is FREE_FLIGHT:
             return Flight(self.model, self.impacts)
-        return Program(self.model, systems, self.driver)
+        return make_program(self.model, systems, self.driver)
 
     def _part_overlaps(self) -> None:
         """Particles that edits left in one another's place are moved apart; a note says so."""

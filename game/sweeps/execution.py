@@ -6,7 +6,7 @@ import logging
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from game.program_batch import cores
+from game.cores import VARIABLE, cores
 from game.sweeps.plan import Outcome, Plan
 from game.sweeps.specimen import Bench, compute
 from game.sweeps.variation import INSTALL, SweepError
@@ -57,6 +57,7 @@ def _local_client(distributed: Any, workers: int) -> Any:
     return distributed.Client(
         n_workers=workers,
         threads_per_worker=1,
+        env={VARIABLE: "1"},
         processes=True,
         dashboard_address=None,
         silence_logs=logging.CRITICAL,

@@ -18,6 +18,7 @@ from game.document import document
 from game.mods import Mod
 from game.mods.guard import guarded_system
 from game.program import Program
+from game.program_in_blocks import make_program
 from game.schedule import Schedule
 from systems.base import StepSystem, System
 from systems.physics.system import Drag
@@ -47,7 +48,7 @@ def _program(model: Model, law: System) -> Program:
     plan = Schedule([*systems, law]).step_plan(model)
     assert any(isinstance(system, Drag) for system in plan)
     model.writable("clock.step_size")[0] = STEP
-    return Program(model, plan, DRIVERS["velocity_verlet"])
+    return make_program(model, plan, DRIVERS["velocity_verlet"])
 
 
 def kernels(*, quick: bool) -> list[Row]:

@@ -20,7 +20,7 @@ import numpy as np
 from components.model import Model
 from game.catalogue import DRIVERS, step_systems
 from game.document import document
-from game.program import Program
+from game.program_in_blocks import make_program
 from game.schedule import Schedule
 from tests.benchmarks.ceiling import BYTES_PER_PARTICLE, BYTES_PER_ROD, bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, truss
@@ -117,7 +117,7 @@ def _step_cost(kind: str, model: Model) -> Row:
 
 
 def _program_runner(model: Model, steps: int) -> Callable[[], None]:
-    program = Program(model, Schedule(step_systems()).step_plan(model), DRIVERS["velocity_verlet"])
+    program = make_program(model, Schedule(step_systems()).step_plan(model), DRIVERS["velocity_verlet"])
     model.writable("clock.step_size")[0] = STEP
 
     def run() -> None:

@@ -1,0 +1,70 @@
+"""Layouts: a large model in blocks that fit a cache and can be computed side by side.
+
+Particles are numbered anew along a space-filling curve through their original positions and cut into blocks of
+about as many rod ends. The rods within each block come first, block after block, then those between blocks, all
+in their order: blocks wait for nobody, and what is between them comes when all are done. So every particle's sum
+has one order, which depends on the model alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.model import Model
+
+BLOCK = 4096  # rods in a block, about: some 600 kB, which a core has for itself
+
+Numbers = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Which particles and rods of a model a program holds in which of its rows.
+
+    particles, rods: which one is in each row. row: of each particle. ends: rows of the particles at the ends
+    of each row's rod. first_particle, first_rod: where blocks begin, after them the rods between blocks, and
+    where these end.
+    """
+
+    particles: Numbers
+    rods: Numbers
+    row: Numbers
+    ends: NDArray[np.uint32]
+    first_particle: Numbers
+    first_rod: Numbers
+
+    @classmethod
+    def of(cls, model: Model) -> Layout:
+        """The layout of a model in blocks of about BLOCK rods."""
+        count, between = model.particles.count, model.rods.between.astype(np.intp)
+        particles = np.argsort(_along_curve(model.particles.position), kind="stable")
+        row = np.empty_like(particles)
+        row[particles] = np.arange(count)
+        ends = row[between]
+        blocks = max(round(len(between) / BLOCK), 1)
+        crowd = np.cumsum(np.bincount(ends.ravel(), minlength=count))
+        limits = np.searchsorted(crowd, crowd[-1:] * np.arange(1, blocks) / blocks)
+        first_particle = np.concatenate([[0], limits, [count, count]]).astype(np.intp)
+        home = np.searchsorted(first_particle[:-2], ends, side="right") - 1
+        block_of = np.where(home[:, 0] == home[:, 1], home[:, 0], blocks)
+        rods = np.argsort(block_of, kind="stable")
+        first_rod = np.searchsorted(block_of[rods], np.arange(blocks + 2))
+        return cls(particles, rods, row, ends[rods].astype(np.uint32), first_particle, first_rod)
+
+
+def _along_curve(position: NDArray[np.float64]) -> NDArray[np.uint64]:
+    """The place of each position along Morton's curve, which visits squares within squares."""
+    low, high = position.min(axis=0, initial=np.inf), position.max(axis=0, initial=-np.inf)
+    size = max(float((high - low).max(initial=0.0)), np.finfo(float).tiny)
+    return _spread(position[:, 0], low[0], size) | (_spread(position[:, 1], low[1], size) << np.uint64(1))
+
+
+def _spread(along: NDArray[np.float64], low: float, size: float) -> NDArray[np.uint64]:
+    """The first 16 binary digits of each place in [low, low + size], every second digit a zero."""
+    bits = ((along - low) / size * 65535.0).astype(np.uint64)
+    for shift, mask in ((8, 0x00FF00FF), (4, 0x0F0F0F0F), (2, 0x33333333), (1, 0x55555555)):
+        bits = (bits | (bits << np.uint64(shift))) & np.uint64(mask)
+    return bits
