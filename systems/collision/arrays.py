@@ -18,22 +18,23 @@ NONE = -1
 # Columns of `discs`, shape (n, DISC_WIDTH): one row per disc, its path since its epoch t₀, the time of its last
 # change. u(t) = u₀ + v₀ (t − t₀) + a (t − t₀)²/2 is the displacement from the original position o. After the discs
 # come obstacles: straight pieces that never move, rounded by their radius. Of two rows the later one is the obstacle.
+# Those that meetings follow from come first, so that they lie together in memory.
 UX, UY = 0, 1  # displacement at the epoch, m
 VX, VY = 2, 3  # velocity at the epoch, m/s
 AX, AY = 4, 5  # acceleration of the path, m/s²
 EPOCH = 6  # s
 RADIUS = 7  # m
 OX, OY = 8, 9  # original position, m
-WX, WY = 10, 11  # inverse mass in each direction, 1/kg; 0 where the disc is held
-GX, GY = 12, 13  # acceleration without contact forces, m/s²
-STEP = 14  # s; when the forces in its lasting contacts are due again
-CHANGES = 15  # of its path so far
-NOISE = 16  # m/s; round-off in its velocity, from the impact or the contacts that gave it
-BOUNCE = 17  # restitution of impacts with it
 TX, TY = (
-    18,
-    19,
+    10,
+    11,
 )  # m; from the first end of an obstacle to the other, its original position being the first; else 0
+NOISE = 12  # m/s; round-off in its velocity, from the impact or the contacts that gave it
+CHANGES = 13  # of its path so far
+GX, GY = 14, 15  # acceleration without contact forces, m/s²
+WX, WY = 16, 17  # inverse mass in each direction, 1/kg; 0 where the disc is held
+STEP = 18  # s; when the forces in its lasting contacts are due again
+BOUNCE = 19  # restitution of impacts with it
 DISC_WIDTH = 20
 MOVING = (UX, UY, VX, VY, AX, AY, EPOCH, STEP, NOISE)  # what time changes, as components/paths.py has it
 
@@ -43,19 +44,16 @@ class Grid(NamedTuple):
 
     boxes: left, bottom, right, top, shape (n, 4), m. layer: of each disc, shape (n,). levels: the cells of
     layer k have the size cell × 2^levels[k], ascending, shape (64,). heads: first entry of each bucket, a power
-    of two of them. entries: shape (capacity, 3); columns below. found: room for the discs that a search finds,
-    shape (n + 1,).
+    of two of them. after: the next entry in the same bucket, shape (capacity,). found: room for the discs that a
+    search finds, shape (n + 1,).
     """
 
     boxes: Floats
     layer: Integers
     levels: Integers
-    heads: Integers
-    entries: Integers
+    heads: NDArray[np.int32]
+    after: NDArray[np.int32]
     found: Integers
-
-
-AFTER, BEFORE, KEY = 0, 1, 2  # columns of entries: next and previous one in the bucket, hash of the cell
 
 
 class Queue(NamedTuple):
@@ -66,7 +64,10 @@ class Queue(NamedTuple):
     """
 
     times: Floats
-    meetings: Integers
+    meetings: NDArray[np.int32]
+
+
+MOST_CHANGES = 2**31 - 1  # that a meeting tells from one another, as a mask
 
 
 class Ties(NamedTuple):

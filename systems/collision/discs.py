@@ -305,7 +305,7 @@ class Discs:
 
 
 def _queue(size: int) -> Queue:
-    return Queue(np.zeros(size), np.zeros((size, 4), dtype=np.int64))
+    return Queue(np.zeros(size), np.zeros((size, 4), dtype=np.int32))
 
 
 def _grid(n: int, layers: int) -> Grid:
@@ -315,8 +315,8 @@ def _grid(n: int, layers: int) -> Grid:
         boxes=np.zeros((n, 4)),
         layer=np.zeros(n, dtype=np.int64),
         levels=np.zeros(64, dtype=np.int64),
-        heads=np.full(buckets, arrays.NONE, dtype=np.int64),
-        entries=np.zeros((entries, 3), dtype=np.int64),
+        heads=np.full(buckets, arrays.NONE, dtype=np.int32),
+        after=np.zeros(2 * entries, dtype=np.int32),
         found=np.zeros(n + 1, dtype=np.int64),
     )
 

@@ -406,7 +406,7 @@ def _enclose_anew(count, discs, grid, group, numbers, counts):
     for m in range(count):
         i = group.members[m]
         if discs[i, EPOCH] == numbers[NOW] and not is_held(i, discs):
-            leave(i, grid, layers)
+            leave(i, grid, layers, cell)
             enclose(i, discs, grid, numbers[NOW], numbers[END])
             level = level_of(i, grid, cell)
             grid.layer[i] = layer_of(level, grid, layers)

@@ -5,18 +5,16 @@ larger than the box. It is entered as native into the one to four cells of that 
 and as guest into those of all coarser layers. Two boxes that overlap then share a cell of the coarser one's
 layer, whatever their sizes: a very large or very fast disc costs no more than a look at all others.
 
-The entries 4 (disc × layers + layer) to + 3 are a disc's cells in a layer; those of a bucket are chained.
+The entries 4 (kind × discs + disc) to + 3 are a disc's cells, with kind = 2 × layer, + 1 for guests: left bottom,
+left top, right bottom, right top. Those of a bucket are chained; which cell one is of follows from the disc's box.
 """
 
 import math
 
 from systems.collision.arrays import (
-    AFTER,
     AX,
     AY,
-    BEFORE,
     EPOCH,
-    KEY,
     NONE,
     OX,
     OY,
@@ -103,11 +101,9 @@ def layer_of(level, grid, layers):
 
 
 @compiled
-def _key(cx, cy, kind):
-    """Mixes a cell and 2 × layer (+ 1 for guests) into 64 bits."""
-    h = cx * 0x9E3779B97F4A7C1 + cy * 0xC2B2AE3D27D4EB4 + kind * 0x165667B19E3779F
-    h = (h ^ ((h >> 29) & 0x7FFFFFFFF)) * 0xBF58476D1CE4E5B
-    return (h ^ ((h >> 32) & 0xFFFFFFFF)) & 0x7FFFFFFFFFFFFFFF  # not negative: NONE is no key
+def _bucket(cx, cy, kind, grid):
+    """Where the chain of a cell begins; cells side by side lie together in memory."""
+    return (cx + cy * 0x9E3779B97F4A7C1 + kind * 0x165667B19E3779F) & (grid.heads.shape[0] - 1)
 
 
 @compiled
@@ -116,76 +112,88 @@ def _inverse_size(cell, level):
 
 
 @compiled
+def _cells(i, boxes, inverse):
+    """The cells of a layer that a disc's box overlaps: first and last in x, in y; two at most."""
+    left, bottom = math.floor(boxes[i, 0] * inverse), math.floor(boxes[i, 1] * inverse)
+    right, top = math.floor(boxes[i, 2] * inverse), math.floor(boxes[i, 3] * inverse)
+    return left, bottom, min(right, left + 1), min(top, bottom + 1)
+
+
+@compiled
 def enter(i, grid, layers, cell):
     """Enter a disc into its layer and all coarser ones."""
-    boxes, entries = grid.boxes, grid.entries
+    boxes, heads = grid.boxes, grid.heads
     for k in range(grid.layer[i], layers):
         inverse = _inverse_size(cell, grid.levels[k])
-        left, right = math.floor(boxes[i, 0] * inverse), math.floor(boxes[i, 2] * inverse)
-        bottom, top = math.floor(boxes[i, 1] * inverse), math.floor(boxes[i, 3] * inverse)
+        left, bottom, right, top = _cells(i, boxes, inverse)
         kind = 2 * k + (1 if k > grid.layer[i] else 0)
-        for q in range(4):
-            entry = 4 * (i * layers + k) + q
-            cx, cy = left + q // 2, bottom + q % 2
-            if cx <= right and cy <= top:
-                _insert(entry, _key(cx, cy, kind), grid.heads, entries)
-            else:
-                entries[entry, KEY] = NONE
+        first = 4 * (kind * boxes.shape[0] + i)
+        for cx in range(left, right + 1):
+            for cy in range(bottom, top + 1):
+                entry = first + 2 * (cx - left) + cy - bottom
+                bucket = _bucket(cx, cy, kind, grid)
+                grid.after[entry] = heads[bucket]
+                heads[bucket] = entry
 
 
 @compiled
-def _insert(entry, key, heads, entries):
-    bucket = key & (heads.shape[0] - 1)
-    first = heads[bucket]
-    entries[entry, KEY] = key
-    entries[entry, BEFORE] = NONE
-    entries[entry, AFTER] = first
-    if first != NONE:
-        entries[first, BEFORE] = entry
-    heads[bucket] = entry
-
-
-@compiled
-def leave(i, grid, layers):
-    """Take a disc out of the grid."""
-    heads, entries = grid.heads, grid.entries
-    for entry in range(4 * (i * layers + grid.layer[i]), 4 * (i + 1) * layers):
-        key = entries[entry, KEY]
-        if key != NONE:
-            previous, following = entries[entry, BEFORE], entries[entry, AFTER]
-            if previous == NONE:
-                heads[key & (heads.shape[0] - 1)] = following
-            else:
-                entries[previous, AFTER] = following
-            if following != NONE:
-                entries[following, BEFORE] = previous
+def leave(i, grid, layers, cell):
+    """Take a disc out of the grid, before its box changes."""
+    boxes, heads, after = grid.boxes, grid.heads, grid.after
+    for k in range(grid.layer[i], layers):
+        inverse = _inverse_size(cell, grid.levels[k])
+        left, bottom, right, top = _cells(i, boxes, inverse)
+        kind = 2 * k + (1 if k > grid.layer[i] else 0)
+        first = 4 * (kind * boxes.shape[0] + i)
+        for cx in range(left, right + 1):
+            for cy in range(bottom, top + 1):
+                entry = first + 2 * (cx - left) + cy - bottom
+                bucket = _bucket(cx, cy, kind, grid)
+                if heads[bucket] == entry:
+                    heads[bucket] = after[entry]
+                else:
+                    previous = heads[bucket]
+                    while after[previous] != entry:
+                        previous = after[previous]
+                    after[previous] = after[entry]
 
 
 @compiled
 def neighbours(i, left, bottom, right, top, grid, layers, cell):
     """Discs other than i whose boxes overlap a part of that of i, each once, into `found`; returns how many."""
-    boxes, heads, entries, found = grid.boxes, grid.heads, grid.entries, grid.found
     count = 0
     for k in range(grid.layer[i], layers):
         inverse = _inverse_size(cell, grid.levels[k])
         for cx in range(math.floor(left * inverse), math.floor(right * inverse) + 1):
             for cy in range(math.floor(bottom * inverse), math.floor(top * inverse) + 1):
                 for guests in range(2 if k == grid.layer[i] and k > 0 else 1):
-                    key = _key(cx, cy, 2 * k + guests)
-                    entry = heads[key & (heads.shape[0] - 1)]
-                    while entry != NONE:
-                        j = entry // (4 * layers)
-                        x, y = max(boxes[j, 0], left), max(boxes[j, 1], bottom)
-                        if (
-                            x <= min(boxes[j, 2], right)
-                            and y <= min(boxes[j, 3], top)
-                            and j != i
-                            and math.floor(x * inverse) == cx  # of the cells both overlap, count one
-                            and math.floor(y * inverse) == cy
-                            and entries[entry, KEY] == key
-                            and count < boxes.shape[0]
-                        ):
-                            found[count] = j
-                            count += 1
-                        entry = entries[entry, AFTER]
+                    kind = 2 * k + guests
+                    count = _look_into(cx, cy, kind, inverse, i, left, bottom, right, top, count, grid)
+    return count
+
+
+@compiled
+def _look_into(cx, cy, kind, inverse, i, left, bottom, right, top, count, grid):
+    """Add the discs of one cell whose boxes overlap a part of that of i."""
+    boxes = grid.boxes
+    first = kind * boxes.shape[0]
+    entry = grid.heads[_bucket(cx, cy, kind, grid)]
+    while entry != NONE:
+        j = (entry >> 2) - first
+        if 0 <= j < boxes.shape[0]:
+            x, y = max(boxes[j, 0], left), max(boxes[j, 1], bottom)
+            if (
+                x <= min(boxes[j, 2], right)
+                and y <= min(boxes[j, 3], top)
+                and j != i
+                and math.floor(x * inverse) == cx  # of the cells both overlap, count one
+                and math.floor(y * inverse) == cy
+                and math.floor(boxes[j, 0] * inverse) + ((entry >> 1) & 1)
+                == cx  # not of another in this bucket
+                and math.floor(boxes[j, 1] * inverse) + (entry & 1) == cy
+                and count < boxes.shape[0]
+            ):
+                grid.found[count] = j
+                count += 1
+        entry = grid.after[entry]
     return count

@@ -202,7 +202,7 @@ def _list_pairs(discs, grid, ties, group, numbers, counts):
         grid.boxes[i, 3] += room
     set_layers(grid, numbers, counts)
     layers, cell = counts[LAYERS], numbers[CELL]
-    if 4 * discs.shape[0] * layers > grid.entries.shape[0]:
+    if 8 * discs.shape[0] * layers > grid.after.shape[0]:
         return GRID_FULL, 0
     grid.heads[:] = NONE
     pairs = 0

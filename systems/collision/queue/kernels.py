@@ -1,6 +1,6 @@
 """A binary heap of meetings, earliest first; equal times in the order of the discs' numbers."""
 
-from systems.collision.arrays import CHANGES
+from systems.collision.arrays import CHANGES, MOST_CHANGES
 from systems.collision.kernels import compiled
 
 
@@ -72,10 +72,16 @@ def drop_first(queue, size):
 
 
 @compiled
+def changes(i, discs):
+    """How often the path of a disc has changed, as a meeting notes it."""
+    return int(discs[i, CHANGES]) & MOST_CHANGES
+
+
+@compiled
 def is_void(queue, k, discs):
     """True if a disc of the meeting has changed its path since."""
     i, j = queue.meetings[k, 0], queue.meetings[k, 1]
-    return queue.meetings[k, 2] != discs[i, CHANGES] or queue.meetings[k, 3] != discs[j, CHANGES]
+    return queue.meetings[k, 2] != changes(i, discs) or queue.meetings[k, 3] != changes(j, discs)
 
 
 @compiled

@@ -10,7 +10,6 @@ from systems.collision.arrays import (
     AX,
     AY,
     CELL,
-    CHANGES,
     CROWDING,
     END,
     EPOCH,
@@ -33,7 +32,7 @@ from systems.collision.arrays import (
     WINDOW,
     Reason,
 )
-from systems.collision.contact.kernels import find_lasting, is_held
+from systems.collision.contact.kernels import find_lasting
 from systems.collision.gap.kernels import (
     NEVER,
     first_approach,
@@ -53,7 +52,7 @@ from systems.collision.grid.kernels import (
     neighbours,
 )
 from systems.collision.kernels import compiled
-from systems.collision.queue.kernels import purge, push
+from systems.collision.queue.kernels import changes, purge, push
 
 DONE, QUEUE_FULL, GRID_FULL = int(Reason.DONE), int(Reason.QUEUE_FULL), int(Reason.GRID_FULL)
 
@@ -82,18 +81,21 @@ def foresee(i, j, discs, ties, end):
         return discs[i, STEP]
     if i > j:
         i, j = j, i
-    if (is_held(i, discs) and is_held(j, discs)) or find_lasting(i, j, ties) != NONE:
-        return NEVER
-    if is_joined(i, j, ties):
-        return NEVER
     start = max(discs[i, EPOCH], discs[j, EPOCH])
     dx, dy, vx, vy, ax, ay = relative_motion(discs, i, j, start)
+    straight = is_straight(j, discs)
+    if ax == 0.0 and ay == 0.0 and dx * vx + dy * vy >= 0.0 and not straight:
+        return NEVER
     reach = discs[i, RADIUS] + discs[j, RADIUS]
     noise, growth = speed_noise(discs, i, j, start), pull_noise(discs, i, j)
-    if is_straight(j, discs):
+    if straight:
         tx, ty = discs[j, TX], discs[j, TY]
-        return start + first_touch(dx, dy, vx, vy, ax, ay, tx, ty, reach, noise, growth, end - start, False)
-    return start + first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, end - start, False)
+        time = start + first_touch(dx, dy, vx, vy, ax, ay, tx, ty, reach, noise, growth, end - start, False)
+    else:
+        time = start + first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, end - start, False)
+    if time > end or is_joined(i, j, ties) or find_lasting(i, j, ties) != NONE:
+        return NEVER
+    return time
 
 
 @compiled
@@ -108,7 +110,7 @@ def expect(i, j, discs, ties, queue, numbers, counts):
         if counts[QUEUED] > capacity - capacity // 8:
             return False
     i, j = min(i, j), max(i, j)
-    push(queue, counts[QUEUED], time, i, j, int(discs[i, CHANGES]), int(discs[j, CHANGES]))
+    push(queue, counts[QUEUED], time, i, j, changes(i, discs), changes(j, discs))
     counts[QUEUED] += 1
     return True
 
@@ -141,7 +143,7 @@ def _fill(crowd, discs, grid, ties, queue, numbers, counts):
         enclose(i, discs, grid, numbers[NOW], numbers[END])
     set_layers(grid, numbers, counts)
     layers, cell = counts[LAYERS], numbers[CELL]
-    if 4 * discs.shape[0] * layers > grid.entries.shape[0]:
+    if 8 * discs.shape[0] * layers > grid.after.shape[0]:
         return GRID_FULL, 0
     grid.heads[:] = NONE
     counts[QUEUED] = 0
