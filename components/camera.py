@@ -13,19 +13,28 @@ DEFAULT_SCALE = 100.0  # points per metre at the default zoom
 SMALLEST_SCALE, LARGEST_SCALE = 1e-6, 1e9
 
 
-@dataclass(frozen=True)
-class Viewport:
-    """A rectangle of the window in pixels, y down."""
+class Rectangle:
+    """Something that takes a rectangle of the window, in pixels, y down."""
 
-    left: int = 0
-    top: int = 0
-    width: int = 600
-    height: int = 600
+    left: float
+    top: float
+    width: float
+    height: float
 
     def contains(self, pixel: Vector) -> bool:
         """True if the pixel lies inside."""
         x, y = pixel
         return self.left <= x < self.left + self.width and self.top <= y < self.top + self.height
+
+
+@dataclass(frozen=True)
+class Viewport(Rectangle):
+    """The part of the window in which something is shown."""
+
+    left: int = 0
+    top: int = 0
+    width: int = 600
+    height: int = 600
 
     @property
     def middle(self) -> Vector:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from components.camera import Viewport
-from components.field import Vector
+from components.camera import Rectangle, Viewport
 
 BUTTON = 30.0, 26.0  # points, width and height
 EDGE = 4.0  # points around all buttons
@@ -31,7 +30,7 @@ class Tool:
 
 
 @dataclass(frozen=True)
-class Button:
+class Button(Rectangle):
     """A tool and the rectangle of its button in pixels."""
 
     tool: Tool
@@ -39,10 +38,6 @@ class Button:
     top: float
     width: float
     height: float
-
-    def contains(self, pixel: Vector) -> bool:
-        """True if the pixel lies inside."""
-        return 0.0 <= pixel[0] - self.left < self.width and 0.0 <= pixel[1] - self.top < self.height
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,9 @@ import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, Protocol
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from components.camera import Viewport
 from components.environment import Environment
@@ -22,7 +21,7 @@ from components.rod import Rod
 from components.settings import Settings
 from components.table import Table
 from components.tags import Selected
-from components.view import Preview, Status, View
+from components.view import View
 from components.world import Handle
 from game import models
 from game.actions import ACTIONS, WHILE_DRAWING
@@ -31,22 +30,23 @@ from game.clock import FrameClock
 from game.curve import goal_of
 from game.desk import Desk, Desks, ModelFile, file_of
 from game.document import missing_mods
-from game.gestures import TOOL_HINTS, Gesture
+from game.gestures import Gesture
 from game.history import History
 from game.impacts import Impacts
 from game.mods.mod import FAULTS
-from game.readouts import own_readouts
-from game.registry import PANELS, SYSTEMS
+from game.registry import SYSTEMS
 from game.scenes import Scenes, Stage, all_scenes
 from game.schedule import Schedule
+from game.showing import show
 from game.simulation import Energy, Simulation
+from game.surroundings import Prepares, Spares, Window
 from game.timeline import Timeline
 from game.toolbar import toolbar_of
 from systems.base import Law, Phase, StopReason, System
 from systems.edit.pull import Pull
 from systems.edit.refusal import Refusal
-from systems.input.bindings import LIVE, TEXT, action_for, help_lines
 from systems.input.bindings import PANELS as FORMS
+from systems.input.bindings import TEXT, action_for
 from systems.physics.pace import natural_pace
 
 if TYPE_CHECKING:
@@ -58,9 +58,6 @@ if TYPE_CHECKING:
 
 CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
 ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
-COMPILING = "Preparing the step program, which takes a while for the first model of its kind:"
-FLASH = 0.15  # s shown, for which an impact is marked
-MOST_FLASHES = 500  # impacts marked at a time
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
 
 
@@ -74,45 +71,6 @@ class Frame:
     session: Session
     elapsed: float
     pressed: list[tuple[str, Vector]] = field(default_factory=list)
-
-
-class Window(Protocol):
-    """What a window does for actions that only make sense in one."""
-
-    def toggle_full_screen(self) -> None:
-        """Fill the screen, or stop doing so."""
-
-    def magnify(self, by: int) -> str:
-        """Draw type and symbols a step larger or smaller; 0: as they suit the window. Returns which it is."""
-
-    def screenshot(self) -> str:
-        """Save a picture of the window; returns where. Raises OSError."""
-
-    def copied(self) -> str:
-        """The text on the system's clipboard."""
-
-    def copy(self, text: str) -> None:
-        """Put a text on the system's clipboard."""
-
-
-class Spares(Protocol):
-    """Where a window keeps unsaved work against a crash."""
-
-    def left(self) -> list[Path]:
-        """What a crash left behind."""
-
-    def take_over(self, path: Path, desk: Desk) -> None:
-        """What was left behind is unsaved work of this desk from now on."""
-
-    def discard(self) -> None:
-        """What a crash left behind is not wanted any more."""
-
-
-class Prepares(Protocol):
-    """What has step programs compiled in a window, which must not stand still meanwhile."""
-
-    def waits_for(self, simulation: Simulation) -> float | None:
-        """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
 
 
 class Session:
@@ -151,11 +109,11 @@ class Session:
         )
         self.footer: View | None = None  # what stands below the picture meanwhile
         self.lesson: Script | None = None  # that a person asked for
-        self._awaited: Simulation | None = None  # something could not be done without its step program
+        self.awaited: Simulation | None = None  # something could not be done without its step program
         self._blank = Model()  # what the footer is drawn over
         self._keyed = ""  # the scene in which a key was pressed last
         self.faults_told = len(FAULTS)  # of mods; the others are shown
-        self._offer_tools()
+        self.offer_tools()
         self._begin_at_desk()
 
     @classmethod
@@ -536,9 +494,9 @@ class Session:
         except (Refusal, FieldError) as error:
             self.notice = str(error)
         self.scenes.apply(self)
-        self._offer_tools()
+        self.offer_tools()
 
-    def _offer_tools(self) -> None:
+    def offer_tools(self) -> None:
         """Let the toolbar show what can be done now; behind a panel it stays as it was."""
         if self.scene not in FORMS:
             self.view.toolbar = toolbar_of(self)
@@ -681,10 +639,10 @@ class Session:
 
     def has_program(self, simulation: Simulation) -> bool:
         """False while the step program is compiled elsewhere, which is said; without a window it is compiled here."""
-        self._awaited = None if self._waited_for(simulation) is None else simulation
-        return self._awaited is None
+        self.awaited = None if self.waited_for(simulation) is None else simulation
+        return self.awaited is None
 
-    def _waited_for(self, simulation: Simulation) -> float | None:
+    def waited_for(self, simulation: Simulation) -> float | None:
         """Seconds that a step program has been waited for, or None if it can be had at once."""
         return self.preparation.waits_for(simulation) if self.preparation is not None else None
 
@@ -710,62 +668,8 @@ class Session:
 
     def update_view(self) -> None:
         """Bring what the view says about the run up to date."""
-        view, scene = self.view, self.scenes.active
-        view.forces_known = self._waited_for(self.simulation) is None
-        waited = self._waited_for(self._awaited) if self._awaited is not None else None
-        self._awaited = None if waited is None else self._awaited
-        said = self.notice if waited is None else f"{COMPILING} {waited:.0f} s."
-        view.preview = self._preview()
-        view.flashes = self._flashes()
-        view.heading = scene.heading
-        view.shape = self.desk.shapes.shown
-        self._offer_tools()
-        view.keys = help_lines(scene.name) if view.help else []
-        view.readouts = (*own_readouts(self), *(readout for panel in PANELS for readout in panel(self)))
-        view.status = Status(
-            time=self.time,
-            speed=self.clock.shown_pace if self.busy else 0.0,
-            state=self._state_word(),
-            hint=self._drawing_hint() or scene.hint(self),
-            problem=self._problem(),
-            notice=said or " ".join(remark.message for remark in self.remarks),
-        )
-
-    def _flashes(self) -> NDArray[np.float64]:
-        """Where particles collided within the last moment that was shown."""
-        if not self.busy or len(self.impacts) == 0:
-            return np.zeros((0, 2))
-        since = self.time - FLASH * self.clock.shown_pace
-        first = max(int(np.searchsorted(self.impacts.time, since)), len(self.impacts) - MOST_FLASHES)
-        return np.column_stack([self.impacts.x[first:], self.impacts.y[first:]])
-
-    def _preview(self) -> Preview | None:
-        try:
-            return self.gesture.preview(self, self.pointer) if self.gesture is not None else None
-        except Refusal as error:
-            self.gesture, self.notice = None, str(error)
-            return None
-
-    def _drawing_hint(self) -> str:
-        if self.scene not in LIVE:
-            return ""
-        return self.gesture.hint if self.gesture is not None else TOOL_HINTS.get(self.view.tool, "")
-
-    def _state_word(self) -> str:
-        if self.simulation.halted:
-            return "at rest" if self.simulation.reason is StopReason.REST else "diverged"
-        if self._awaited is not None:
-            return "preparing"
-        if not self.busy:
-            return "paused"
-        return "running, slower than asked" if self.clock.lagging else "running"
-
-    def _problem(self) -> str:
-        if self.fault:
-            return f"{self.fault} Esc takes this away."
-        if self.simulation.reason is StopReason.DIVERGED and self.simulation.halted:
-            return self.simulation.message
-        return self.simulation.warning or self.simulation.note
+        show(self)
+        self.offer_tools()
 
 
 def _forward(name: str, value: float, *, whole: bool = False) -> float:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from itertools import groupby
 
 from components.box import Box
-from components.camera import Viewport
+from components.camera import Rectangle, Viewport
 from components.field import Vector
 from components.form import Form, Tile
 
@@ -29,7 +29,7 @@ Row = str | list[Box] | list[Tile]
 
 
 @dataclass(frozen=True)
-class Place:
+class Place(Rectangle):
     """A box, tile or section heading, and the rectangle that it takes (of a box: without its title)."""
 
     item: Box | Tile | str
@@ -37,10 +37,6 @@ class Place:
     top: float
     width: float
     height: float
-
-    def contains(self, pixel: Vector) -> bool:
-        """True if the pixel lies inside."""
-        return 0.0 <= pixel[0] - self.left < self.width and 0.0 <= pixel[1] - self.top < self.height
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from game import models, preparation, program_cache
 from game.app import App
 from game.preparation import Preparation
 from game.program_writer import FEW
-from game.session import COMPILING
+from game.showing import COMPILING
 from systems.input import pygame_input
 
 
