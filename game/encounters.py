@@ -13,9 +13,11 @@ from collections.abc import Callable
 import numpy as np
 
 from components.model import Model
+from components.particle import Particle
 from components.snapshot import Snapshot
 from game.contacts import Contacts
-from game.encounter_kernels import kernels
+from game.encounter_kernels import kernels, note_encounters
+from game.flight import part_overlaps
 from game.impacts import Impacts
 from game.program import Program
 from game.strikes import TOUCH, Strikes
@@ -162,3 +164,20 @@ class Encounters:
                 break
             time = better
         return reason
+
+
+def load_encounters() -> None:
+    """Have all that is compiled called once: it is compiled then, or loaded from the cache."""
+    model = Model()
+    model.create(Particle, 2, position=[(0.0, 0.0), (0.09, 0.0)], velocity=[(1.0, 0.0), (0.0, 0.0)])
+    part_overlaps(model)
+    encounters = Encounters(model, Impacts(model), lambda target: StopReason.DONE, _nothing_to_bind)
+    before = Snapshot.take(model)
+    encounters._near.look_up()
+    encounters._meeting(before)
+    encounters._strikes.happen(before)
+    note_encounters()
+
+
+def _nothing_to_bind() -> Program:
+    raise NotImplementedError("two discs that only show what they would do have no program")

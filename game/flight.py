@@ -15,6 +15,7 @@ from components.field import Role
 from components.model import Model
 from components.obstacles import obstacles
 from components.paths import Paths
+from game.encounter_kernels import kernels
 from game.impacts import Impacts
 from game.program_cache import compile_module, is_compiled, note_compiled
 from systems.base import StopReason
@@ -92,7 +93,8 @@ def part_overlaps(model: Model) -> str:
     count = len(overlapping)
     if count == 0:
         return ""
-    left = part(particles.position, displacement, particles.radius, particles.mobility, among, obstacles=others)
+    columns = particles.position, displacement, particles.radius, particles.mobility
+    left = part(*columns, among, kernels().part, others)
     model.writable("particles.displacement")[...] = displacement
     pairs = "1 pair of particles" if count == 1 else f"{count} pairs of particles"
     note = f"{pairs} overlapped and were moved apart along their lines of centres."

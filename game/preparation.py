@@ -10,14 +10,17 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from game.encounter_kernels import has_encounters
+from game.encounters import load_encounters
 from game.flight import has_flight
 from game.mods import MODS
-from game.prepare import FLIGHT, RASTER
+from game.prepare import ENCOUNTERS, FLIGHT, RASTER
 from game.program import has_program
-from game.program_cache import load_compiler
+from game.program_cache import is_blank, load_compiler
 from game.program_writer import form_of
 from game.raster_program import has_raster, load_raster
 from systems.base import Phase, System
+from systems.collision.system import Collision
 from systems.edit.pull import Pull
 
 if TYPE_CHECKING:
@@ -25,13 +28,15 @@ if TYPE_CHECKING:
     from systems.render.raster import Raster
 
 Job = tuple[str, ...]  # what `python -m game.prepare` is asked for
+AHEAD = {RASTER: has_raster, ENCOUNTERS: has_encounters, FLIGHT: has_flight}
 
 
 class Preparation(System):
     """Has the step program of the model that is open compiled as soon as it is known, and the drawing.
 
     First the compiler itself is loaded, in a thread: that takes as long as a person takes to press a key.
-    What is compiled is loaded as soon as nobody waits for anything else.
+    What is compiled is loaded as soon as nobody waits for anything else, and what other models may need is
+    compiled once nothing else is.
     """
 
     name = "programs.preparation"
@@ -41,6 +46,9 @@ class Preparation(System):
         self._frames = 0
         self._seen = -1  # the model's revision in the last frame
         self._compiler = threading.Thread(target=_load_libraries, daemon=True)
+        self._blank = is_blank()  # then it is known without the compiler that nothing is compiled
+        self._loaded = False  # the program was, in the last frame
+        self._encounters = False  # they are loaded
         self._running: dict[Job, subprocess.Popen[bytes]] = {}
         self._since: dict[Job, float] = {}
         self._done: set[Job] = set()
@@ -50,7 +58,26 @@ class Preparation(System):
         self._frames += 1
         if self._frames == 2:  # the first picture comes first
             self._compiler.start()
-        self._load(frame.session.simulation)
+        simulation = frame.session.simulation
+        loaded, self._loaded = self._loaded, simulation.ready
+        if loaded and simulation.ready and self._waits_for_encounters(simulation) is None:
+            self._load_encounters(simulation)
+        else:
+            self._load(simulation)
+        self._compile_ahead()
+
+    def _load_encounters(self, simulation: Simulation) -> None:
+        """In a frame after the program was loaded, and before anything meets."""
+        if not self._encounters and _may_meet(simulation):
+            self._encounters = True
+            load_encounters()
+
+    def _compile_ahead(self) -> None:
+        """What any model may need, one after the other, while nothing else is compiled."""
+        if all(process.poll() is not None for process in self._running.values()):
+            for job, is_compiled in AHEAD.items():
+                if self._waits((job,), is_compiled) is not None:
+                    return
 
     def _load(self, simulation: Simulation) -> None:
         """As soon as its program is compiled, and what was done is seen: who needs it first need not wait."""
@@ -63,15 +90,20 @@ class Preparation(System):
     def waits_for(self, simulation: Simulation) -> float | None:
         """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
         if simulation.ready:
-            return None
+            return self._waits_for_encounters(simulation)
         model, plan = simulation.model, simulation.schedule.step_plan(simulation.model)
         if simulation.integrator == FLIGHT:
             return self._waits((FLIGHT,), has_flight)
         job = simulation.integrator, form_of(model, simulation.driver), *(system.name for system in plan)
         waited = self._waits(job, lambda: has_program(model, plan, simulation.driver))
+        others = self._waits_for_encounters(simulation)
         if waited is None and job in self._running:  # then it is new, with a hand that pulls as well
             self._waits((*job, Pull.name), lambda: False)
-        return waited
+        return others if waited is None else waited
+
+    def _waits_for_encounters(self, simulation: Simulation) -> float | None:
+        """The same for what happens where particles of structures meet."""
+        return self._waits((ENCOUNTERS,), has_encounters) if _may_meet(simulation) else None
 
     def raster(self) -> Raster | None:
         """What draws large pictures, as soon as it is compiled."""
@@ -81,11 +113,12 @@ class Preparation(System):
         if job in self._done:
             return None
         waited = time.monotonic() - self._since.setdefault(job, time.monotonic())
-        if self._compiler.ident is None or self._compiler.is_alive():
+        loading = self._compiler.ident is None or self._compiler.is_alive()
+        if loading and not self._blank:
             return waited
-        if job not in self._running and not is_compiled():
+        if job not in self._running and (loading or not is_compiled()):
             self._running[job] = _started(job)
-        if job in self._running and self._running[job].poll() is None:
+        if loading or (job in self._running and self._running[job].poll() is None):
             return waited
         self._done.add(job)  # and if it could not be compiled there, it is tried, and explained, here
         return None
@@ -98,9 +131,18 @@ class Preparation(System):
                 process.wait()
 
 
+def _may_meet(simulation: Simulation) -> bool:
+    """True if particles that do not fly free may meet."""
+    plan = simulation.schedule.step_plan(simulation.model)
+    return simulation.integrator != FLIGHT and any(isinstance(system, Collision) for system in plan)
+
+
 def _load_libraries() -> None:
     """What steps need besides their programs."""
     load_compiler()
+    for is_compiled in AHEAD.values():  # imports kernels, which takes several frames
+        is_compiled()
+    importlib.import_module("systems.plasticity.kernels")
     importlib.import_module("scipy.spatial")
 
 

@@ -1,5 +1,5 @@
 """Compile ahead of need: `python -m game.prepare DRIVER FORM SYSTEM…` for a step program, `… free_flight` for
-collisions of free particles, or `… raster` for drawing.
+collisions of free particles, `… encounters` for those of others, or `… raster` for drawing.
 
 The window runs this in another process, because a compiler in its own would hold it up, in a thread too.
 """
@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from components.model import Model
 from components.particle import Particle
 from game.catalogue import DRIVERS
+from game.encounters import load_encounters
 from game.flight import load_flight
 from game.mods.command import load_as_asked
 from game.program_cache import forget_unused
@@ -20,7 +21,7 @@ from game.raster_program import load_raster
 from game.session import Session
 from systems.edit.pull import Hand
 
-RASTER, FLIGHT = "raster", "free_flight"
+RASTER, FLIGHT, ENCOUNTERS = "raster", "free_flight", "encounters"
 
 
 def main(words: Sequence[str]) -> None:
@@ -30,6 +31,8 @@ def main(words: Sequence[str]) -> None:
         load_raster()
     elif name == FLIGHT:
         load_flight()
+    elif name == ENCOUNTERS:
+        load_encounters()
     else:
         model = Model()
         (particle,) = model.create(Particle, 1)

@@ -131,6 +131,11 @@ def is_compiled(source: str, kernels: Mapping[str, Callable[..., Any]]) -> bool:
     return name in _modules or (cache_folder() / f"{name}.done").exists()
 
 
+def is_blank() -> bool:
+    """True if nothing at all is compiled yet, as when the program is started for the first time."""
+    return next(cache_folder().glob("*.done"), None) is None
+
+
 def note_compiled(module: ModuleType) -> None:
     """Let other processes know that all of a module is compiled, and later ones that it is in use."""
     with contextlib.suppress(OSError):

@@ -15,7 +15,7 @@ import pygame
 import pytest
 
 from components.field import Role
-from game import models, preparation, program_cache
+from game import encounter_kernels, models, preparation, program_cache
 from game.app import App
 from game.preparation import Preparation
 from game.program_writer import FEW
@@ -45,6 +45,9 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
     monkeypatch.setattr(preparation, "_started", found.start)
     monkeypatch.setattr(preparation, "has_program", lambda *plan: False)
     monkeypatch.setattr(preparation, "has_raster", lambda: False)
+    monkeypatch.setattr(preparation, "has_encounters", lambda: False)
+    monkeypatch.setattr(preparation, "is_blank", lambda: False)
+    monkeypatch.setattr(preparation, "AHEAD", {})
     return found
 
 
@@ -68,6 +71,48 @@ def test_it_begins_with_the_model_that_is_open(app: App, compiler: Compiler) -> 
     (job,) = compiler.jobs
     plan = app.session.schedule.step_plan(app.session.model)
     assert job == (app.session.simulation.integrator, FEW, *(system.name for system in plan))
+
+
+def test_on_a_first_start_it_begins_before_the_compiler_is_loaded(
+    monkeypatch: pytest.MonkeyPatch, compiler: Compiler
+) -> None:
+    monkeypatch.setattr(preparation, "is_blank", lambda: True)
+    window = App(models.load("isostatic"), preparation=Preparation())
+    frames(window, 1)
+    assert len(compiler.jobs) == 1
+    compiler.status = 0
+    frames(window, 1)
+    assert window.session.model.clock.steps == 0
+    assert not window.session.view.forces_known  # what is compiled cannot be loaded yet
+
+
+def test_where_particles_may_meet_that_is_waited_for_too(app: App, compiler: Compiler) -> None:
+    session = app.session
+    session.open_here("ball_on_truss")
+    frames(app, 1)
+    assert [job[0] for job in compiler.jobs[1:]] == [session.simulation.integrator, "encounters"]
+    session.press("space")
+    frames(app, 3)
+    assert session.model.clock.steps == 0
+    compiler.status = 0
+    frames(app, 4)
+    assert session.model.clock.steps > 0
+    loaded = encounter_kernels.kernels()
+    assert loaded.meeting.signatures  # though nothing has met yet
+    assert loaded.impact.signatures
+
+
+def test_what_other_models_may_need_comes_when_nothing_else_is_compiled(
+    monkeypatch: pytest.MonkeyPatch, app: App, compiler: Compiler
+) -> None:
+    monkeypatch.setattr(
+        preparation, "AHEAD", {"one": lambda: False, "two": lambda: True, "three": lambda: False}
+    )
+    frames(app, 2)
+    assert len(compiler.jobs) == 1
+    compiler.status = 0
+    frames(app, 4)
+    assert compiler.jobs[-2:] == [("one",), ("three",)]
 
 
 def test_a_run_waits_and_says_so_and_goes_on(app: App, compiler: Compiler) -> None:
