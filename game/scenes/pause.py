@@ -23,6 +23,8 @@ class Pause(Scene):
                 "P new particle under the pointer     L rod from one to another     C support     F force"
                 "     D open a model     F1 all keys"
             )
+        if any(handle.points for handle in session.selected[:1]):
+            return "drag it or its ends     Return properties     Esc deselect     F1 keys"
         if session.has_selected:
             return "Return properties     I its forces     Esc deselect     F1 keys"
         return "Space run     click select     I forces     wheel zoom     F1 keys"

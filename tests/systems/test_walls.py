@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,8 @@ from systems.render.marks import Strokes
 from systems.render.panel import thumbnail
 from systems.render.picture import compose
 from systems.render.theme import load_theme
+
+FRAME = 1.0 / 60.0
 
 
 def room(*walls: dict[str, Any], particles: list[dict[str, Any]] | None = None, **rest: Any) -> Session:
@@ -260,3 +263,74 @@ def test_scripts_and_the_command_line_set_it_by_its_name() -> None:
     with pytest.raises(KeyError, match="did you mean 'walls'"):
         session.table("wall")
     assert isinstance(session.table("walls")["floor"], Handle)
+
+
+# --- what rods, drag or a hand drive -----------------------------------------------------------------------
+
+
+def test_the_impact_of_what_drag_slows_down_is_found_in_the_step() -> None:
+    """x = (v/c)(1 − exp(−c t)) reaches d at t = −ln(1 − c d/v)/c; then it goes back with e times its speed."""
+    ball = {"name": "ball", "position": [0, 0.5], "velocity": [2, 0]}
+    wall = {"name": "wall", "start": [1, 0], "end": [1, 1], "restitution": 0.75}
+    session = room(wall, particles=[ball], environment={"drag": 0.5})
+    session.run(time=0.7)
+    distance = 1 - 0.05
+    expected = -math.log(1 - 0.5 * distance / 2) / 0.5
+    assert session.impacts.time == pytest.approx([expected], rel=1e-9)
+    speed = -0.75 * (2 - 0.5 * distance) * math.exp(-0.5 * (0.7 - expected))
+    assert session.particles["ball"].velocity[0] == pytest.approx(speed, rel=1e-8)
+
+
+def test_no_node_of_a_fast_structure_gets_through() -> None:
+    """Two nodes at 2000 m/s, that would cross ten walls in a step, stay between the two that are there."""
+    particles = [
+        {"name": name, "position": [x, 0.5], "velocity": [2000, 0], "mass": 1, "radius": 0.01}
+        for name, x in (("A", 0.2), ("B", 0.5))
+    ]
+    sides = [{"name": f"side {x}", "start": [x, 0], "end": [x, 1]} for x in (0, 1)]
+    rods = [{"name": "AB", "between": ["A", "B"], "stiffness": 1000, "damping": 0}]
+    session = room(*sides, particles=particles, rods=rods, environment={}, settings={"time_step": 1e-4})
+    for _ in range(20):
+        session.run(time=5e-4)
+        for particle in session.particles:
+            assert 0.01 * (1 - 1e-9) <= particle.position[0] + particle.displacement[0] <= 0.99 * (1 + 1e-9)
+    assert len(session.impacts) > 5
+
+
+def test_a_hand_cannot_pull_a_ball_through_it() -> None:
+    wall = {"name": "wall", "start": [1, 0], "end": [1, 1]}
+    session = room(wall, particles=[{"name": "ball", "position": [0.5, 0.5]}], environment={})
+    session.press("space")
+    session.frame(FRAME)
+    session.grab(0.5, 0.5)
+    for k in range(40):
+        session.drag_to(0.5 + 0.05 * k, 0.5)
+        session.frame(FRAME)
+    ball = session.particles["ball"]
+    assert ball.position[0] + ball.displacement[0] == pytest.approx(0.95, abs=1e-6)
+    session.drop()
+
+
+def test_a_saved_run_goes_on_bit_for_bit() -> None:
+    sides = [((0, 0), (1, 0)), ((1, 0), (1, 1)), ((0, 1), (0, 0))]
+    walls = [{"name": f"side {k}", "start": start, "end": end} for k, (start, end) in enumerate(sides)]
+    particles = [{"name": f"p{k}", "position": [0.2 + 0.3 * k, 0.5], "velocity": [1 - k, 0]} for k in range(3)]
+    first = room(*walls, particles=particles)
+    first.run(time=0.5)
+    second = Session.open(models.document(first.model))
+    for session in (first, second):
+        session.run(time=0.5)
+    assert first.particles.displacement.tobytes() == second.particles.displacement.tobytes()
+    assert len(second.impacts) > 0
+
+
+def test_editing_it_in_a_run_counts_from_then_on() -> None:
+    session = room(FLOOR)
+    session.run(until="rest")
+    session.model.delete(walls_of(session))
+    session.run(time=0.5)
+    assert session.particles["ball"].displacement[1] == pytest.approx(-1 - 0.5 * 9.81 * 0.25, abs=1e-8)
+    session.undo()
+    session.undo()
+    assert session.particles["ball"].displacement[1] == pytest.approx(-1, abs=1e-8)
+    assert [wall.name for wall in walls_of(session)] == ["floor"]
