@@ -266,6 +266,30 @@ def test_a_pile_in_a_box_rests_on_its_floor() -> None:
     assert place[:, 0].max() <= 1.1 - radius * (1 - 1e-6)
 
 
+@pytest.mark.parametrize(("count", "seed"), [(3, 5), (3, 59), (4, 36), (4, 50), (4, 53), (10, 0)])
+def test_discs_that_slide_into_a_groove_do_not_sink_in(count: int, seed: int) -> None:
+    """Their contacts with one another come and go; each goes on being pushed by the wall as it must be then."""
+    rng = np.random.default_rng(seed)
+    start = np.column_stack([rng.uniform(-0.7, 0.7, count), 1.0 + 0.12 * np.arange(count)])
+    groove, down = obstacles(((-1.0, 1.0), (0.0, 0.0)), ((1.0, 1.0), (0.0, 0.0)), restitution=0.5), GRAVITY
+    discs = Discs(
+        start,
+        np.zeros((count, 2)),
+        np.full(count, 0.04),
+        np.ones((count, 2)),
+        acceleration=np.tile([0.0, -down], (count, 1)),
+        restitution=0.5,
+        obstacles=groove,
+    )
+    for time in np.arange(0.01, 2.5, 0.01):
+        discs.advance(time)
+        place = places(discs, start)
+        to_sides = (place[:, 1] - np.abs(place[:, 0])) / math.sqrt(2)
+        apart = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1)) + 9 * np.eye(count)
+        assert to_sides.min() >= 0.04 * (1 - 1e-6)
+        assert apart.min() >= 0.08 * (1 - 1e-6)
+
+
 def test_the_restitution_of_a_wall_is_its_own() -> None:
     """Impacts with it lose by its own number, those of discs with each other by theirs."""
     wall = obstacles(((0.0, -1.0), (0.0, 1.0)), restitution=0.25)

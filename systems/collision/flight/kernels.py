@@ -376,27 +376,25 @@ def _note_noise(count, touching, discs, group):
 def _redirect(count, struck, duration, discs, group, numbers):
     """Start new paths now: of the first `struck` members and of those whose velocity or acceleration changed.
 
-    One that is in lasting contact gets the group's next step.
+    Those that contacts push as they move get the group's next step: it may fall apart before.
     """
     now = numbers[NOW]
-    waiting = duration < NEVER
     for m in range(count):
         i = group.members[m]
-        discs[i, STEP] = NEVER
         s = now - discs[i, EPOCH]
         vx, vy, ax, ay = group.other[m, 0], group.other[m, 1], group.motion[m, 0], group.motion[m, 1]
         old = vx == discs[i, VX] + s * discs[i, AX] and vy == discs[i, VY] + s * discs[i, AY]
         old = old and ax == discs[i, AX] and ay == discs[i, AY]
-        if is_held(i, discs) or (old and m >= struck):
+        pushed = ax != discs[i, GX] or ay != discs[i, GY]
+        pushed = pushed and (vx != 0.0 or vy != 0.0 or ax != 0.0 or ay != 0.0)
+        discs[i, STEP] = now + duration if pushed else NEVER
+        if is_held(i, discs) or (old and m >= struck and not pushed):
             continue
         discs[i, UX] += s * (discs[i, VX] + 0.5 * s * discs[i, AX])
         discs[i, UY] += s * (discs[i, VY] + 0.5 * s * discs[i, AY])
         discs[i, VX], discs[i, VY], discs[i, AX], discs[i, AY] = vx, vy, ax, ay
         discs[i, EPOCH] = now
         discs[i, CHANGES] += 1.0
-        if waiting and (ax != discs[i, GX] or ay != discs[i, GY]):
-            discs[i, STEP] = now + duration
-            waiting = False
 
 
 @compiled
