@@ -25,10 +25,7 @@ AX, AY = 4, 5  # acceleration of the path, m/s²
 EPOCH = 6  # s
 RADIUS = 7  # m
 OX, OY = 8, 9  # original position, m
-TX, TY = (
-    10,
-    11,
-)  # m; from the first end of an obstacle to the other, its original position being the first; else 0
+TX, TY = 10, 11  # m; from the first end of an obstacle, its original position, to the other; 0 of discs
 NOISE = 12  # m/s; round-off in its velocity, from the impact or the contacts that gave it
 CHANGES = 13  # of its path so far
 GX, GY = 14, 15  # acceleration without contact forces, m/s²

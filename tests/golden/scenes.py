@@ -114,6 +114,16 @@ def _drawing_a_force() -> Session:
     return session
 
 
+def _drawing_a_wall() -> Session:
+    """From the foot of the stairs, with the floor selected."""
+    session = _opened("staircase")
+    session.select(session.table("walls")["floor"])
+    session.point(2.0, 0.0)
+    session.press("w")
+    session.point(1.0, -0.4)
+    return session
+
+
 SCENES: dict[str, Callable[[], Session]] = {
     "empty": lambda: _pressed(source=EMPTY),
     "pause": _pressed,
@@ -121,6 +131,7 @@ SCENES: dict[str, Callable[[], Session]] = {
     "pause-colour-blind": lambda: _pressed("i", "e", source="hyperstatic", theme="colour-blind"),
     "pause-colour-blind-dark": lambda: _pressed("i", "e", source="hyperstatic", theme="colour-blind-dark"),
     "drawing-a-force": _drawing_a_force,
+    "drawing-a-wall": _drawing_a_wall,
     "simulation-at-rest": _simulation_at_rest,
     "properties": _properties,
     "save": _save,
