@@ -26,6 +26,7 @@ a "description". Every further line does one thing:
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib.resources import files
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from game.session import Session
 
 HEADER = {"format": "pinjoint session", "version": 1}
+_HEADER_KEYS = (*HEADER, "model", "title", "description")
 EMPTY = {"format": "pinjoint model", "version": 1}
 
 
@@ -90,6 +92,13 @@ class Script:
             raise ScriptError(
                 f"{source}: version {self.lines[0][1].get('version')} is not known; update Pinjoint."
             )
+        for key, value in self.lines[0][1].items():
+            if key not in _HEADER_KEYS:
+                raise ScriptError(
+                    f"{source} line 1: there is no '{key}'; use one of {', '.join(_HEADER_KEYS)}."
+                )
+            if key == "model" and not isinstance(value, str | dict):
+                raise ScriptError(f"{source} line 1: model is {json.dumps(value)}; write a name or a document.")
         self.title, self.description = (str(self.lines[0][1].get(key, "")) for key in ("title", "description"))
 
     def _read(self) -> Iterator[tuple[int, dict[str, Any]]]:
@@ -136,17 +145,62 @@ class Script:
             raise ScriptError(f"{self.path} line {number}: {reason}") from error
 
 
+_EXAMPLES: dict[str, Any] = {  # of what a line may say: the shape that each value has
+    "press": "space",
+    "over": [1.0, 1.0],
+    "click": [1.0, 1.0],
+    "drag": [[0.0, 0.0], [1.0, 1.0]],
+    "button": "ctrl+click",
+    "type": "200000",
+    "box": "stiffness",
+    "set": "particles.B.force=120,-160",
+    "action": "undo",
+    "run": 0.5,
+    "steps": 128,
+    "expect": "scene = pause",
+    "input": "click",
+    "pixel": [512.0, 300.0],
+    "resize": [1280.0, 800.0, 1.0],
+    "window": [1280.0, 800.0],
+    "say": "Press Space.",
+    "clipboard": "",
+    "at": 128,
+}
+_SIZES = ("resize", "window")
+
+
+def _check_line(entry: Mapping[str, Any]) -> None:
+    """Raise ValueError unless every key is known and every value has the shape of its example."""
+    for key, value in entry.items():
+        if key not in _EXAMPLES:
+            raise ValueError(f"there is no '{key}'; use one of {', '.join(_EXAMPLES)}.")
+        example = _EXAMPLES[key]
+        fits = _is_like(value, example) and not (key in _SIZES and min(value) <= 0)
+        if not fits and (key, value) != ("run", "rest"):
+            raise ValueError(f"{key} is {json.dumps(value)}; write it like {json.dumps({key: example})}.")
+
+
+def _is_like(value: Any, example: Any) -> bool:
+    if isinstance(example, list):
+        alike = isinstance(value, list) and len(value) == len(example)
+        return alike and all(map(_is_like, value, example))
+    if isinstance(example, float):
+        return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, type(example)) and not isinstance(value, bool)
+
+
 def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Do what one line says; yields (expected, got) if it expects something that is not so."""
+    """Do what one line says; yields (expected, got) if it expects something that is not so. Raises ValueError."""
+    _check_line(entry)
     rest = dict(entry)
     if "window" in rest:
         width, height = rest.pop("window")
         session.resize(int(width), int(height))
         session.view.fit(session.model)
     if "at" in rest:
-        _advance_to(session, int(rest.pop("at")))
+        _advance_to(session, rest.pop("at"))
     if "over" in rest:
-        session.point(*map(float, rest.pop("over")))
+        session.point(*rest.pop("over"))
     if "clipboard" in rest:
         session.clipboard = rest.pop("clipboard")
     button, pixel = rest.pop("button", "click"), rest.pop("pixel", None)
@@ -159,29 +213,27 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
             session.press(value, tuple(pixel) if pixel else None)
         elif verb in ("click", "drag"):
             _VERBS[verb](session, (*value, button))
-        elif verb in _VERBS:
-            _VERBS[verb](session, value)
         else:
-            raise ValueError(f"there is no '{verb}'; use one of {', '.join((*_VERBS, 'expect', 'input'))}.")
+            _VERBS[verb](session, value)
 
 
 def _run(session: Session, value: Any) -> None:
     if value == "rest":
         session.run(until="rest")
     else:
-        session.run(time=float(value))
+        session.run(time=value)
 
 
 _VERBS: dict[str, Callable[[Session, Any], Any]] = {
     "press": lambda session, key: session.press(key),
-    "click": lambda session, value: session.click(float(value[0]), float(value[1]), value[2]),
+    "click": lambda session, value: session.click(*value),
     "drag": lambda session, value: session.drag(tuple(value[0]), tuple(value[1]), value[2]),
     "type": lambda session, text: session.type(text),
     "box": lambda session, title: session.click_box(title),
     "set": lambda session, text: apply_override(session.model, text),
     "action": lambda session, name: session.act(name),
     "run": _run,
-    "steps": lambda session, count: session.run(steps=int(count)),
+    "steps": lambda session, count: session.run(steps=count),
     "say": lambda session, text: None,
     "resize": lambda session, size: session.resize(int(size[0]), int(size[1]), float(size[2])),
 }

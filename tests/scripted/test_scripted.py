@@ -60,6 +60,20 @@ def test_a_session_expects_the_same_in_python() -> None:
 
 
 @pytest.mark.parametrize(
+    ("further", "words"),
+    [
+        ('"modle": "isostatic"', "line 1: there is no 'modle'"),
+        ('"model": null', "line 1: model is null; write a name"),
+    ],
+)
+def test_wrong_headers_are_explained(tmp_path: Path, further: str, words: str) -> None:
+    path = tmp_path / "wrong.jsonl"
+    path.write_text('{"format": "pinjoint session", "version": 1, ' + further + "}", encoding="utf-8")
+    with pytest.raises(ScriptError, match=words):
+        Script(path)
+
+
+@pytest.mark.parametrize(
     ("line", "words"),
     [
         ('{"pres": "k"}', r"line 2: there is no 'pres'"),
@@ -68,6 +82,15 @@ def test_a_session_expects_the_same_in_python() -> None:
         ('{"expect": "rods.AX.strain = 0"}', "did you mean"),
         ('{"expect": "particles.B.position = 1"}', "ask for .x or .y"),
         ('{"expect": "rods.AB.axial_force = high"}', "cannot be compared with 'high'; write a number"),
+        ('{"press": 5}', 'line 2: press is 5; write it like {"press": "space"}'),
+        ('{"set": 5}', "line 2: set is 5; write it like"),
+        ('{"click": [1]}', r"click is \[1\]; write it like"),
+        ('{"drag": [0, 1]}', r"drag is \[0, 1\]; write it like"),
+        ('{"run": "dawn"}', 'run is "dawn"; write it like {"run": 0.5}'),
+        ('{"run": true}', "run is true; write it like"),
+        ('{"run": 1e999}', "run is Infinity; write it like"),
+        ('{"steps": 1.5}', "steps is 1.5; write it like"),
+        ('{"resize": [0, 100, 1]}', r"resize is \[0, 100, 1\]; write it like"),
         ("[1]", "line 2: write an object"),
         ("{", "line 2: this is not JSON"),
     ],
