@@ -66,6 +66,11 @@ class Paths(Mapping[str, Any]):
     __hash__ = None  # type: ignore[assignment]
 
 
+def resting(contacts: NDArray[np.integer[Any]], forces: NDArray[np.float64]) -> Paths:
+    """Paths of particles that do not fly free, of which these are in lasting contact."""
+    return Paths(np.zeros((0, 0)), contacts.astype(np.int64), forces, np.zeros(0))
+
+
 def check_paths(value: Any, where: str) -> Paths:
     """Paths from what a model file holds. Raises FieldError."""
     if isinstance(value, Paths):

@@ -12,9 +12,9 @@ from components.snapshot import Snapshot
 from game.program import Program
 from game.strikes import NO_CROWD, NO_MOTION
 from systems.base import StopReason
-from systems.collision.near import Floats, Rows
 from systems.collision.system import Support, contacts_of, support_forces
 from systems.collision.vicinity import Vicinity
+from systems.near import Floats, Rows
 
 HELD = 1e-10  # of the smaller radius, within which particles in contact are kept
 MOST_TRIES = 60  # of the forces in a step

@@ -69,7 +69,7 @@ def load_flight() -> type[Discs]:
 
 def part_overlaps(model: Model) -> str:
     """Move particles apart that overlap, but for nodes of structures among themselves; says so, or ""."""
-    from systems.collision.near import near_pairs
+    from systems.near import near_pairs
 
     particles, others = model.particles, obstacles(model)
     node: NDArray[np.bool_] = np.ones(particles.count + len(others), dtype=bool)  # obstacles count as nodes

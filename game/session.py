@@ -17,6 +17,7 @@ from components.field import FieldError, Vector
 from components.load import Load, loads_end
 from components.model import Model
 from components.particle import Particle
+from components.paths import resting
 from components.rod import Rod
 from components.settings import Settings
 from components.table import Table
@@ -38,7 +39,7 @@ from game.registry import SYSTEMS
 from game.scenes import Scenes, Stage, all_scenes
 from game.schedule import Schedule
 from game.showing import show
-from game.simulation import Energy, Simulation
+from game.simulation import FREE_FLIGHT, Energy, Simulation
 from game.surroundings import Prepares, Spares, Window
 from game.timeline import Timeline
 from game.toolbar import toolbar_of
@@ -335,6 +336,8 @@ class Session:
             self.model.give("clock.time", np.array([time]))
             self.model.give("clock.origin", np.array([time]))
             self.model.give("clock.origin_steps", np.array([self.model.clock.steps]))
+            if len(found.final.contacts) and self.simulation.driver is not FREE_FLIGHT:
+                self.model.clock.paths = resting(found.final.contacts, 1000.0 * found.final.contact_force)
         self.notice = found.message or f"Settled: {found.status}."
         laws = [
             system for system in self.schedule.step_plan(self.model) if isinstance(system, Law) and system.mod

@@ -11,9 +11,9 @@ from components.paths import Paths
 from components.snapshot import Snapshot
 from game.encounter_kernels import kernels
 from game.impacts import Impacts
-from systems.collision.near import Floats, Rows
 from systems.collision.system import contacts_of
 from systems.collision.vicinity import LASTING, LEFT_ALONE, WATCHED, Vicinity
+from systems.near import Floats, Rows
 
 TOUCH = 1e-12  # of the reach of two particles: nearer than this they touch
 REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact

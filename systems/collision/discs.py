@@ -17,8 +17,8 @@ from components.paths import Paths
 from systems.collision import arrays
 from systems.collision.arrays import Floats, Grid, Group, Integers, Queue, Reason, Report, Ties
 from systems.collision.flight.kernels import advance
-from systems.collision.near import nearest
 from systems.collision.pile.kernels import STEP_SHARE
+from systems.near import nearest
 
 REPORT = 4096  # impacts reported at a time
 REST_HEIGHT = 1e-9  # of the radius; larger: bouncing ends sooner

@@ -18,7 +18,7 @@ from scipy.sparse import csr_matrix, diags
 from scipy.sparse.linalg import splu
 
 from components.obstacles import Obstacles
-from systems.collision.near import Floats, Rows, near_pairs, nearest
+from systems.near import Floats, Rows, near_pairs, nearest
 
 AROUND = 0.25  # of its radius around each disc, in which its neighbours are listed
 STRIDE = 0.1  # of its radius, by which a disc moves in an iteration at most

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from components.obstacles import any_obstacles, obstacles
 from components.paths import Paths
 from systems.base import Driver, Law, StepSystem
-from systems.collision.near import nearest
+from systems.near import nearest
 
 if TYPE_CHECKING:
     from components.model import Model

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from components.field import Role
 from components.model import Model
 from components.obstacles import obstacles
-from systems.collision.near import Floats, Rows, near_pairs, nearest
 from systems.collision.system import contacts_of
+from systems.near import Floats, Rows, near_pairs, nearest
 
 FAR = 0.5  # of the largest radius; particles that are farther apart are watched less closely
 OVERLAP = 1e-9  # of the reach of two nodes; more at the start of a step is from before they ever parted

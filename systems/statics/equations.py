@@ -81,6 +81,8 @@ class Structure:
         every body that nothing holds along an axis (its translation is arbitrary).
     body: number of the connected body that each particle belongs to, (n,).
     sense: of one-sided rods 1 (a cable, tension only) or −1 (compression only), else 0.
+    own_weight: what particles count with besides their rods in `weight` (kN/m), (n,).
+    flat: rods whose axis keeps its direction, as that of a contact with a straight side does.
     linear: first-order theory, in which elongations and equilibrium are those of the original positions.
     """
 
@@ -97,6 +99,8 @@ class Structure:
     fixed: Flags
     unknown: Flags
     body: Rows
+    own_weight: Array
+    flat: Flags
     linear: bool
 
     @classmethod
@@ -123,6 +127,8 @@ class Structure:
             fixed=fixed,
             unknown=_held_by_rods(particles.count, ends) & ~fixed & ~_arbitrary(fixed, body),
             body=body,
+            own_weight=np.zeros(particles.count),
+            flat=np.zeros(rods.count, dtype=bool),
             linear=geometry == "linear",
         )
 
@@ -194,7 +200,7 @@ class Structure:
         """Sum of EA/L₀ of the rods at each unknown's particle (kN/m), the scale of its stiffness, (N,)."""
         per_rod = self.stiffness / self.rest_length
         total = np.bincount(self.ends.ravel(), np.repeat(per_rod, 2), len(self.position)).astype(np.float64)
-        return self.gather(np.repeat(total, 2).reshape(-1, 2))
+        return self.gather(np.repeat(total + self.own_weight, 2).reshape(-1, 2))
 
     # --- forces --------------------------------------------------------------------------------------
 
@@ -226,14 +232,19 @@ class Structure:
         (2D + Δ)·Δ / (|D + Δ| + |D|), in which nothing cancels at small displacements.
         """
         original = self.original_length
+        straight = self.difference / np.where(original > 0.0, original, 1.0)[:, None]
         if self.linear:
-            axis = self.difference / np.where(original > 0.0, original, 1.0)[:, None]
-            return (axis * change).sum(axis=1), axis, original
+            return (straight * change).sum(axis=1), straight, original
         present = self.difference + change
         length = np.hypot(present[:, 0], present[:, 1])
         total = length + original
         stretch = ((self.difference + present) * change).sum(axis=1) / np.where(total > 0.0, total, 1.0)
-        return stretch, present / np.where(length > 0.0, length, 1.0)[:, None], length
+        axis = present / np.where(length > 0.0, length, 1.0)[:, None]
+        if self.flat.any():
+            axis = np.where(self.flat[:, None], straight, axis)
+            stretch = np.where(self.flat, (straight * change).sum(axis=1), stretch)
+            length = np.where(self.flat, original, length)
+        return stretch, axis, length
 
     def internal(self, response: Response) -> Array:
         """Forces (n, 2) that hold the particles against the rods' pull."""
@@ -286,7 +297,7 @@ class Structure:
         along = np.where(soft, 0.0, self.stiffness / self.rest_length)
         across = np.zeros_like(along)
         if geometric and not self.linear:
-            length = response.length
+            length = np.where(self.flat, np.inf, response.length)
             across = np.where(length > 0.0, response.axial_force / np.where(length > 0.0, length, 1.0), 0.0)
         a = response.axis
         block = (along - across)[:, None, None] * (a[:, :, None] * a[:, None, :])

@@ -76,6 +76,22 @@ def _direction(motions: Array) -> str:
     return f"along ({x:.2f}, {y:.2f})"
 
 
+def describe_way(model: Model, motion: Array) -> str:
+    """Who moves most, and which way, in a motion (n, 2): "ball, which moves down"."""
+    names = model.particles.column("name")
+    size = np.hypot(*motion.T)
+    far = np.flatnonzero(size > 0.5 * size.max())
+    x, y = motion[int(size.argmax())] / size.max()
+    if abs(x) < ONE_WAY:
+        way = "up" if y > 0.0 else "down"
+    elif abs(y) < ONE_WAY:
+        way = "to the right" if x > 0.0 else "to the left"
+    else:
+        way = f"along ({x:.2f}, {y:.2f})"
+    moves = "which moves" if len(far) == 1 else "which move"
+    return f"{listed([str(names[row]) for row in far])}, {moves} {way}"
+
+
 def moved(model: Model, before: Array, after: Array) -> str:
     """Who moved most between two fields of displacements (m), and where it is now."""
     names = model.particles.column("name")

@@ -76,7 +76,10 @@ class Loading:
         elif not tangent.stable or self._unresisted(tangent):
             self._relax(FIRST_LOAD if self.unstressed else 1.0, None)
         if self.mechanism:
-            self._note_mechanism(modes, before)
+            fields = np.array([structure.spread(mode) for mode in modes.T])
+            slack = path.branches(before.response).slack
+            places = before.displacement, self.point.displacement
+            self.events.append(first_order_mechanism(self.model, self.factor(0.0), fields, slack, *places))
         tangent = path.tangent(self.point)
         path.reference = float(np.linalg.norm(tangent.rate))
         return tangent
@@ -88,19 +91,6 @@ class Loading:
             self._relax(1.0, None)
         else:
             self.point = found
-
-    def _note_mechanism(self, modes: Array, before: Point) -> None:
-        path = self.path
-        fields = np.array([path.structure.spread(mode) for mode in modes.T])
-        motion = describe_motion(self.model, fields)
-        message = f"First-order mechanism: without load nothing resists moving {motion}."
-        if np.array_equal(self.point.displacement, before.displacement):
-            message += " Add rods or supports there if that is not meant."
-            message += slack_named(self.model, path.branches(before.response).slack)
-        else:
-            where = moved(self.model, before.displacement, self.point.displacement)
-            message += f" It gives way until the load is held in another shape: {where}."
-        self.events.append(Event("mechanism", self.factor(0.0), message, motion=_unit(fields[0])))
 
     def _unresisted(self, tangent: Tangent) -> bool:
         """True if the load pushes the structure where it has no stiffness but that of round-off."""
@@ -295,6 +285,18 @@ class Loading:
     def _rods(self, flags: Flags) -> tuple[str, ...]:
         names = self.model.rods.column("name")
         return tuple(str(names[row]) for row in np.flatnonzero(flags))
+
+
+def first_order_mechanism(
+    model: Model, factor: float, fields: Array, slack: Flags, before: Array, after: Array
+) -> Event:
+    """What to tell about motions (k, n, 2) that nothing resists without load, and displacements (n, 2) under it."""
+    message = f"First-order mechanism: without load nothing resists moving {describe_motion(model, fields)}."
+    if np.array_equal(before, after):
+        message += " Add rods or supports there if that is not meant." + slack_named(model, slack)
+    else:
+        message += f" It gives way until the load is held in another shape: {moved(model, before, after)}."
+    return Event("mechanism", factor, message, motion=_unit(fields[0]))
 
 
 def _unit(motion: Array) -> Array:

@@ -86,7 +86,7 @@ def _creep(path: Path, point: Point, residual: Array, penalty: float) -> tuple[P
     """One implicit Euler step of length 1/penalty, and the penalty for the next; shorter if it fails."""
     structure, length = path.structure, point.response.length
     while penalty < LARGEST_PENALTY:
-        displacement = _implicit_step(path, point, residual, penalty)
+        displacement = implicit_step(path, point, residual, penalty)
         if displacement is not None:
             move = structure.move(structure.gather(displacement - point.displacement), length)
             if move <= LARGEST_MOVE:
@@ -96,7 +96,7 @@ def _creep(path: Path, point: Point, residual: Array, penalty: float) -> tuple[P
     return None
 
 
-def _implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> Array | None:
+def implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> Array | None:
     """Displacements u with force − internal(u) = penalty × W (u − u₀), or None if Newton's method fails."""
     structure = path.structure
     wanted = STEP_CONVERGED * float(np.abs(residual).max(initial=0.0))

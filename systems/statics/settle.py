@@ -8,7 +8,7 @@ load, and the structure moves on to the next stable equilibrium if there is one.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,19 +16,21 @@ from components.extremes import incomputable
 from components.field import FieldError
 from components.model import Model
 from systems.statics.bodies import loose_bodies, loose_event
-from systems.statics.equations import ROUND_OFF, Array, Flags, Structure
+from systems.statics.contacts import Discs, Sinking
+from systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure
 from systems.statics.events import Event, NoEquilibrium
-from systems.statics.explain import describe_motion, slack_named
+from systems.statics.explain import describe_motion, describe_way, slack_named
 from systems.statics.external import external_forces
-from systems.statics.factor import lowest_mode
+from systems.statics.factor import lowest_mode, soft_modes
 from systems.statics.follow import Path, Point
-from systems.statics.loading import Loading
+from systems.statics.loading import Loading, first_order_mechanism
 
 TOLD = ("free body", "mechanism", "snap-through", "bifurcation", "note")  # kinds of events that messages repeat
 NEARLY_SOFT = 1e-9  # of the rods' stiffness: a motion that is resisted less is worth a note
 ROUGH = 1e-9  # of the largest force, unbalanced: worth a note
 UNBALANCED = 1e-6  # of the largest force: more is no equilibrium
 UNCHANGED = 1e-12  # of the load: a change of it that is round-off
+MOST_DISCS = 250  # without rods; more would take minutes
 UNSTRESSED = 1e-9  # of the largest force: what holds the present state counts as nothing
 
 
@@ -39,7 +41,8 @@ class StaticState:
     reaction: the supports' force in constrained directions, 0 elsewhere. residual: the largest unbalanced
     force over the largest force so far. dissipated_plastic: since settling began. status: "equilibrium",
     "mechanism", "collapse" or "limit reached"; if not the first, all values are those of the last good
-    state on the way. events: what happened on the way from the state before.
+    state on the way. events: what happened on the way from the state before. contacts: rows of the discs that
+    press each other, (k, 2), with contact_force (k,).
     """
 
     load_factor: float
@@ -56,6 +59,8 @@ class StaticState:
     status: str
     message: str
     events: tuple[Event, ...]
+    contacts: Rows
+    contact_force: Array
 
 
 @dataclass(frozen=True)
@@ -117,13 +122,27 @@ def settle(
     problem = incomputable(model)
     if problem:
         raise FieldError(problem)
-    settling = _Settling(model, geometry, start or Start.present(model))
-    states: list[StaticState] = []
-    for factor in wanted:
-        states.append(settling.to(factor))
-        if states[-1].status != "equilibrium":
-            break
-    return Settlement(tuple(states))
+    start = start or Start.present(model)
+    found = _Settling(model, geometry, start).through(wanted)
+    if geometry == "exact" and model.settings.collisions:
+        discs = Discs.of(model, start.displacement)
+        if len(discs.radius) > 1 and (_may_rest(model, wanted) or _meet(discs, found, start)):
+            return _SettlingWithDiscs(model, discs, start).through(wanted)
+    return found
+
+
+def _may_rest(model: Model, factors: Sequence[float]) -> bool:
+    """True if something is pulled that only others in its way may hold."""
+    structure, external = Structure.of(model), external_forces(model)
+    return any(body.pull for factor in factors for body in loose_bodies(structure, external.at(factor)))
+
+
+def _meet(discs: Discs, found: Settlement, start: Start) -> bool:
+    """True if discs overlap that do not at the beginning, or move so far that they may pass an obstacle."""
+    places = [start.displacement, *(state.displacement for state in found.states)]
+    if len(discs.obstacles) and max(np.hypot(*(end - places[0]).T).max() for end in places) > discs.smallest:
+        return True
+    return any(len(discs.touching(displacement)) for displacement in places[1:])
 
 
 def _factors(given: Sequence[float] | float) -> list[float]:
@@ -170,6 +189,15 @@ class _Settling:
         loads = (self.external.at(1.0), self.point.response.axial_force)
         largest = max(float(np.abs(values).max(initial=0.0)) for values in loads)
         return held if np.abs(held).max(initial=0.0) > UNSTRESSED * largest else self._nothing
+
+    def through(self, factors: Sequence[float]) -> Settlement:
+        """The states at these load factors in turn, up to the first that is no equilibrium."""
+        states: list[StaticState] = []
+        for factor in factors:
+            states.append(self.to(factor))
+            if states[-1].status != "equilibrium":
+                break
+        return Settlement(tuple(states))
 
     def to(self, factor: float) -> StaticState:
         """The state at a load factor."""
@@ -261,24 +289,97 @@ class _Settling:
 
     def _state(self, status: str, message: str) -> StaticState:
         structure, response = self.structure, self.point.response
+        rods = slice(self.model.rods.count)  # what follows them are contacts
+        pressing = rods.stop + np.flatnonzero(response.axial_force[rods.stop :] < 0.0)
+        count = self.model.particles.count  # what follows them are obstacles
         unbalanced = structure.internal(response) - self.load
         told = [message] if message else [e.message for e in self.events if e.kind in TOLD]
-        elastic = response.axial_force**2 * structure.rest_length / structure.stiffness
+        elastic = (response.axial_force**2 * structure.rest_length / structure.stiffness)[rods]
         state = StaticState(
             load_factor=self.factor,
-            displacement=self.point.displacement,
-            plastic_strain=self.point.plastic_strain,
-            axial_force=response.axial_force,
-            strain=response.strain,
-            length=response.length,
-            yielding=structure.at_limit(response),
-            reaction=np.where(structure.fixed, unbalanced, 0.0),
+            displacement=self.point.displacement[:count],
+            plastic_strain=self.point.plastic_strain[rods],
+            axial_force=response.axial_force[rods],
+            strain=response.strain[rods],
+            length=response.length[rods],
+            yielding=structure.at_limit(response)[rods],
+            reaction=np.where(structure.fixed, unbalanced, 0.0)[:count],
             residual=self._residual(),
             elastic_energy=500.0 * float(elastic.sum()),
             dissipated_plastic=self.point.dissipated,
             status=status,
             message=" ".join(told),
             events=tuple(self.events),
+            contacts=structure.ends[pressing],
+            contact_force=-response.axial_force[pressing],
         )
         self.events.clear()
         return state
+
+
+class _SettlingWithDiscs(_Settling):
+    """The same with discs that rest on one another and on the structure; it moves under each load as a whole."""
+
+    def __init__(self, model: Model, discs: Discs, start: Start) -> None:
+        super().__init__(model, "exact", start)
+        self.discs = discs
+        self.structure = self.bare = discs.beside(self.structure)
+        self.point = replace(self.point, displacement=self._all(start.displacement))
+        self.load = self._nothing
+
+    def _all(self, field: Array) -> Array:
+        """A field over the particles (n, 2) as one over particles and obstacles."""
+        return np.concatenate([field, np.zeros((len(self.discs.radius) - len(field), 2))])
+
+    def _particles(self, field: Array) -> Array:
+        """The particles' part of a field over particles and obstacles."""
+        return field[: self.model.particles.count]
+
+    def _change(self, target: Array, factor: float) -> None:
+        alone = int(self.discs.is_alone.sum())
+        if alone > MOST_DISCS:
+            raise NoEquilibrium(
+                "limit reached",
+                f"Settling follows at most {MOST_DISCS} particles without rods, here are {alone}. Run until rest.",
+            )
+        target = self._all(target)
+        sinking = Sinking(self.bare, self.discs, target, self.point)
+        outcome = sinking.run()
+        if outcome == "gave up":
+            message = "The discs found no rest within the steps that settling takes. Run the model until rest."
+            raise NoEquilibrium("limit reached", message)
+        if outcome == "falls":
+            motion = self._particles(sinking.point.displacement - self.point.displacement)
+            raise self._falls(motion, factor)
+        if self.structure is self.bare:
+            self._note_mechanism(sinking.point)
+        self.structure, self.point = sinking.path.structure, sinking.point
+        self.load, self.factor = target, factor
+        if outcome == "unstable":
+            matrix = self.structure.tangent(self.point.response, self.point.response.soft)
+            motion = self._particles(self.structure.spread(lowest_mode(matrix, self.structure.weight)[1]))
+            message = (
+                f"A balance that is not stable: the least push moves {describe_motion(self.model, motion[None])}"
+                " further and further. Add something that holds it if that is not meant."
+            )
+            self.events.append(Event("note", factor, message, motion=motion / np.hypot(*motion.T).max()))
+
+    def _note_mechanism(self, found: Point) -> None:
+        """Report what the rods alone do not hold."""
+        bare, start = self.bare, self.point
+        modes = soft_modes(bare.tangent(start.response, start.response.soft), bare.weight)
+        if modes.shape[1] > 0:
+            fields = np.array([self._particles(bare.spread(mode)) for mode in modes.T])
+            slack, places = start.response.slack, map(self._particles, (start.displacement, found.displacement))
+            self.events.append(first_order_mechanism(self.model, self.factor, fields, slack, *places))
+
+    def _falls(self, motion: Array, factor: float) -> NoEquilibrium:
+        message = f"Nothing stops {describe_way(self.model, motion)}. Put something in its way, or hold it."
+        self.events.append(Event("free body", factor, message, motion=motion / np.hypot(*motion.T).max()))
+        return NoEquilibrium("mechanism", message)
+
+    def _check_bodies(self, target: Array, factor: float) -> None:
+        """Whatever is loose moves until something is in its way."""
+
+    def _note_softness(self, factor: float) -> None:
+        """Discs roll on one another without resistance; where they do not rest it is said."""

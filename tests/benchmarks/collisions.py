@@ -142,7 +142,7 @@ def piles(*, quick: bool) -> list[Row]:
 
 def _sunk(place: np.ndarray, scene: Scene) -> float:
     """The deepest overlap, in the smallest radius."""
-    from systems.collision.near import near_pairs
+    from systems.near import near_pairs
 
     pairs = near_pairs(place, scene["radius"])
     pairs = pairs[(scene["inverse_mass"][pairs] > 0).any(axis=(1, 2))]

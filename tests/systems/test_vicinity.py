@@ -10,7 +10,7 @@ import pytest
 
 from game import Session
 from systems.collision import vicinity
-from systems.collision.near import near_pairs
+from systems.near import near_pairs
 from tests.benchmarks.models import lattice
 
 
