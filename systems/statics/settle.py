@@ -126,15 +126,16 @@ def settle(
     found = _Settling(model, geometry, start).through(wanted)
     if geometry == "exact" and model.settings.collisions:
         discs = Discs.of(model, start.displacement)
-        if len(discs.radius) > 1 and (_may_rest(model, wanted) or _meet(discs, found, start)):
+        if len(discs.radius) > 1 and (_may_rest(model, discs, wanted) or _meet(discs, found, start)):
             return _SettlingWithDiscs(model, discs, start).through(wanted)
     return found
 
 
-def _may_rest(model: Model, factors: Sequence[float]) -> bool:
+def _may_rest(model: Model, discs: Discs, factors: Sequence[float]) -> bool:
     """True if something is pulled that only others in its way may hold."""
     structure, external = Structure.of(model), external_forces(model)
-    return any(body.pull for factor in factors for body in loose_bodies(structure, external.at(factor)))
+    loose = [body for factor in factors for body in loose_bodies(structure, external.at(factor))]
+    return any(body.pull and len(body.particles) < len(discs.radius) for body in loose)
 
 
 def _meet(discs: Discs, found: Settlement, start: Start) -> bool:
