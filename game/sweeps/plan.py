@@ -63,12 +63,13 @@ class Plan:
                 taken.insert(0, (variation.values[index],))
             else:
                 taken.insert(0, ())
-        generator = np.random.default_rng([self.seed, sample])
-        drawn = [
-            v.draw(generator) if isinstance(v, Random) else t
-            for v, t in zip(self.variations, taken, strict=True)
-        ]
-        return tuple(value for values in drawn for value in values)
+        if any(isinstance(variation, Random) for variation in self.variations):
+            generator = np.random.default_rng([self.seed, sample])
+            taken = [
+                v.draw(generator) if isinstance(v, Random) else t
+                for v, t in zip(self.variations, taken, strict=True)
+            ]
+        return tuple(value for values in taken for value in values)
 
     def overrides_of(self, number: int) -> tuple[str, ...]:
         """A variant as `pinjoint run MODEL --set …` has it."""

@@ -34,12 +34,13 @@ class Results:
     def __init__(self, plan: Plan, finished: Mapping[int, list[Any]]) -> None:
         self.plan = plan
         names = ("variant", *plan.varied, *RECORDED, *(measure.column for measure in plan.measures))
-        rows = [
-            (number, *plan.values(number), *record)
-            for number in range(plan.size)
-            for record in finished[number]
-        ]
-        self.columns: dict[str, list[Any]] = dict(zip(names, map(list, zip(*rows, strict=True)), strict=True))
+        columns: list[list[Any]] = [[] for _ in names]  # no rows beside them: a million variants take 1 GB
+        for number in range(plan.size):
+            varied = plan.values(number)
+            for record in finished[number]:
+                for column, value in zip(columns, (number, *varied, *record), strict=True):
+                    column.append(value)
+        self.columns = dict(zip(names, columns, strict=True))
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         """A column as an array; missing numbers are NaN."""
@@ -68,11 +69,13 @@ class Results:
         replace(path, self._as_csv() if path.suffix == ".csv" else self._as_parquet())
 
     def _as_csv(self) -> bytes:
-        text = io.StringIO()
+        made = io.BytesIO()
+        text = io.TextIOWrapper(made, encoding="utf-8", newline="")
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(self.columns)
         writer.writerows(zip(*self.columns.values(), strict=True))
-        return text.getvalue().encode()
+        text.flush()
+        return made.getvalue()
 
     def _as_parquet(self) -> bytes:
         """Units are kept with each column."""
