@@ -28,17 +28,21 @@ MAGNIFICATIONS = (
     3.0,
     4.0,
 )  # that one can choose from
-COMFORTABLE = 1080.0  # points of height for which type and symbols are made; in a higher window they grow
-LEAST_HEIGHT = 240.0  # points that are always left, however large they are wanted
+COMFORTABLE = (
+    1080.0  # points of height of a display for which type and symbols are made; on a higher one they grow
+)
+COMFORTABLE_HEIGHT, LEAST_HEIGHT = 480.0, 240.0  # points that are left in a window by itself, and at all
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
 
 
-def magnified(height: float, chosen: float) -> float:
-    """How many times larger than usual type and symbols are in a window so many points high.
+def magnified(height: float, display: float, chosen: float) -> float:
+    """How many times larger than usual type and symbols are in a window so many points high, on such a display.
 
     chosen: how much larger than by itself a person wants them.
     """
-    by_itself = max(factor for factor in MAGNIFICATIONS if factor <= max(height / COMFORTABLE, 1.0))
+    fitting = max(max(height, display) / COMFORTABLE, 1.0)
+    by_itself = max(factor for factor in MAGNIFICATIONS if factor <= fitting)
+    by_itself = min(by_itself, max(height / COMFORTABLE_HEIGHT, 1.0))
     return min(by_itself * chosen, max(height / LEAST_HEIGHT, 1.0))
 
 

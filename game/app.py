@@ -120,7 +120,10 @@ class App:
         os.environ.setdefault("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
         try:
             _find_display()
-            self.window = pygame.Window("Pinjoint", FIRST_SIZE, resizable=True, allow_high_dpi=True)
+            self._display_height = float(pygame.display.get_desktop_sizes()[0][1])
+            first = magnified(self._display_height, self._display_height, 1.0)
+            size = round(first * FIRST_SIZE[0]), round(first * FIRST_SIZE[1])
+            self.window = pygame.Window("Pinjoint", size, resizable=True, allow_high_dpi=True)
         except pygame.error as error:
             raise NoDisplay(str(error)) from None
         self.window.minimum_size = SMALLEST_SIZE
@@ -191,7 +194,7 @@ class App:
         self.render.surface = surface
         width, height = surface.get_size()
         self.input.density = density = width / max(self.window.size[0], 1)
-        ratio = density * magnified(height / density, self._magnification)
+        ratio = density * magnified(height / density, self._display_height, self._magnification)
         view, footer = self.session.view, self.session.footer
         if footer is not None:
             low = min(round(FOOTER * ratio), height - 1)

@@ -82,20 +82,19 @@ class Preparation(System):
     def _load(self, simulation: Simulation) -> None:
         """As soon as its program is compiled, and what was done is seen: who needs it first need not wait."""
         seen, self._seen = self._seen, simulation.model.revision
-        if self.waits_for(simulation) is None and not simulation.ready and seen == self._seen:
-            plan = simulation.schedule.step_plan(simulation.model)
-            if has_program(simulation.model, plan, simulation.driver):
-                simulation.program  # noqa: B018 (it is loaded when asked for)
+        idle = self.waits_for(simulation) is None and seen == self._seen
+        if idle and not simulation.ready and _is_compiled(simulation):
+            simulation.program  # noqa: B018 (it is loaded when asked for)
 
     def waits_for(self, simulation: Simulation) -> float | None:
         """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
         if simulation.ready:
             return self._waits_for_encounters(simulation)
-        model, plan = simulation.model, simulation.schedule.step_plan(simulation.model)
         if simulation.integrator == FLIGHT:
             return self._waits((FLIGHT,), has_flight)
+        model, plan = simulation.model, simulation.schedule.step_plan(simulation.model)
         job = simulation.integrator, form_of(model, simulation.driver), *(system.name for system in plan)
-        waited = self._waits(job, lambda: has_program(model, plan, simulation.driver))
+        waited = self._waits(job, lambda: _is_compiled(simulation))
         others = self._waits_for_encounters(simulation)
         if waited is None and job in self._running:  # then it is new, with a hand that pulls as well
             self._waits((*job, Pull.name), lambda: False)
@@ -135,6 +134,14 @@ def _may_meet(simulation: Simulation) -> bool:
     """True if particles that do not fly free may meet."""
     plan = simulation.schedule.step_plan(simulation.model)
     return simulation.integrator != FLIGHT and any(isinstance(system, Collision) for system in plan)
+
+
+def _is_compiled(simulation: Simulation) -> bool:
+    """True if its program need only be loaded."""
+    if simulation.integrator == FLIGHT:
+        return has_flight()
+    plan = simulation.schedule.step_plan(simulation.model)
+    return has_program(simulation.model, plan, simulation.driver)
 
 
 def _load_libraries() -> None:

@@ -149,6 +149,7 @@ class _Still:
         self.title = model.title
         self.description = model.description
         self.foreign = dict(model.foreign)
+        self.foreign_kinds = dict(model.foreign_kinds)
         self.tables = {name: _StillTable(table) for name, table in model.tables.items()}
 
     def describe(self, handle: Handle) -> str:

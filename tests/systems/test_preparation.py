@@ -158,6 +158,16 @@ def test_what_is_compiled_is_loaded_before_a_key_needs_it(
     assert app.session.desk.unsaved == saved
 
 
+def test_free_particles_have_their_program_loaded_too(
+    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(preparation, "has_flight", lambda: True)
+    app.session.adopt(models.load("collision_i"))
+    compiler.status = 0
+    frames(app, 3)
+    assert app.session.simulation.ready
+
+
 def test_stepping_waits_too(app: App, compiler: Compiler) -> None:
     app.session.press(".")
     frames(app, 1)

@@ -78,16 +78,18 @@ def test_a_damaged_magnification_is_the_usual_one(folder: Path, damaged: str) ->
 
 
 @pytest.mark.parametrize(
-    ("height", "chosen", "magnification"),
+    ("height", "display", "chosen", "magnification"),
     [
-        (480, 1.0, 1.0),
-        (720, 1.0, 1.0),
-        (1080, 1.0, 1.0),
-        (1440, 1.0, 1.25),
-        (2160, 1.0, 2.0),
-        (2160, 0.5, 1.0),
-        (480, 4.0, 2.0),
+        (480.0, 1080.0, 1.0, 1.0),
+        (1440.0, 1440.0, 1.0, 1.25),
+        (2160.0, 768.0, 1.0, 2.0),
+        (1440.0, 2160.0, 1.0, 2.0),
+        (600.0, 2160.0, 1.0, 1.25),
+        (2160.0, 2160.0, 0.5, 1.0),
+        (480.0, 1080.0, 4.0, 2.0),
     ],
 )
-def test_type_grows_with_the_window_and_leaves_room(height: float, chosen: float, magnification: float) -> None:
-    assert magnified(height, chosen) == magnification
+def test_type_grows_with_display_and_window_and_leaves_room(
+    height: float, display: float, chosen: float, magnification: float
+) -> None:
+    assert magnified(height, display, chosen) == magnification
