@@ -26,10 +26,13 @@ def truss(**rods: Any) -> Model:
     return model
 
 
-def lattice(rods: int, **columns: Any) -> Model:
-    """A square lattice with both diagonals and about so many rods, its left edge held, pulled to the right."""
+def lattice(rods: int, *, at_random: bool = False, **columns: Any) -> Model:
+    """A square lattice with both diagonals and about so many rods, its left edge held, pulled to the right.
+
+    at_random: its particles and rods are numbered in no order.
+    """
     side = max(round((rods / 4.0) ** 0.5), 2)
-    return _held_at_the_left(side, side, _with_diagonals(side), columns)
+    return _held_at_the_left(side, side, _with_diagonals(side), columns, at_random)
 
 
 def mesh(rods: int, **columns: Any) -> Model:
@@ -39,9 +42,15 @@ def mesh(rods: int, **columns: Any) -> Model:
     return _held_at_the_left(width, height, _across_and_up(width, height), columns)
 
 
-def _held_at_the_left(width: int, height: int, ends: np.ndarray, columns: dict[str, Any]) -> Model:
+def _held_at_the_left(
+    width: int, height: int, ends: np.ndarray, columns: dict[str, Any], at_random: bool = False
+) -> Model:
     x, y = np.meshgrid(np.arange(width, dtype=float), np.arange(height, dtype=float))
     position = np.stack([x.ravel(), y.ravel()], axis=1)
+    if at_random:
+        rng = np.random.default_rng(0)
+        number = rng.permutation(len(position))
+        position, ends = position[np.argsort(number)], rng.permutation(number[ends])
     left, right = position[:, 0] == 0.0, position[:, 0] == width - 1.0
     force = np.zeros_like(position)
     force[right, 0] = 100.0

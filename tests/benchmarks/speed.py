@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import gc
 import math
+import os
 import subprocess
 import sys
 import time
 import tracemalloc
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +21,10 @@ import numpy as np
 
 from components.model import Model
 from game.catalogue import DRIVERS, step_systems
+from game.cores import VARIABLE, cores
 from game.document import document
 from game.program_in_blocks import make_program
+from game.program_writer import MANY, VERY_MANY
 from game.schedule import Schedule
 from tests.benchmarks.ceiling import BYTES_PER_PARTICLE, BYTES_PER_ROD, bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, truss
@@ -36,7 +40,7 @@ Row = dict[str, Any]
 
 
 def step_costs(*, quick: bool) -> list[Row]:
-    """Nanoseconds per rod and step, by model: our program, a plain kernel, and the ceiling for elastic rods."""
+    """Nanoseconds of one core per rod and step, by model: our program, and a plain kernel."""
     sizes = (1_000, 100_000) if quick else (100, 1_000, 10_000, 100_000, 1_000_000)
     rows = []
     for kind, rods in KINDS.items():
@@ -116,16 +120,64 @@ def _step_cost(kind: str, model: Model) -> Row:
     }
 
 
-def _program_runner(model: Model, steps: int) -> Callable[[], None]:
-    program = make_program(model, Schedule(step_systems()).step_plan(model), DRIVERS["velocity_verlet"])
+def _program_runner(model: Model, steps: int, *, on: int = 1, form: str = "") -> Callable[[], None]:
+    """Takes so many steps, on so many cores."""
+    program = make_program(model, Schedule(step_systems()).step_plan(model), DRIVERS["velocity_verlet"], form)
     model.writable("clock.step_size")[0] = STEP
 
     def run() -> None:
         left = steps
-        while left > 0:
-            left -= program.advance(left)[0]
+        with _cores(on):
+            while left > 0:
+                left -= program.advance(left)[0]
 
     return run
+
+
+@contextmanager
+def _cores(count: int) -> Iterator[None]:
+    before = os.environ.get(VARIABLE)
+    os.environ[VARIABLE] = str(count)
+    yield
+    del os.environ[VARIABLE]
+    if before is not None:
+        os.environ[VARIABLE] = before
+
+
+def sharing(*, quick: bool) -> list[Row]:
+    """Nanoseconds per rod and step of one model on one core and on all, numbered in order and at random.
+
+    Beside it a plain kernel, and the form of smaller models, which has one loop over all rods.
+    """
+    sizes = (100_000,) if quick else (30_000, 100_000, 1_000_000)
+    return [
+        _shared(kind, size, at_random)
+        for kind in (["elastic"] if quick else KINDS)
+        for size in sizes
+        for at_random in (False, True)
+    ]
+
+
+def _shared(kind: str, size: int, at_random: bool) -> Row:
+    models = [lattice(size, at_random=at_random, **KINDS[kind]) for _ in range(3)]
+    steps, everything = max(20, 2_000_000 // size), cores()
+    runners = {
+        "plain": _plain_runner(models[0], steps, full=kind != "elastic"),
+        "one_loop": _program_runner(models[0], steps, form=MANY),
+        "one_core": _program_runner(models[1], steps, form=VERY_MANY),
+        "all_cores": _program_runner(models[2], steps, on=everything, form=VERY_MANY),
+    }
+    best = _best_of_each(*runners.values(), rounds=15, clock=time.perf_counter)
+    rods = models[0].rods.count
+    costs = {f"{name}_ns_per_rod": t / steps / rods * 1e9 for name, t in zip(runners, best, strict=True)}
+    return {
+        "kind": kind,
+        "rods": rods,
+        "numbered": "at random" if at_random else "in order",
+        **costs,
+        "cores": everything,
+        "speedup": min(best[:3]) / best[3],
+    }
 
 
 def _plain_runner(model: Model, steps: int, *, full: bool) -> Callable[[], None]:
@@ -133,16 +185,21 @@ def _plain_runner(model: Model, steps: int, *, full: bool) -> Callable[[], None]
     return lambda: kernel(steps, STEP, *arrays)
 
 
-def _best_of_each(*runners: Callable[[], None], rounds: int = 7) -> list[float]:
-    """The shortest time of each, taken in turns so that a disturbance hits all alike; first runs left out."""
+def _best_of_each(
+    *runners: Callable[[], None], rounds: int = 7, clock: Callable[[], float] = time.process_time
+) -> list[float]:
+    """The shortest time of each, taken in turns so that a disturbance hits all alike; first runs left out.
+
+    Processor time of one core does not count what others do meanwhile; for several, time on the wall.
+    """
     best = [np.inf] * len(runners)
     for runner in runners:
         runner()
     for _ in range(rounds):
         for index, runner in enumerate(runners):
-            started = time.perf_counter()
+            started = clock()
             runner()
-            best[index] = min(best[index], time.perf_counter() - started)
+            best[index] = min(best[index], clock() - started)
     return best
 
 
@@ -250,6 +307,7 @@ def report(*, quick: bool) -> dict[str, list[Row]]:
         "steps": steps,
         "scaling": scaling(steps),
         "ceiling": ceilings(steps),
+        "cores": sharing(quick=quick),
         "skipping": skipping(),
         "memory": memory(),
         "peers": peers(quick=quick),

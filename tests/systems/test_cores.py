@@ -9,9 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.model import Model
-from components.particle import Particle
-from components.rod import spawn_rods
 from game import Session, layout, models, program_in_blocks, program_writer
 from game.cores import VARIABLE, cores
 from game.layout import Layout
@@ -95,14 +92,10 @@ def test_a_layout_has_everything_once_and_blocks_that_touch_nobody(in_blocks: No
 
 def test_few_rods_are_between_blocks_however_a_model_is_numbered(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(layout, "BLOCK", 1000)
-    model = lattice(10_000)
-    shuffled = np.random.default_rng(0).permutation(model.particles.count)
-    other = Model()
-    other.create(Particle, model.particles.count, position=model.particles.position[np.argsort(shuffled)])
-    spawn_rods(other, shuffled[model.rods.between.astype(np.intp)])
-    for each in (model, other):
-        made = Layout.of(each)
-        assert made.first_rod[-1] - made.first_rod[-2] < 0.12 * each.rods.count
+    for at_random in (False, True):
+        model = lattice(10_000, at_random=at_random)
+        made = Layout.of(model)
+        assert made.first_rod[-1] - made.first_rod[-2] < 0.12 * model.rods.count
 
 
 def test_the_number_of_cores_changes_no_bit(in_blocks: None) -> None:
