@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import json
 import os
 import sys
@@ -81,7 +82,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
 # --- opening the window ----------------------------------------------------------------------------------
 
 
+def _refuse_misspelt(word: str) -> None:
+    """Refuse a word that is no model but nearly a command. Raises UsageError."""
+    nearest = difflib.get_close_matches(word, COMMANDS, n=1, cutoff=0.75)
+    if nearest and word not in models.bundled() and not Path(word).exists():
+        raise UsageError(f"There is no command '{word}'; did you mean '{nearest[0]}'?")
+
+
 def _open(words: Sequence[str]) -> int:
+    if words:
+        _refuse_misspelt(words[0])
     parser = Parser(
         prog="pinjoint",
         description="A laboratory for particles and pin-jointed structures.",

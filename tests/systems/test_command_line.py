@@ -66,6 +66,7 @@ MODEL = {
         ("plot isostatic --of time --until 1 --output x.pdf", "ends with .csv or .png"),
         ("shake isostatic missing.csv --output x.json", "missing.csv cannot be read: No such file"),
         ("play missing.jsonl", "missing.jsonl cannot be read: No such file or directory. Check its path."),
+        ("verfy isostatic", "There is no command 'verfy'; did you mean 'verify'?"),
         ("run isostatic --mods", "Argument --mods: expected one argument"),
     ],
 )
