@@ -262,3 +262,22 @@ def test_the_braced_portal_does_what_its_description_says(capsys: pytest.Capture
     assert found.final.axial_force[3:] == pytest.approx([62.6, 0.0], abs=0.05)
     assert main(["verify", "braced_portal"]) == 0
     assert "all cables counted as taut" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("integrator", "order"), [("semi_implicit_euler", 1), ("velocity_verlet", 2), ("rk4", 4)]
+)
+def test_orders_hold_where_a_cable_tightens(integrator: str, order: int) -> None:
+    """The force has a kink there: steps across it cost h², so that Verlet keeps its order; rk4 ends a step there."""
+    drop, pulse = 0.5, math.sqrt(100.0 * 1000.0 / 10.0)
+    instant = math.sqrt(2.0 * drop / 9.81)
+    duration, sag = 0.9 * math.pi / pulse, 9.81 / pulse**2
+    swing = sag * (1.0 - math.cos(pulse * duration)) + 9.81 * instant / pulse * math.sin(pulse * duration)
+    errors = []
+    for steps in (401, 1601):
+        document = hung(drop)
+        document["settings"] = {"integrator": integrator, "time_step": (instant + duration) / steps}
+        session = Session.open(document)
+        session.run(time=instant + duration)
+        errors.append(abs(float(session.particles.displacement[1, 1]) + drop + swing))
+    assert math.log(errors[0] / errors[1], 4.0) == pytest.approx(order, abs=0.2)
