@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 
 from components.extremes import incomputable
-from components.field import Column, Role
+from components.field import Column, Role, same
 from components.load import loads_end
 from components.model import ADDED, Model
 from components.rod import is_warm
@@ -45,6 +45,8 @@ CHOSEN = (
     "initial_energy",
     "potential_reference",
 )  # of the clock, when a run begins
+
+MOVING = ("particles.displacement", "particles.velocity", "rods.plastic_strain")
 
 OBSERVED = (
     "rods.axial_force",
@@ -457,8 +459,17 @@ class Simulation:
         elif reason is StopReason.DIVERGED and not (self._go_on_without_mod() or self._retry()):
             self._give_up("energy appeared from nowhere")
         elif reason is StopReason.REVIEW:
-            self._safe, self._retries = self.present(), 0
-            self._review_step()
+            before, self._safe, self._retries = self._safe, self.present(), 0
+            if self._stood_still_since(before):
+                self._heed(StopReason.REST)
+            else:
+                self._review_step()
+
+    def _stood_still_since(self, before: Snapshot | None) -> bool:
+        """True if all that happened since was lost in rounding: far from where it was drawn, a creep may be."""
+        if before is None or self._safe is None or loads_end(self.model) > self.model.clock.time:
+            return False
+        return all(same(before.columns[name], self._safe.columns[name]) for name in MOVING)
 
     def _go_on_without_mod(self) -> bool:
         """If a mod made a number that is not finite, switch it off and return to the last good state."""

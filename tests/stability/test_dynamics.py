@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 
 from components.settings import AUTOMATIC, INTEGRATORS
+from game import Session
 from game.catalogue import DRIVERS
+from tests.reference.models import model, particle, rod
 from tests.stability.cases import SHARES, Case, cases, follow, stepping
 
 # Relative to the largest displacement, at automatic steps; the first order integrators are there to compare with.
@@ -52,3 +54,17 @@ def test_steps_below_and_above_the_limit(integrator: str, share: float) -> None:
         assert found.status == "diverged" or found.error < 0.5
     for steps in (1, 3, 7):
         assert follow(case, integrator, steps).error < 10.0
+
+
+def test_a_creep_that_is_lost_in_rounding_is_rest() -> None:
+    """Two metres from where it was drawn, a mass creeps by less in a step than the last digit of 2 m."""
+    pushed = model(
+        [
+            particle("A", 0, 0, fixed=[True, True]),
+            particle("B", 1, 0, fixed=[False, True], force=[-1, 0]),
+        ],
+        [rod("A", "B", tension_only=True)],
+    )
+    session = Session.open(pushed)
+    assert session.run(until="rest", limit=1.0) == "at rest"
+    assert session.particles["B"].displacement[0] == pytest.approx(-2.0 - 1.0 / 164640.0, rel=1e-12)
