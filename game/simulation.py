@@ -364,6 +364,10 @@ class Simulation:
                 f"The time step {size:.3g} s is above the largest stable one, {self.stable_step:.3g} s for"
                 f" {self.integrator}: set it to automatic or make it smaller."
             )
+        if self.driver.estimates_error and self.model.settings.time_step is None:
+            return "Make the tolerance smaller."
+        if self.driver.estimates_error:
+            return "Set the time step to automatic, so that the error is controlled, or make it smaller."
         if self.driver is not DRIVERS[DEFAULT_DRIVER]:
             return f"Make the time step smaller, or choose the integrator {DEFAULT_DRIVER}."
         return "Make the time step smaller."

@@ -149,6 +149,15 @@ def test_too_large_a_step_is_stopped_and_explained(document: Model, share: float
     assert session.run(steps=10) == "diverged"  # until something is changed
 
 
+def test_the_remedy_for_an_integrator_that_controls_its_error_is_to_let_it() -> None:
+    session = Session.open(oscillator(2.0 * math.pi, 0.0, velocity=[5.0, 0.0]))
+    session.settings.integrator, session.settings.time_step = "esdirk4", 1.0
+    assert session.run(steps=50) == "diverged"
+    assert "Set the time step to automatic, so that the error is controlled" in session.message
+    session.settings.time_step = None
+    assert session.run(time=1.0) == "time reached"
+
+
 def test_following_the_remedy_works() -> None:
     session = stepping(SMALL, 1.3)
     assert session.run(steps=500) == "diverged"
