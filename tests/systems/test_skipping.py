@@ -51,9 +51,11 @@ def needed(model: dict[str, Any]) -> set[str]:
 
 
 def can_meet(model: dict[str, Any]) -> bool:
-    """Whether there are two particles without a rod between them, of which one can move."""
+    """Whether there are two particles without a rod between them, or one and a wall, of which one can move."""
     held = {one["name"] for one in model["particles"] if all(one.get("fixed", [False, False]))}
     joined = {frozenset(rod["between"]) for rod in model.get("rods", [])}
+    if model.get("components") and len(held) < len(model["particles"]):
+        return True
     pairs = itertools.combinations([one["name"] for one in model["particles"]], 2)
     return any(not held.issuperset(pair) and frozenset(pair) not in joined for pair in pairs)
 
