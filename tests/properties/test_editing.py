@@ -25,7 +25,7 @@ class Editing(RuleBasedStateMachine):
     def open(self, model: Any) -> None:
         self.session = Session.open(model)
         self.session.view.camera.scale = 100.0
-        self.session.history._memory = 4 * self.session.simulation.moment().size  # most goes on the shelf
+        self.session.history._memory = 4 * self.session.simulation.moment().state.size  # most goes on the shelf
         self.start = contents(self.session.model)
 
     @rule(at=places, key=st.sampled_from("plcfv"))
