@@ -173,11 +173,13 @@ class Discs:
         weight, pull = self._columns(arrays.WX), self._columns(arrays.GX)
         place = self._columns(arrays.OX) + self._columns(arrays.UX)
         radius = self.rows[: self.count, arrays.RADIUS]
-        end = Pile(place, radius, weight, pull, self._may_collide, self._obstacles).repose()
+        speed = np.hypot(*self._columns(arrays.VX).T) / radius
+        motion = float(speed.max() * self.numbers[arrays.STEP_LENGTH])
+        end = Pile(place, radius, weight, pull, self._may_collide, self._obstacles, motion).repose()
         lying, free = self.rows[end.discs], weight[end.discs] > 0.0
-        motion = lying[:, arrays.VX : arrays.VX + 2] ** 2 / 2.0
+        moving = lying[:, arrays.VX : arrays.VX + 2] ** 2 / 2.0
         fallen = lying[:, arrays.GX : arrays.GX + 2] * end.displacement[end.discs]
-        self.numbers[arrays.LOSS] += ((motion + fallen)[free] / weight[end.discs][free]).sum()
+        self.numbers[arrays.LOSS] += ((moving + fallen)[free] / weight[end.discs][free]).sum()
         self._columns(arrays.UX)[...] += end.displacement
         self.rows[end.discs, arrays.VX : arrays.AY + 1] = 0.0
         self.numbers[arrays.STEP_END] = self.now

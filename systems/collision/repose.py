@@ -24,14 +24,17 @@ AROUND = 0.25  # of its radius around each disc, in which its neighbours are lis
 STRIDE = 0.1  # of its radius, by which a disc moves in an iteration at most
 FARTHEST = 2.0  # radii by which a disc moves in all at most
 FREE_STRIDE = 1.0  # radii by which inertia lets a disc go in an iteration that nothing holds
-FIRST_GAP = 1e-4  # of the radius of the smaller disc of a pair, at first at least
-FIRST_BARRIER = 1e-2  # μ at first, in weight × radius of the lighter and the smaller disc of a pair
+LEAST_BARRIER, FIRST_BARRIER = (
+    1e-6,
+    1e-2,
+)  # μ at first, in weight × radius of the lighter and the smaller of a pair
+FIRST_GAP = 1e-2  # of the radius of the smaller disc of a pair, at first at least, times μ
 BARRIER_SHARE = 1e-2  # μ at least, of the radii by which discs still move, until they move
 NEARLY = 1e-2  # of their radii or less
 QUICK, SLOW = 0.2, 0.8  # what is left of μ after an iteration that got far, and after others
 FAR = 0.5  # of the way that Newton's method wanted
 TO_EDGE = 0.995  # of the way to where a gap or a force vanishes
-STILL = 1e-10  # of its radius, by which a disc moves at the end, and of the largest weight, what is unbalanced
+STILL, BALANCED = 1e-10, 5e-10  # radii that discs move at the end, and what is unbalanced of the largest weight
 CLOSED = 1e-13  # μ at the end
 MOST_ITERATIONS, MOST_OF_ALL = 150, 300  # until discs nearly rest, and until they do
 SYMMETRIC = {"SymmetricMode": True}
@@ -67,7 +70,8 @@ class Pile:
 
     place: centres, shape (n, 2), m. radius: shape (n,), m. inverse_mass: of each direction, shape (n, 2), 1/kg,
     0 where it is held. pull: acceleration without contacts, shape (n, 2), m/s². may_collide: tells which of the
-    pairs it is given do, in which obstacles count on after the discs.
+    pairs it is given do, in which obstacles count on after the discs. motion: how many radii discs still move in a
+    step at most: the less, the nearer is the equilibrium.
     """
 
     def __init__(
@@ -78,6 +82,7 @@ class Pile:
         pull: Floats,
         may_collide: Callable[[Rows], NDArray[np.bool_]],
         obstacles: Obstacles,
+        motion: float,
     ) -> None:
         self._start, self._place, self._radius = place, place.copy(), radius
         self._may_collide, self._obstacles = may_collide, obstacles
@@ -98,7 +103,8 @@ class Pile:
         self._size = np.append(radius, everywhere)
         inertia = (self._weight[:count] / (FREE_STRIDE * radius))[:, None]
         self._inertia = np.broadcast_to(inertia, place.shape)[self._free]
-        self._gaps = self._listed(None, FIRST_BARRIER)
+        self._barrier = min(max(motion, LEAST_BARRIER), FIRST_BARRIER)
+        self._gaps = self._listed(None, self._barrier)
 
     def _near(self) -> Rows:
         pairs = near_pairs(self._place, (1.0 + AROUND) * self._radius, self._obstacles)
@@ -117,7 +123,7 @@ class Pile:
 
     def _iterate(self) -> bool:
         """Newton's method as far as it leads; True if to the equilibrium."""
-        barrier, listed = FIRST_BARRIER, self._place
+        barrier, listed = self._barrier, self._place
         for turn in range(MOST_OF_ALL):
             try:
                 motion, opening, change, left = self._newton(barrier)
@@ -134,7 +140,7 @@ class Pile:
             gaps.slack += forward * opening
             gaps.force += stronger * change
             present = float((gaps.force * gaps.slack / gaps.scale).mean())
-            if stride <= STILL and left <= STILL and present <= CLOSED:
+            if stride <= STILL and left <= BALANCED and present <= CLOSED:
                 return True
             barrier = max((QUICK if min(forward, stronger) > FAR else SLOW) * present, 0.1 * CLOSED)
             if stride > NEARLY:
@@ -153,7 +159,7 @@ class Pile:
         size = self._size[pairs].min(axis=1)
         scale = self._weight[pairs].min(axis=1) * size
         gap, _ = self._gap(pairs)
-        slack = np.maximum(gap, FIRST_GAP * size)
+        slack = np.maximum(gap, FIRST_GAP * barrier * size)
         force = barrier * scale / slack
         if known is not None:
             count = len(self._moves)

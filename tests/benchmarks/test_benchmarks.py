@@ -77,7 +77,7 @@ def test_how_far_discs_sink_into_one_another_is_measured() -> None:
 
 def test_pymunk_is_given_the_same_discs() -> None:
     scene = gas(30, 0.1)
-    _, bodies = collisions._pymunk(scene, 0.1, 1.0, 0.0)
+    _, _, bodies = collisions._pymunk(scene, 0.1, 1.0, 0.0)
     assert sum(body.velocity.length**2 for body in bodies) == pytest.approx(30)
 
 
