@@ -32,7 +32,9 @@ GX, GY = 14, 15  # acceleration without contact forces, m/s²
 WX, WY = 16, 17  # inverse mass in each direction, 1/kg; 0 where the disc is held
 STEP = 18  # s; when the forces in its lasting contacts are due again
 BOUNCE = 19  # restitution of impacts with it
-DISC_WIDTH = 20
+SHARED = 20  # ends of an obstacle for which another one answers: SHARED_START + SHARED_END, as far as they are
+DISC_WIDTH = 21
+SHARED_START, SHARED_END = 1.0, 2.0
 MOVING = (UX, UY, VX, VY, AX, AY, EPOCH, STEP, NOISE)  # what time changes, as components/paths.py has it
 
 

@@ -20,6 +20,7 @@ from systems.collision.flight.kernels import advance
 from systems.collision.pile.kernels import STEP_SHARE
 from systems.near import nearest
 
+SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
 REPORT = 4096  # impacts reported at a time
 REST_HEIGHT = 1e-9  # of the radius; larger: bouncing ends sooner
 
@@ -93,6 +94,7 @@ class Discs:
         added, others = self.rows[self.count :], self._obstacles
         added[:, [arrays.OX, arrays.OY]], added[:, [arrays.TX, arrays.TY]] = others.start, others.span
         added[:, arrays.RADIUS], added[:, arrays.BOUNCE] = others.radius, others.restitution
+        added[:, arrays.SHARED] = _shared_ends(others)
         speed = np.abs(self._columns(arrays.VX)).sum(axis=1)
         self.rows[: self.count, arrays.NOISE] = arrays.SPEED_NOISE * speed
         self.numbers = np.zeros(arrays.NUMBERS)
@@ -304,6 +306,20 @@ class Discs:
         s = (time - self.rows[: self.count, arrays.EPOCH])[:, None]
         u, v, a = (self._columns(first) for first in (arrays.UX, arrays.VX, arrays.AX))
         return u + s * (v + 0.5 * s * a), v + s * a
+
+
+def _shared_ends(others: Obstacles) -> Floats:
+    """Which ends of obstacles, as in the column SHARED, are those of an earlier one with the same radius, too."""
+    ends = np.concatenate([others.start, others.start + others.span])
+    scale = np.abs(ends).max(initial=0.0) or 1.0
+    spots = np.column_stack([np.round(ends / (scale * SAME_PLACE)), np.tile(others.radius, 2)])
+    _, first, spot = np.unique(spots, axis=0, return_index=True, return_inverse=True)
+    owner = np.full(len(first), len(others))
+    rows = np.tile(np.arange(len(others)), 2)
+    np.minimum.at(owner, spot.ravel(), rows)
+    shared = (owner[spot.ravel()] < rows).reshape(2, -1)
+    found: Floats = arrays.SHARED_START * shared[0] + arrays.SHARED_END * shared[1]
+    return found
 
 
 def _queue(size: int) -> Queue:

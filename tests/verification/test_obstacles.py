@@ -174,6 +174,41 @@ def test_slowly_over_an_edge_it_turns_until_it_leaves() -> None:
     assert discs.impacts == 0
 
 
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("walls", [1, 2])
+@pytest.mark.parametrize("speed", [0.02, 0.1, 0.3])
+def test_over_an_edge_it_leaves_once_whatever_stands_below(
+    restitution: float, walls: int, speed: float
+) -> None:
+    """It leaves at cos β = 2/3 + v₀²/(3 g R), with v² = v₀² + 2 g R (1 − cos β).
+
+    The force falls to 0 within a step there: let go at its start, the disc met the edge again at once, for ever.
+    Two walls have one edge in common, not two whose forces are not determined.
+    """
+    edge = obstacles(((-1.0, 0.0), (0.0, 0.0)), ((0.0, 0.0), (0.1, -3.0)), restitution=restitution)
+    if walls == 1:
+        edge = obstacles(((-1.0, 0.0), (0.0, 0.0)), restitution=restitution)
+    discs = Discs(
+        [(-0.01, RADIUS)],
+        [(speed, 0)],
+        [RADIUS],
+        [[1, 1]],
+        acceleration=[[0, -GRAVITY]],
+        restitution=restitution,
+        obstacles=edge,
+    )
+    cosine = 2 / 3 + speed**2 / (3 * GRAVITY * RADIUS)
+    leaving = math.sqrt(speed**2 + 2 * GRAVITY * RADIUS * (1 - cosine))
+    turned = 0.01 / speed
+    while places(discs, [(-0.01, RADIUS)])[0][1] > 0.5 * RADIUS * cosine:
+        turned += 0.005
+        reason, _ = discs.advance(turned, 1000)
+        assert reason is Reason.DONE
+    assert discs.impacts == 0
+    across = discs.state_at(discs.now)[1][0][0]
+    assert across == pytest.approx(leaving * cosine, rel=1e-4)
+
+
 @pytest.mark.parametrize("angle", [15, 30, 45, 60])
 def test_a_ball_in_a_v_of_two_walls_comes_to_rest_on_both(angle: float) -> None:
     """At height R / cos α; each wall pushes with m g / (2 cos α)."""
@@ -187,7 +222,7 @@ def test_a_ball_in_a_v_of_two_walls_comes_to_rest_on_both(angle: float) -> None:
 
 @njit
 def _first(dx, dy, vx, vy, ax, ay, tx, ty, reach):
-    return first_touch(dx, dy, vx, vy, ax, ay, tx, ty, reach, 0.0, 0.0, 1e9, False)
+    return first_touch(dx, dy, vx, vy, ax, ay, tx, ty, 0.0, reach, 0.0, 0.0, 1e9, False)
 
 
 COORDINATE = st.floats(-2, 2).map(lambda x: round(x, 3))

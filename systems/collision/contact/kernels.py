@@ -49,7 +49,7 @@ from systems.collision.projection.kernels import begin, copy_motion, opening_rat
 
 STILL = 1e-10  # of the speed and acceleration that gravity gives; what moves less is at rest
 STEP_ANGLE = 0.0156  # by which discs turn around one another in a step; discs sink by its cube / 8 of a radius
-LEAST_SHARE = 1e-4  # of such a step, by which the end of a flat side may be missed
+LEAST_SHARE = 1e-4  # of such a step, by which the end of a flat side, or of a contact, may be missed
 MOST_CORRECTIONS = 40  # of the forces in a step; 3 are usual
 
 
@@ -128,21 +128,48 @@ def support(count, touching, discs, group, numbers):
     velocities; sets the column FORCE.
     """
     copy_motion(group.motion, group.other, count)
+    closed = _push_now(count, touching, discs, group, numbers)
+    duration = NEVER
+    if not _stop_where_still(count, closed, discs, group):
+        duration = _duration(closed, discs, group, numbers)
+        if duration < NEVER:
+            least = LEAST_SHARE * duration
+            _meet_at_end(duration, count, closed, discs, group, numbers)
+            while duration > least and _one_lets_go(
+                closed, group
+            ):  # not before its time, or they meet again at once
+                duration = max(0.25 * duration, least)
+                closed = _push_now(count, touching, discs, group, numbers)
+                _meet_at_end(duration, count, closed, discs, group, numbers)
+    for k in range(closed):
+        c = group.marks[ACTIVE, k]
+        group.contacts[c, FORCE] = group.contacts[c, GIVEN]
+    return duration
+
+
+@compiled
+def _push_now(count, touching, discs, group, numbers):
+    """The forces at this instant, in the columns FORCE and GIVEN of the closed contacts; returns how many these are."""
     closed = _list_closed(touching, discs, group, numbers)
     for c in range(touching):
         group.contacts[c, FORCE] = 0.0
     _pull(count, discs, group)
     begin(count, group)
     project(count, closed, 0.0, group)
-    duration = NEVER
-    if not _stop_where_still(count, closed, discs, group):
-        duration = _duration(closed, discs, group, numbers)
-        if duration < NEVER:
-            _meet_at_end(duration, count, closed, discs, group, numbers)
     for k in range(closed):
         c = group.marks[ACTIVE, k]
         group.contacts[c, FORCE] = group.contacts[c, GIVEN]
-    return duration
+    return closed
+
+
+@compiled
+def _one_lets_go(closed, group):
+    """True if a contact that pushes at the start of a step has opened at its end."""
+    for k in range(closed):
+        c = group.marks[ACTIVE, k]
+        if group.contacts[c, FORCE] > 0.0 and group.contacts[c, GIVEN] == 0.0:
+            return True
+    return False
 
 
 @compiled

@@ -34,7 +34,7 @@ def first_meeting(h, pairs, kinds, position, before, velocity, after, radius, sp
         reach = radius[i] + radius[j]
         growth = NOISE * (abs(ax) + abs(ay))
         tx, ty = span[j, 0], span[j, 1]
-        s = first_touch(dx, dy, vx, vy, ax, ay, tx, ty, reach, NOISE * moving, growth, h, kinds[k] == 1)
+        s = first_touch(dx, dy, vx, vy, ax, ay, tx, ty, 0.0, reach, NOISE * moving, growth, h, kinds[k] == 1)
         earliest = min(earliest, s)
     return earliest if earliest <= h else NEVER
 

@@ -65,6 +65,7 @@ from systems.collision.contact.kernels import (
 )
 from systems.collision.gap.kernels import (
     NEVER,
+    is_answered_for,
     nearest,
     place_noise,
     relative_motion,
@@ -267,6 +268,8 @@ def _is_new(m, b, discs, group):
 def _touch(a, b, discs, ties, now):
     """True if two discs touch that may collide and have no lasting contact."""
     dx, dy, _, _, _, _ = relative_motion(discs, a, b, now)
+    if is_answered_for(dx, dy, b, discs):
+        return False
     dx, dy, _ = nearest(dx, dy, b, discs)
     reach = discs[a, RADIUS] + discs[b, RADIUS] + place_noise(discs, a, b, now)
     if dx * dx + dy * dy > reach * reach:
@@ -281,7 +284,8 @@ def _gather_lasting(m, count, touching, discs, ties, group, now):
     entry = ties.first_lasting[a]
     while entry != NONE:
         b = ties.lasting[entry, OTHER]
-        if _is_new(m, b, discs, group):
+        dx, dy, _, _, _, _ = relative_motion(discs, a, b, now)
+        if _is_new(m, b, discs, group) and not is_answered_for(dx, dy, b, discs):
             if group.place[b] == NONE:
                 _admit(b, count, discs, group, now)
                 count += 1

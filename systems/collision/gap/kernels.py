@@ -22,6 +22,9 @@ from systems.collision.arrays import (
     OX,
     OY,
     RADIUS,
+    SHARED,
+    SHARED_END,
+    SHARED_START,
     SPEED_NOISE,
     TX,
     TY,
@@ -78,6 +81,21 @@ def nearest_of_piece(dx, dy, tx, ty):
         return dx + tx, dy + ty, 1.0
     across = (dx * ty - dy * tx) / squared  # the normal is that of the side, exactly
     return across * ty, -across * tx, 0.0
+
+
+@compiled
+def is_answered_for(dx, dy, j, discs):
+    """True if what is nearest of j from (dx, dy) before it is an end that it shares with another obstacle.
+
+    That one has the same gap then; were both in contact, their forces would not be determined.
+    """
+    shared = discs[j, SHARED]
+    if shared == 0.0:
+        return False
+    along = -(dx * discs[j, TX] + dy * discs[j, TY])
+    if along <= 0.0:
+        return shared != SHARED_END
+    return shared >= SHARED_END and along >= discs[j, TX] ** 2 + discs[j, TY] ** 2
 
 
 @compiled
@@ -324,13 +342,17 @@ def _touch(dx, dy, vx, vy, ax, ay, reach, noise, growth, low, high, overlapping)
 
 
 @compiled
-def first_touch(dx, dy, vx, vy, ax, ay, tx, ty, reach, noise, growth, horizon, overlapping):
+def first_touch(dx, dy, vx, vy, ax, ay, tx, ty, shared, reach, noise, growth, horizon, overlapping):
     """As first_approach, of a piece from (dx, dy) to (dx + tx, dy + ty) that moves relative to a disc.
+
+    shared: its ends for which another piece answers, as in the column SHARED; they are left out.
 
     The foot of the perpendicular from the disc goes past an end at most four times; in between, what is nearest
     is always the same end, or always the flat side.
     """
     if tx == 0.0 and ty == 0.0:
+        if shared != 0.0:
+            return NEVER
         return first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, horizon, overlapping)
     length = math.sqrt(tx * tx + ty * ty)
     nx, ny = ty / length, -tx / length
@@ -346,6 +368,8 @@ def first_touch(dx, dy, vx, vy, ax, ay, tx, ty, reach, noise, growth, horizon, o
         if 0.0 <= between <= length:
             gap_x, speed, pull = nx * x + ny * y, nx * u + ny * v, nx * ax + ny * ay
             s = _first_on_side(gap_x, speed, pull, reach, slow, growth, overlapping)
+        elif shared == SHARED_START + SHARED_END or shared == (SHARED_START if between < 0.0 else SHARED_END):
+            s = NEVER
         else:
             if between > length:
                 x, y = x + tx, y + ty

@@ -22,6 +22,7 @@ from systems.collision.arrays import (
     QUEUED,
     RADIUS,
     RENEW,
+    SHARED,
     STEP,
     TX,
     TY,
@@ -90,7 +91,9 @@ def foresee(i, j, discs, ties, end):
     noise, growth = speed_noise(discs, i, j, start), pull_noise(discs, i, j)
     if straight:
         tx, ty = discs[j, TX], discs[j, TY]
-        time = start + first_touch(dx, dy, vx, vy, ax, ay, tx, ty, reach, noise, growth, end - start, False)
+        time = start + first_touch(
+            dx, dy, vx, vy, ax, ay, tx, ty, discs[j, SHARED], reach, noise, growth, end - start, False
+        )
     else:
         time = start + first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, end - start, False)
     if time > end or is_joined(i, j, ties) or find_lasting(i, j, ties) != NONE:
