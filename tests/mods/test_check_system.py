@@ -13,16 +13,18 @@ import pytest
 from numpy.typing import NDArray
 
 from components import Model
-from game import SystemCheckError, check_system
+from game import Session, SystemCheckError, check_system
 from game.catalogue import DRIVERS, step_systems
 from game.checks import BODIES, ELASTIC, EVERYTHING
+from game.document import document
 from game.included.probes import Sampling
 from game.preparation import Preparation
 from game.registry import SYSTEMS
 from game.spares import SpareKeeper
 from systems.base import Law, Phase, StepSystem, System
-from systems.collision.system import Collision
+from systems.collision.system import Collision, Support
 from systems.edit.hover import Hover
+from systems.edit.pull import Hand, Pull
 from systems.input.pygame_input import PygameInput
 from systems.kernels import compiled
 from systems.physics.drivers import VelocityVerlet
@@ -61,6 +63,30 @@ def test_collisions_pass_in_free_flight_and_with_a_wall_that_steps_end_at() -> N
     }
     driven = falling | {"environment": {"acceleration": [0.0, -9.81], "drag": 0.1}, "settings": {}}
     assert check_system(Collision, [falling, driven]).needed == 2
+
+
+class Pulling(Pull):
+    """A hand that holds particle B of whatever model it meets first."""
+
+    def needs(self, model: Model) -> bool:
+        if self.hand is None:
+            self.take(Hand(model.particles["B"], 100.0, 1.0, (0.01, 0.0)))
+        return super().needs(model)
+
+
+def test_the_hand_passes() -> None:
+    assert check_system(Pulling, [EVERYTHING]).needed == 1
+
+
+def test_the_forces_of_lasting_contacts_pass() -> None:
+    lying = BODIES | {
+        "environment": {"acceleration": [0.0, -9.81], "drag": 0.1},
+        "settings": {"restitution": 0.0},
+        "components": {"walls.Wall": [{"name": "floor", "start": [-9.0, -0.1], "end": [9.0, -0.1]}]},
+    }
+    session = Session.open(lying)
+    session.run(time=0.5)
+    assert check_system(Support, [document(session.model)]).needed == 1
 
 
 def test_our_frame_systems_pass(tmp_path: Path) -> None:
