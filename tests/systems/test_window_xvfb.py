@@ -133,19 +133,18 @@ class Person:
 
     def find_window(self) -> None:
         """Wait for the window, and let it have the keys."""
-        search = "search", "--onlyvisible", "--class", "pinjoint"
-        self.window = self.wait_for("the window", lambda: self.xdotool(*search, may_fail=True)).split()[0]
         self.wait_for("the window to take the keys", self._takes_focus)
 
     def _takes_focus(self) -> bool:
-        """A window that is not quite there yet refuses the focus."""
-        command = ["xdotool", "windowfocus", "--sync", self.window]
-        return (
-            subprocess.run(
-                command, env=self._environment, capture_output=True, timeout=20, check=False
-            ).returncode
-            == 0
-        )
+        """A window that is not quite there yet refuses the focus; one that SDL only tries out is gone soon."""
+        search = "search", "--onlyvisible", "--class", "pinjoint"
+        for window in self.xdotool(*search, may_fail=True).split():
+            command = ["xdotool", "windowfocus", "--sync", window]
+            done = subprocess.run(command, env=self._environment, capture_output=True, timeout=20, check=False)
+            if done.returncode == 0:
+                self.window = window
+                return True
+        return False
 
     def leave(self) -> None:
         """End everything, whatever came of it."""
