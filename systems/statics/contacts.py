@@ -18,7 +18,7 @@ from systems.near import near_pairs, nearest
 from systems.statics.equations import Array, Flags, Rows, Structure
 from systems.statics.factor import regular
 from systems.statics.follow import Path, Point
-from systems.statics.relax import BALANCED, LARGEST_PENALTY, RUNAWAY, STEPS, implicit_step
+from systems.statics.relax import BALANCED, LARGEST_PENALTY, RUNAWAY, implicit_step
 
 CONTACT_STRAIN = 1e-3  # by which the largest load would shorten a contact that is not corrected
 SHORTEST_MOVE = 0.25  # of its radius: how far a disc may move in a step, whatever is near
@@ -30,6 +30,7 @@ AT_END = 1e-12  # of its length: where a side ends
 STIFF = 1e-4  # overlap, of the sum of radii, below which contacts need not become stiffer
 STIFFER = 10.0
 NEAR_REST = 0.1  # of the largest force, unbalanced: an equilibrium is sought
+MOST_STEPS = 1000  # until sinking is given up; the pile of 60 stones takes 280
 SMALLEST_PENALTY = 1e-9  # of the stiffness: a step without end
 
 
@@ -195,7 +196,7 @@ class Sinking:
         Returns "equilibrium", "unstable" (a balance that the least push ends), "falls" or "gave up".
         """
         penalty, worst = 0.0, np.inf
-        for _ in range(STEPS):
+        for _ in range(MOST_STEPS):
             moves = self.discs.moves(self.point.displacement)
             self._look_around(moves)
             rested = self._rested(moves)
