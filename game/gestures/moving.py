@@ -22,10 +22,23 @@ if TYPE_CHECKING:
     from game.session import Session
 
 
-class Move(Gesture):
-    """Dragging elements moves their original positions. One entry of the log, however far it goes."""
+class _Placing(Gesture):
+    """A drag whose every move changes the document; one entry of the log, however far it goes."""
 
     hint = "let go to place     Esc put back"
+
+    def drop(self, session: Session, pixel: Vector) -> None:
+        self.move(session, pixel)
+
+    def cancel(self, session: Session) -> None:
+        session.history.retract(self)
+
+    def leave(self, session: Session) -> None:
+        """What was moved stays where it is."""
+
+
+class Move(_Placing):
+    """Dragging elements moves their original positions."""
 
     def __init__(self, session: Session, hit: Handle, pixel: Vector) -> None:
         selected = session.selected
@@ -64,20 +77,9 @@ class Move(Gesture):
         others = f" and {count - 1} more" if count > 1 else ""
         return f"{leader.name}{others}: ({100.0 * target[0]:.6g}, {100.0 * target[1]:.6g}) cm"  # type: ignore[attr-defined]
 
-    def drop(self, session: Session, pixel: Vector) -> None:
-        self.move(session, pixel)
 
-    def cancel(self, session: Session) -> None:
-        session.history.retract(self)
-
-    def leave(self, session: Session) -> None:
-        """What was moved stays where it is."""
-
-
-class MovePoint(Gesture):
-    """Dragging one point of an element, such as the end of a wall. One entry of the log."""
-
-    hint = "let go to place     Esc put back"
+class MovePoint(_Placing):
+    """Dragging one point of an element, such as the end of a wall."""
 
     def __init__(self, session: Session, grip: Grip) -> None:
         session.select(grip.element)
@@ -94,15 +96,6 @@ class MovePoint(Gesture):
         else:
             x, y = (100.0 * value for value in target)
             session.notice = f"{session.name(element)}, {point}: ({x:.6g}, {y:.6g}) cm"
-
-    def drop(self, session: Session, pixel: Vector) -> None:
-        self.move(session, pixel)
-
-    def cancel(self, session: Session) -> None:
-        session.history.retract(self)
-
-    def leave(self, session: Session) -> None:
-        """What was moved stays where it is."""
 
 
 class PullParticle(Gesture):
