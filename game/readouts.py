@@ -58,8 +58,8 @@ def _theory(session: Session) -> Iterator[Readout]:
 
 def _overview(session: Session, theory: Theories, comparison: Comparison) -> Iterator[tuple[str, str]]:
     settlement = theory.settlement
-    if theory.linear is None:
-        yield "linear theory", "a mechanism"
+    if theory.refusal is not None:
+        yield "linear theory", "a mechanism" if theory.refusal.status == "mechanism" else "not with cables"
     if theory.exact is None:
         yield "exact theory", f"{settlement.status} at {settlement.final.load_factor:.4g} of the load"
     for event in settlement.events:

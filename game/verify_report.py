@@ -106,7 +106,10 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
         "self_stress": [dict(zip(rods, state.tolist(), strict=True)) for state in self_stress(model)],
         "frequencies": {"unloaded": vibrations(model).hertz.tolist(), "loaded": loaded},
         "simulation": None,
-        "linear": {"status": "mechanism" if theory.refusal else "equilibrium", "message": theory.refusal},
+        "linear": {
+            "status": theory.refusal.status if theory.refusal else "equilibrium",
+            "message": str(theory.refusal or ""),
+        },
         "exact": {
             "status": settlement.status,
             "message": settlement.message,

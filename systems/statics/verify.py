@@ -41,12 +41,12 @@ class Answer:
 class Theories:
     """What theory says about a model that starts from some state.
 
-    linear: None if it has no answer, which `refusal` explains.
+    linear: None if it has no answer, for the reason `refusal`.
     """
 
     start: Start
     linear: LinearState | None
-    refusal: str
+    refusal: NoEquilibrium | None
     settlement: Settlement
 
     @property
@@ -65,11 +65,11 @@ def theories(model: Model, start: Start | None = None) -> Theories:
     """
     start = start or Start.present(model)
     exact = settle(model, start=start)
-    refusal, first_order = "", None
+    refusal, first_order = None, None
     try:
         first_order = linear(model, start)
     except NoEquilibrium as reason:
-        refusal = str(reason)
+        refusal = reason
     return Theories(start, first_order, refusal, exact)
 
 
