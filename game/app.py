@@ -20,20 +20,20 @@ from components.model import Model
 from components.toolbar import Toolbar
 from components.view import MAGNIFICATIONS, MARGIN, Plot, View, drawn_places, magnified
 from game.desk import Desk, ModelFile
-from game.performance import FOOTER, LARGER, Performance
-from game.preferences import (
+from game.preparation import Preparation
+from game.raster_program import load_raster
+from game.saved.preferences import (
     DEFAULT_THEME,
     preferred_magnification,
     preferred_theme,
     remember_magnification,
     remember_theme,
 )
-from game.preparation import Preparation
-from game.raster_program import load_raster
+from game.saved.spares import SpareKeeper
 from game.scenes.load import Load
-from game.script import Failure, Recorder, Script
+from game.scripts.performance import FOOTER, LARGER, Performance
+from game.scripts.script import Failure, Recorder, Script
 from game.session import Frame, Session
-from game.spares import SpareKeeper
 from systems.base import System
 from systems.edit.hover import Hover
 from systems.input.pygame_input import PygameInput

@@ -15,8 +15,8 @@ from components.model import Model
 from components.settings import INTEGRATORS
 from game import models
 from game.catalogue import DRIVERS, register_driver, step_systems
-from game.program_binding import ProgramError, bind
-from game.program_rows import KernelRows
+from game.program.binding import ProgramError, bind
+from game.program.rows import KernelRows
 from game.registry import SYSTEMS
 from game.schedule import Schedule, ScheduleError
 from game.session import Frame, Session

@@ -15,7 +15,7 @@ from typing import Any
 from components.field import FieldError
 from components.model import Model
 from components.settings import INTEGRATORS
-from game import __version__, bench, models, script
+from game import __version__, bench, models
 from game.arguments import (
     BAD_INPUT,
     Parser,
@@ -28,15 +28,16 @@ from game.arguments import (
     writable,
     write,
 )
-from game.curve import as_csv as as_curve
 from game.desk import ModelFile, file_of
 from game.mods import ModError, command
 from game.mods.command import load_as_asked
 from game.mods.safety import in_use
 from game.overrides import OverrideError, apply_override
 from game.registry import COMMANDS
-from game.report import FOUND, Analysis, AnalysisError
-from game.results import ResultError, as_csv, as_json, as_table
+from game.reports.curve import as_csv as as_curve
+from game.reports.report import FOUND, Analysis, AnalysisError
+from game.reports.results import ResultError, as_csv, as_json, as_table
+from game.scripts import script
 from game.session import DEFAULT_LIMIT, Session
 from game.shapes import NoShape, numbered
 from game.sweeps import SweepError, sweep
@@ -240,21 +241,19 @@ def _verify(words: Sequence[str]) -> int:
     _add_output(parser)
     options = parser.parse_args(words)
     session = _session(options)
-    from game import verify_report
+    from game.reports import verify
     from systems.statics.events import NoEquilibrium
     from systems.statics.force_method import ForceMethodError
 
     try:
         if options.influence:
-            found = verify_report.influence(session.model, options.influence)
+            found = verify.influence(session.model, options.influence)
         else:
-            found = verify_report.verify(
-                session, options.model, options.limit, simulate=not options.theory_only
-            )
+            found = verify.verify(session, options.model, options.limit, simulate=not options.theory_only)
     except (ForceMethodError, NoEquilibrium) as error:
         raise UsageError(str(error), NOT_ANSWERED if isinstance(error, NoEquilibrium) else BAD_INPUT) from None
-    write(as_json(found) if options.format == "json" else verify_report.as_table(found), options.output)
-    return ANSWERED if found.get("status") != verify_report.NOT_VERIFIED else NOT_ANSWERED
+    write(as_json(found) if options.format == "json" else verify.as_table(found), options.output)
+    return ANSWERED if found.get("status") != verify.NOT_VERIFIED else NOT_ANSWERED
 
 
 # --- sweeps ------------------------------------------------------------------------------------------------
@@ -362,7 +361,7 @@ def _force_method(words: Sequence[str]) -> int:
     model = models.load(options.model)
     for override in options.set:
         apply_override(model, override)
-    from game.force_method_report import force_method
+    from game.force_method.report import force_method
     from systems.statics.force_method import ForceMethodError
 
     try:

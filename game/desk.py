@@ -12,12 +12,12 @@ from components.model import Model
 from components.snapshot import Snapshot
 from game import models
 from game.beside import Beside
-from game.history import History
+from game.history.history import History
+from game.history.timeline import Timeline
 from game.live import Live
 from game.schedule import Schedule
 from game.shapes import Shapes
 from game.simulation import Simulation
-from game.timeline import Timeline
 from systems.edit.pull import Pull
 
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from components.field import Column
 from components.snapshot import Snapshot
-from game.program import Program
-from game.program_writer import REVIEW_INTERVAL
+from game.program.program import Program
+from game.program.writer import REVIEW_INTERVAL
 from game.simulation import Simulation
 
 FINER_TOLERANCE = 1e-2  # of the run's, by which it is taken again where the error is controlled

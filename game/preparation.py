@@ -10,14 +10,14 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from game.encounter_kernels import has_encounters
-from game.encounters import load_encounters
-from game.flight import has_flight
+from game.collisions.encounter_kernels import has_encounters
+from game.collisions.encounters import load_encounters
+from game.collisions.flight import has_flight
 from game.mods import MODS
 from game.prepare import ENCOUNTERS, FLIGHT, RASTER
-from game.program import has_program
-from game.program_cache import is_blank, load_compiler
-from game.program_writer import form_of
+from game.program.cache import is_blank, load_compiler
+from game.program.program import has_program
+from game.program.writer import form_of
 from game.raster_program import has_raster, load_raster
 from systems.base import Phase, System
 from systems.collision.system import Collision

@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from components.model import Model
 from components.particle import Particle
 from game.catalogue import DRIVERS
-from game.encounters import load_encounters
-from game.flight import load_flight
+from game.collisions.encounters import load_encounters
+from game.collisions.flight import load_flight
 from game.mods.command import load_as_asked
-from game.program_cache import forget_unused
-from game.program_in_blocks import make_program
+from game.program.cache import forget_unused
+from game.program.in_blocks import make_program
 from game.raster_program import load_raster
 from game.session import Session
 from systems.edit.pull import Hand

@@ -11,7 +11,7 @@ from components.field import Field
 from components.model import Model
 from components.table import Table
 from components.world import Handle
-from game.results import ENERGIES
+from game.reports.results import ENERGIES
 
 if TYPE_CHECKING:
     from game.session import Session

@@ -6,7 +6,7 @@ import inspect
 from functools import cache
 from typing import Any
 
-from game.program_cache import compile_module, is_compiled, note_compiled
+from game.program.cache import compile_module, is_compiled, note_compiled
 from systems.render.raster import SIGNATURES, Raster
 
 

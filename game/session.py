@@ -28,20 +28,20 @@ from game import models
 from game.actions import ACTIONS, WHILE_DRAWING
 from game.catalogue import step_systems
 from game.clock import FrameClock
-from game.curve import goal_of
+from game.collisions.impacts import Impacts
 from game.desk import Desk, Desks, ModelFile, file_of
 from game.document import missing_mods
 from game.gestures import Gesture
-from game.history import History
-from game.impacts import Impacts
+from game.history.history import History
+from game.history.timeline import Timeline
 from game.mods.mod import FAULTS
 from game.registry import SYSTEMS
+from game.reports.curve import goal_of
 from game.scenes import Scenes, Stage, all_scenes
 from game.schedule import Schedule
 from game.showing import show
 from game.simulation import FREE_FLIGHT, Energy, Simulation
 from game.surroundings import Prepares, Spares, Window
-from game.timeline import Timeline
 from game.toolbar import toolbar_of
 from systems.base import Law, Phase, StopReason, System
 from systems.edit.pull import Pull
@@ -52,7 +52,7 @@ from systems.physics.pace import natural_pace
 
 if TYPE_CHECKING:
     from game.clipboard import Part
-    from game.script import Script
+    from game.scripts.script import Script
     from systems.statics.events import Event
     from systems.statics.path import Curve
     from systems.statics.verify import Comparison
@@ -557,9 +557,9 @@ class Session:
     def expect(self, text: str) -> None:
         """Raise ExpectationError, an AssertionError, unless a text such as "scene = pause" is true.
 
-        Also "rods.AB.axial_force ≈ -28.34 ± 0.01", "energy.imbalance < 1"; see game/script.py.
+        Also "rods.AB.axial_force ≈ -28.34 ± 0.01", "energy.imbalance < 1"; see game/scripts/script.py.
         """
-        from game.expectation import expect
+        from game.scripts.expectation import expect
 
         expect(self, text)
 

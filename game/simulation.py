@@ -17,15 +17,15 @@ from components.settings import AUTOMATIC
 from components.snapshot import Snapshot
 from components.world import Derivation
 from game.catalogue import DRIVERS
-from game.culprit import blame_mod, find_culprit
-from game.encounters import Encounters
-from game.flight import Flight, part_overlaps
-from game.impacts import Impacts
-from game.moment import Moment
-from game.program import Program
-from game.program_binding import ProgramError
-from game.program_in_blocks import make_program
-from game.program_writer import REVIEW_INTERVAL, form_of
+from game.collisions.encounters import Encounters
+from game.collisions.flight import Flight, part_overlaps
+from game.collisions.impacts import Impacts
+from game.history.moment import Moment
+from game.program.binding import ProgramError
+from game.program.culprit import blame_mod, find_culprit
+from game.program.in_blocks import make_program
+from game.program.program import Program
+from game.program.writer import REVIEW_INTERVAL, form_of
 from game.schedule import Schedule
 from game.step_size import automatic_step, first_step, is_outgrown, step_limit
 from systems.base import Driver, StepSystem, StopReason

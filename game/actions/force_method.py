@@ -11,7 +11,7 @@ from systems.edit.picking import pick
 from systems.edit.refusal import Refusal
 
 if TYPE_CHECKING:
-    from game.force_method import Guide
+    from game.force_method.guide import Guide
     from game.session import Session
 
 

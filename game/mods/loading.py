@@ -16,8 +16,8 @@ from game.mods.manifest import MANIFEST
 from game.mods.mod import FAULTS, Mod, ModError
 from game.mods.order import in_order, required
 from game.mods.watchdog import interrupted_after
-from game.preferences import preferred_keys
 from game.registry import SYSTEMS
+from game.saved.preferences import preferred_keys
 from game.schedule import Schedule
 from game.version import __version__
 from systems.input.bindings import prefer

@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from game.library import data_folder
-from game.locks import lock_file
 from game.mods.loading import MODS
 from game.mods.mod import INCLUDED, LOG
+from game.saved.library import data_folder
+from game.saved.locks import lock_file
 
 LEFT_OUT = (
     "Pinjoint did not end as it should while your mods were loaded, so this once they are left out. The next"

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 from components.box import FILE_NAME, Box
 from components.form import Form, Tile
 from components.model import Model
-from game import library, models
+from game import models
+from game.saved import library
 from game.scenes.form import FormScene
 from systems.forms import typing
 from systems.render.form_layout import tile_columns

@@ -14,7 +14,7 @@ from systems.render.overlays import heading_height
 from systems.render.page import page_height
 
 if TYPE_CHECKING:
-    from game.force_method import Guide, Mechanism, Set
+    from game.force_method.guide import Guide, Mechanism, Set
     from game.session import Session
 
 PARTS = 7
@@ -38,7 +38,12 @@ class ForceMethod(Scene):
         self._head, self._foot = View(page=Page(), legend=False), View(page=Page(), legend=False)
 
     def enter(self, session: Session) -> None:
-        from game.force_method import Guide, Mechanism, base_structure, view_like  # scipy is imported only here
+        from game.force_method.guide import (  # scipy is imported only here
+            Guide,
+            Mechanism,
+            base_structure,
+            view_like,
+        )
         from systems.statics.force_method import ForceMethodError
 
         self._problem, self._mechanism, self._page_of = "", None, -1
@@ -68,7 +73,7 @@ class ForceMethod(Scene):
         return bool(self._moving())
 
     def hint(self, session: Session) -> str:
-        from game import force_method_words as words
+        from game.force_method import words
 
         return words.hint(self.guide) if self.guide else "Esc back to pause"
 
@@ -87,7 +92,7 @@ class ForceMethod(Scene):
 
     def _lay_out(self, session: Session) -> list[tuple[Model, View]]:
         """Place everything in the window; returns what stands in the middle."""
-        from game import force_method_words as words
+        from game.force_method import words
 
         guide, ratio, whole = self.guide, session.view.pixel_ratio, session.view.canvas
         self._head.heading = words.message(guide) if guide else self._problem
@@ -106,7 +111,7 @@ class ForceMethod(Scene):
 
     def _working(self) -> Page:
         """The equations and the table; made anew in every part only, since a table may be long."""
-        from game import force_method_words as words
+        from game.force_method import words
 
         guide = self.guide
         if guide is None:
@@ -120,7 +125,7 @@ class ForceMethod(Scene):
         return Page(self._page.lines, self._page.table, self._first)
 
     def _sets(self, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
-        from game import force_method_words as words
+        from game.force_method import words
 
         captions = words.captions(self.guide) if self.guide else [("",)] * 3
         there: list[Set | Mechanism] = [*self.guide.shown] if self.guide else self._moving()

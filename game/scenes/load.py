@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from components.form import Form, Tile
-from game import library, models
+from game import models
 from game.desk import ModelFile
+from game.saved import library
+from game.saved.spares import spare_name
 from game.scenes.files import FileScene, saved_tiles, tile
-from game.script import Script, lessons
-from game.spares import spare_name
+from game.scripts.script import Script, lessons
 
 if TYPE_CHECKING:
     from game.session import Session

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from components.form import Form, Tile
-from game import library, models
+from game import models
+from game.saved import library
 from game.scenes.files import FileScene, saved_tiles
 from systems.forms import typing
 

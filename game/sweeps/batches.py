@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 
 from components.field import Column, FieldError
 from components.settings import AUTOMATIC
-from game.batch import Batch
 from game.overrides import EVERY, Target, locate
-from game.program import Program
-from game.program_batch import BatchProgram
-from game.results import ENERGIES, reported
+from game.program.program import Program
+from game.reports.results import ENERGIES, reported
 from game.simulation import at_rest_since
-from game.stack import Stack
+from game.sweeps.batch import Batch
+from game.sweeps.batch_program import BatchProgram
 from game.sweeps.measure import Measure
 from game.sweeps.plan import Plan, Record
+from game.sweeps.stack import Stack
 from game.sweeps.variation import Random, Value
 from systems.physics.automatic import SMALL, stiffnesses, suited_to
 

@@ -13,7 +13,7 @@ from components.field import Field
 from components.model import Model
 from components.table import Table
 from game.overrides import EVERY, OverrideError, locate
-from game.results import ENERGIES, State, reported
+from game.reports.results import ENERGIES, State, reported
 from game.sweeps.variation import SweepError
 
 _OF_THE_RUN = ("residual", "collisions")

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.models import replace
-from game.report import FOUND
+from game.reports.report import FOUND
 from game.sweeps.plan import RECORDED, Plan
 from game.sweeps.variation import INSTALL, Random, SweepError, Values
 

@@ -9,7 +9,7 @@ from typing import Any
 from game import models
 from game.desk import file_of
 from game.overrides import apply_override
-from game.report import Analysis
+from game.reports.report import Analysis
 from game.sweeps.execution import outcomes
 from game.sweeps.installation import Installation
 from game.sweeps.journal import Journal

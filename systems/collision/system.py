@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Collision(StepSystem):
-    """Discs that meet push one another apart; see game/flight.py for what drives them."""
+    """Discs that meet push one another apart; see game/collisions/flight.py for what drives them."""
 
     name = "collision.discs"
     reads = ("particles.radius", "particles.mobility", "settings.restitution")

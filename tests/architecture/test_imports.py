@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 LAYERS = ("components", "systems", "game", "tests")  # each may import itself and those before it
 RESOURCES = "assets"
 WINDOW = ("systems/render/pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
-COMPILED = ("systems/kernels.py", "systems/*/kernels.py", "systems/collision/*.py", "game/program*.py")
+COMPILED = ("systems/kernels.py", "systems/*/kernels.py", "systems/collision/*.py", "game/program/*.py")
 MODULES_OF = {"pygame-ce": "pygame", "pillow": "PIL"}  # distributions whose module has another name
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -168,7 +168,7 @@ def test_a_forbidden_import_is_found(path: str, line: str) -> None:
         ("systems/physics/kernels.py", "from numba import njit\nfrom systems.kernels import compiled"),
         ("systems/render/pygame_canvas.py", "import pygame.gfxdraw"),
         ("game/app.py", "import pygame\nfrom systems.physics.system import Elasticity"),
-        ("game/program_cache.py", "import numba"),
+        ("game/program/cache.py", "import numba"),
         ("game/models.py", "import msgspec, assets"),
         ("tests/unit/test_rod.py", "import game, systems.base, components, hypothesis"),
     ],

@@ -14,9 +14,9 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 import pygame
 
 from components.field import Vector
-from game import library
 from game.app import SELDOM, App
 from game.preparation import Preparation
+from game.saved import library
 from tests.benchmarks.models import lattice
 
 FRAME = 1.0 / 60.0

@@ -17,8 +17,8 @@ from game.catalogue import DRIVERS, step_systems
 from game.document import document
 from game.mods import Mod
 from game.mods.guard import guarded_system
-from game.program import Program
-from game.program_in_blocks import make_program
+from game.program.in_blocks import make_program
+from game.program.program import Program
 from game.schedule import Schedule
 from systems.base import StepSystem, System
 from systems.physics.system import Drag

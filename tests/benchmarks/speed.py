@@ -23,8 +23,8 @@ from components.model import Model
 from game.catalogue import DRIVERS, step_systems
 from game.cores import VARIABLE, cores
 from game.document import document
-from game.program_in_blocks import make_program
-from game.program_writer import MANY, VERY_MANY
+from game.program.in_blocks import make_program
+from game.program.writer import MANY, VERY_MANY
 from game.schedule import Schedule
 from tests.benchmarks.ceiling import BYTES_PER_PARTICLE, BYTES_PER_ROD, bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, truss

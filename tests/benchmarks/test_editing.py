@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from game import library
+from game.saved import library
 from tests.benchmarks import editing
 from tests.benchmarks.editing import SESSION, Hand
 

@@ -16,7 +16,7 @@ import pygame
 
 from components.camera import Viewport
 from game import Session
-from game.library import DATA_VARIABLE
+from game.saved.library import DATA_VARIABLE
 from systems.render.picture import compose
 from systems.render.pygame_canvas import Canvas
 from systems.render.theme import load_theme

@@ -20,7 +20,7 @@ from game.document import document
 from game.included.probes import Sampling
 from game.preparation import Preparation
 from game.registry import SYSTEMS
-from game.spares import SpareKeeper
+from game.saved.spares import SpareKeeper
 from systems.base import Law, Phase, StepSystem, System
 from systems.collision.system import Collision, Support
 from systems.edit.hover import Hover

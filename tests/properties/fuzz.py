@@ -21,9 +21,10 @@ import numpy as np
 
 from components.field import Vector
 from components.view import drawn_positions
-from game import Session, library, models
+from game import Session, models
 from game.desk import Desk
-from game.script import EMPTY, Recorder, Script
+from game.saved import library
+from game.scripts.script import EMPTY, Recorder, Script
 from systems.input.bindings import BINDINGS, LIVE, TEXT
 from systems.render.picture import compose
 from systems.render.theme import load_theme

@@ -12,8 +12,8 @@ import pytest
 from components.field import Role
 from game import Session
 from game.cli import main
-from game.library import DATA_VARIABLE
-from game.script import Recorder, Script, ScriptError, lessons
+from game.saved.library import DATA_VARIABLE
+from game.scripts.script import Recorder, Script, ScriptError, lessons
 
 SCRIPTS = sorted(Path(__file__).parent.glob("*.jsonl"))
 

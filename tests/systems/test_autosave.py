@@ -17,10 +17,11 @@ import pytest
 from components.model import Model
 from components.particle import Particle
 from components.rod import spawn_rods
-from game import Session, library, models
+from game import Session, models
 from game.desk import ModelFile
+from game.saved import library
+from game.saved.spares import LAST_SESSION, SpareKeeper, spare_name
 from game.scenes.files import FileScene
-from game.spares import LAST_SESSION, SpareKeeper, spare_name
 from tests.reference.models import triangle
 
 ROOT = Path(__file__).parents[2]
@@ -32,7 +33,7 @@ import sys, time
 from game import models
 from game.app import App
 from game.desk import ModelFile
-from game.spares import SpareKeeper
+from game.saved.spares import SpareKeeper
 app = App(models.load(sys.argv[1]), ModelFile(None, "work"), SpareKeeper(interval=float(sys.argv[2])))
 value = 1000.0
 while not app.input.closed:

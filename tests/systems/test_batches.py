@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game.report import Analysis
-from game.stack import Stack
+from game.reports.report import Analysis
 from game.sweeps.plan import Plan, Record
 from game.sweeps.run import plan_of
 from game.sweeps.specimen import Bench, Specimen
+from game.sweeps.stack import Stack
 from systems.physics.automatic import choose, stiffnesses, suited_to
 from systems.physics.spectrum import spectra, spectrum
 from tests.reference.models import square, triangle

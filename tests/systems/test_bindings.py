@@ -11,7 +11,7 @@ import pytest
 
 from components.tags import DiagramShown
 from game import Session
-from game.library import DATA_VARIABLE, models_folder
+from game.saved.library import DATA_VARIABLE, models_folder
 from game.scenes.force_method import ForceMethod
 from game.scenes.form import FormScene
 from systems.input.bindings import BINDINGS, FORCE_METHOD, LOAD, PAUSE, PROPERTIES, SAVE, SIMULATION, Binding

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game import Session, layout, models, program_in_blocks, program_writer
+from game import Session, models
 from game.cores import VARIABLE, cores
-from game.layout import Layout
+from game.program import in_blocks, layout, writer
+from game.program.layout import Layout
 from systems.edit.pull import Hand
 from tests.benchmarks.models import lattice
 from tests.reference import bits
@@ -53,12 +54,12 @@ def net() -> dict[str, Any]:
 
 
 @pytest.fixture
-def in_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
+def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Models of few rods in blocks of 12."""
-    monkeypatch.setattr(program_writer, "SMALL", 0)
-    monkeypatch.setattr(program_writer, "BLOCKS_FROM", 1)
+    monkeypatch.setattr(writer, "SMALL", 0)
+    monkeypatch.setattr(writer, "BLOCKS_FROM", 1)
     monkeypatch.setattr(layout, "BLOCK", 12)
-    monkeypatch.setattr(program_in_blocks, "_WORTHWHILE", 0)
+    monkeypatch.setattr(in_blocks, "_WORTHWHILE", 0)
 
 
 def run(on: int, steps: int = 700) -> Session:
@@ -74,7 +75,7 @@ def assert_same(one: Session, other: Session) -> None:
     assert bits.different(bits.columns(one.model), bits.columns(other.model)) == []
 
 
-def test_a_layout_has_everything_once_and_blocks_that_touch_nobody(in_blocks: None) -> None:
+def test_a_layout_has_everything_once_and_blocks_that_touch_nobody(small_blocks: None) -> None:
     model = models.load(net())
     made = Layout.of(model)
     assert sorted(made.particles) == list(range(model.particles.count))
@@ -98,18 +99,18 @@ def test_few_rods_are_between_blocks_however_a_model_is_numbered(monkeypatch: py
         assert made.first_rod[-1] - made.first_rod[-2] < 0.12 * model.rods.count
 
 
-def test_the_number_of_cores_changes_no_bit(in_blocks: None) -> None:
+def test_the_number_of_cores_changes_no_bit(small_blocks: None) -> None:
     one, several = run(on=1), run(on=8)
-    assert one.simulation.program.form == program_writer.VERY_MANY
+    assert one.simulation.program.form == writer.VERY_MANY
     assert one.model.clock.dissipated_plastic > 0.0
     assert_same(one, several)
 
 
-def test_blocks_find_what_loops_over_all_rods_find(in_blocks: None, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_blocks_find_what_loops_over_all_rods_find(small_blocks: None, monkeypatch: pytest.MonkeyPatch) -> None:
     blocks = run(on=8)
-    monkeypatch.setattr(program_writer, "SMALL", 200)
+    monkeypatch.setattr(writer, "SMALL", 200)
     whole = run(on=1)
-    assert whole.simulation.program.form == program_writer.FEW
+    assert whole.simulation.program.form == writer.FEW
     for name in ("displacement", "velocity", "reaction"):
         found, expected = (getattr(s.particles, name) for s in (blocks, whole))
         assert np.abs(found - expected).max() <= 1e-9 * np.abs(expected).max()
@@ -118,7 +119,7 @@ def test_blocks_find_what_loops_over_all_rods_find(in_blocks: None, monkeypatch:
         assert getattr(blocks.energy, name) == pytest.approx(value, rel=1e-9, abs=1e-9)
 
 
-def test_edits_undo_and_saving_on_the_way_change_no_bit(in_blocks: None, tmp_path: Path) -> None:
+def test_edits_undo_and_saving_on_the_way_change_no_bit(small_blocks: None, tmp_path: Path) -> None:
     """What others change while the program holds the state in blocks is not lost."""
     straight = run(on=8, steps=400)
     models.save(run(on=8, steps=150).model, tmp_path / "net.json")
@@ -134,7 +135,7 @@ def test_edits_undo_and_saving_on_the_way_change_no_bit(in_blocks: None, tmp_pat
     assert_same(straight, edited)
 
 
-def test_what_is_deleted_is_left_out(in_blocks: None) -> None:
+def test_what_is_deleted_is_left_out(small_blocks: None) -> None:
     session = run(on=8, steps=50)
     rods = session.model.rods.count
     session.model.delete([session.particles["P3"], session.rods[0]])
@@ -143,7 +144,7 @@ def test_what_is_deleted_is_left_out(in_blocks: None) -> None:
     assert np.isfinite(session.particles.displacement).all()
 
 
-def test_a_hand_that_moves_is_followed(in_blocks: None) -> None:
+def test_a_hand_that_moves_is_followed(small_blocks: None) -> None:
     session = run(on=8, steps=10)
     row = session.particles["P3"].row
     session.simulation.before_change()
@@ -156,20 +157,20 @@ def test_a_hand_that_moves_is_followed(in_blocks: None) -> None:
 
 APART = """
 import sys
-from game import program_in_blocks, layout, program_writer
-program_writer.SMALL, program_writer.BLOCKS_FROM, layout.BLOCK, program_in_blocks._WORTHWHILE = 0, 1, 12, 0
+from game.program import in_blocks, layout, writer
+writer.SMALL, writer.BLOCKS_FROM, layout.BLOCK, in_blocks._WORTHWHILE = 0, 1, 12, 0
 from tests.reference import bits
 from tests.systems.test_cores import run
 print(bits.digest(run(on=8).model))
 """
 
 
-def test_any_threading_layer_gives_the_same_bits(in_blocks: None, fresh_process: Callable[..., str]) -> None:
+def test_any_threading_layer_gives_the_same_bits(small_blocks: None, fresh_process: Callable[..., str]) -> None:
     assert fresh_process(APART, {"NUMBA_THREADING_LAYER": "workqueue"}).strip() == bits.digest(run(on=1).model)
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
-def test_a_forked_process_goes_on_alone(in_blocks: None) -> None:
+def test_a_forked_process_goes_on_alone(small_blocks: None) -> None:
     session = run(on=8, steps=100)
     child = os.fork()
     if child == 0:

@@ -13,7 +13,7 @@ from components.view import Preview
 from game import Session, models
 from game.actions import ACTIONS
 from game.document import document
-from game.timeline import Timeline
+from game.history.timeline import Timeline
 from systems.input.bindings import BINDINGS, EVERY, action_for, help_lines
 
 EMPTY = {"format": "pinjoint model", "version": 1}

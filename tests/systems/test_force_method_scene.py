@@ -8,8 +8,8 @@ import pytest
 from components.model import Model
 from components.particle import Particle
 from game import Session, models
-from game import force_method_words as words
-from game.force_method import Guide
+from game.force_method import words
+from game.force_method.guide import Guide
 from game.scenes.force_method import ForceMethod
 from systems.render.marks import Text
 from systems.render.page import draw_page

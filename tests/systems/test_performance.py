@@ -14,9 +14,9 @@ from components.model import Model
 from game import Session, models
 from game.app import App
 from game.desk import ModelFile
-from game.performance import Performance
 from game.scenes.load import LESSONS
-from game.script import Script, lessons
+from game.scripts.performance import Performance
+from game.scripts.script import Script, lessons
 from tests.reference.bits import columns, different
 
 

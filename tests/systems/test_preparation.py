@@ -15,10 +15,12 @@ import pygame
 import pytest
 
 from components.field import Role
-from game import encounter_kernels, models, preparation, program_cache
+from game import models, preparation
 from game.app import App
+from game.collisions import encounter_kernels
 from game.preparation import Preparation
-from game.program_writer import FEW
+from game.program import cache
+from game.program.writer import FEW
 from game.showing import COMPILING
 from systems.input import pygame_input
 
@@ -238,7 +240,7 @@ def test_another_process_compiles_what_this_one_loads(tmp_path: Path) -> None:
 
 SMALL = """
 from numba import njit
-from game.program_cache import compile_module
+from game.program.cache import compile_module
 double = njit(lambda x: 2.0 * x)
 source = "from numba import njit\\n\\n@njit(cache=True)\\ndef answer(x):\\n    return kernel(x)\\n"
 print(compile_module(source, {"kernel": double}).answer(21.0))
@@ -258,14 +260,14 @@ def test_processes_that_compile_at_once_do_not_disturb_each_other(tmp_path: Path
 
 
 def test_programs_that_nobody_uses_are_forgotten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(program_cache, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(cache, "cache_folder", lambda: tmp_path)
     (tmp_path / "__pycache__").mkdir()
     for name, age in (("pinjoint_program_old", 61 * 86400), ("pinjoint_program_new", 0)):
         for file in (f"{name}.py", f"{name}.done", f"__pycache__/{name}.advance-1.nbi"):
             (tmp_path / file).touch()
         before = (tmp_path / f"{name}.done").stat().st_mtime - age
         os.utime(tmp_path / f"{name}.done", (before, before))
-    program_cache.forget_unused()
+    cache.forget_unused()
     left = {path.name for path in tmp_path.rglob("*.*")}
     assert left == {
         "pinjoint_program_new.py",
@@ -277,9 +279,9 @@ def test_programs_that_nobody_uses_are_forgotten(tmp_path: Path, monkeypatch: py
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have owners on POSIX systems only")
 def test_a_folder_of_somebody_else_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What lies in the cache is run: one that another person made where all may write is left alone."""
-    monkeypatch.setattr(program_cache, "user_cache_path", lambda name: tmp_path / "blocked")
+    monkeypatch.setattr(cache, "user_cache_path", lambda name: tmp_path / "blocked")
     (tmp_path / "blocked").write_text("not a folder")
-    monkeypatch.setattr(program_cache.tempfile, "gettempdir", lambda: str(tmp_path))
-    monkeypatch.setattr(program_cache.os, "getuid", lambda: 12345)
-    find: Callable[[], Path] = program_cache.cache_folder.__wrapped__
+    monkeypatch.setattr(cache.tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setattr(cache.os, "getuid", lambda: 12345)
+    find: Callable[[], Path] = cache.cache_folder.__wrapped__
     assert find().parent != tmp_path or find().name != "pinjoint-programs-12345"

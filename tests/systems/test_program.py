@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from components.field import Field, Role
-from game import Session, models, program_loops, program_writer
-from game.program_binding import ProgramError
-from game.program_cache import compile_module
+from game import Session, models
+from game.program import loops, writer
+from game.program.binding import ProgramError
+from game.program.cache import compile_module
 from systems.base import Commit, Law
 from systems.kernels import compiled
 from tests.reference import bits
@@ -58,8 +59,8 @@ def test_fused_is_bit_identical_to_stage_by_stage(document: Model, integrator: s
 @pytest.fixture
 def in_stages(monkeypatch: pytest.MonkeyPatch) -> None:
     """Loops as in large models, for a few rods at a time."""
-    monkeypatch.setattr(program_writer, "SMALL", 0)
-    monkeypatch.setattr(program_loops, "CHUNK", 4)
+    monkeypatch.setattr(writer, "SMALL", 0)
+    monkeypatch.setattr(loops, "CHUNK", 4)
 
 
 def test_loops_of_large_models_give_the_same_bits(in_stages: None) -> None:
@@ -73,7 +74,7 @@ def test_loops_of_large_models_give_the_same_bits_with_any_integrator(
     document = everything() | {"settings": {"integrator": "rk4", "time_step": 5e-6}}
     large, small = (Session.open(document) for _ in range(2))
     large.run(steps=300)
-    monkeypatch.setattr(program_writer, "SMALL", 200)
+    monkeypatch.setattr(writer, "SMALL", 200)
     small.run(steps=300)
     assert large.simulation.program.form != small.simulation.program.form
     assert bits.different(bits.columns(large.model), bits.columns(small.model)) == []
@@ -363,7 +364,7 @@ CALLEE = "from numba import njit\n\nFACTOR = 2.0\n\n@njit\ndef twice(x):\n    re
 def test_an_edited_kernel_is_noticed_in_what_it_calls_too(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("game.program_cache.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("game.program.cache.cache_folder", lambda: tmp_path)
     answers = []
     for factor in ("2.0", "5.0"):
         (tmp_path / "edited_helpers.py").write_text(CALLEE.replace("2.0", factor))

@@ -14,7 +14,7 @@ from components.particle import Particle
 from components.tags import Selected
 from game import Session
 from game.scenes.properties import Properties
-from game.script import Recorder, Script
+from game.scripts.script import Recorder, Script
 from systems.render.form_layout import FormLayout
 from systems.render.marks import Text
 from systems.render.picture import compose

@@ -15,11 +15,12 @@ from components.box import Box
 from components.camera import Viewport
 from components.field import same
 from components.form import Tile
-from game import Session, library, models
+from game import Session, models
+from game.saved import library
 from game.scenes import files
 from game.scenes.files import FileScene
 from game.scenes.load import Load
-from game.script import lessons
+from game.scripts.script import lessons
 from systems.render.marks import Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme

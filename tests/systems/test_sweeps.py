@@ -13,7 +13,7 @@ import pytest
 from game import Session, models
 from game.cli import main
 from game.overrides import apply_override
-from game.report import Analysis
+from game.reports.report import Analysis
 from game.sweeps import SweepError, sweep
 from game.sweeps.execution import outcomes
 from game.sweeps.results import Results

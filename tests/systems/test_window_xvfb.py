@@ -20,8 +20,8 @@ from components.camera import Viewport
 from components.field import Vector
 from game import Session, models
 from game.app import FIRST_SIZE
-from game.library import DATA_VARIABLE
-from game.preferences import CONFIG_VARIABLE
+from game.saved.library import DATA_VARIABLE
+from game.saved.preferences import CONFIG_VARIABLE
 from game.scenes.form import FormScene
 
 MISSING = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]

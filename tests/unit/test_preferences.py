@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from components.view import magnified
-from game import Session, preferences
+from game import Session
 from game.actions.view import THEMES
+from game.saved import preferences
 from systems.render.theme import theme_names
 
 

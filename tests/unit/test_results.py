@@ -13,7 +13,7 @@ import pytest
 
 from components.model import Model
 from game import models
-from game.results import ENERGIES, ResultError, as_csv, as_json, as_table, state
+from game.reports.results import ENERGIES, ResultError, as_csv, as_json, as_table, state
 from tests.reference.models import triangle
 
 ENERGY = {name: float(n) for n, name in enumerate(ENERGIES)}

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from game import Session
-from game.program_writer import REVIEW_INTERVAL
+from game.program.writer import REVIEW_INTERVAL
 from systems.physics.drivers import VelocityVerlet
 from tests.reference import bits
 from tests.reference.elements import Model

@@ -15,7 +15,7 @@ from scipy.linalg import eigh
 from components.model import Model
 from game import models
 from game.cli import main
-from game.verify_report import influence
+from game.reports.verify import influence
 from systems.statics.events import NoEquilibrium
 from systems.statics.settle import settle
 from systems.statics.theory import indeterminacy, linear, mechanisms, self_stress

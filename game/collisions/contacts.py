@@ -9,8 +9,8 @@ import numpy as np
 from components.model import Model
 from components.paths import Paths
 from components.snapshot import Snapshot
-from game.program import Program
-from game.strikes import NO_CROWD, NO_MOTION
+from game.collisions.strikes import NO_CROWD, NO_MOTION
+from game.program.program import Program
 from systems.base import StopReason
 from systems.collision.system import Support, contacts_of, support_forces
 from systems.collision.vicinity import Vicinity

@@ -15,9 +15,9 @@ from components.field import Role
 from components.model import Model
 from components.obstacles import obstacles
 from components.paths import Paths
-from game.encounter_kernels import kernels
-from game.impacts import Impacts
-from game.program_cache import compile_module, is_compiled, note_compiled
+from game.collisions.encounter_kernels import kernels
+from game.collisions.impacts import Impacts
+from game.program.cache import compile_module, is_compiled, note_compiled
 from systems.base import StopReason
 from systems.collision.arrays import CROWD_COUNTS, CROWD_NUMBERS, MOVING
 

@@ -12,10 +12,10 @@ import numpy as np
 from components.field import Column, Role
 from components.model import Model
 from game.cores import cores
-from game.layout import Layout, Numbers
-from game.program import OBSERVED, Program
-from game.program_binding import bind
-from game.program_writer import VERY_MANY, form_of
+from game.program.binding import bind
+from game.program.layout import Layout, Numbers
+from game.program.program import OBSERVED, Program
+from game.program.writer import VERY_MANY, form_of
 from systems.base import Driver, StepSystem, StopReason
 
 _STATE = ("particles.displacement", "particles.velocity")

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from components.field import Column
 from components.load import load_breaks, loads_end
-from game.program import ACCOUNT, CONTROL
-from game.program_batch import BatchProgram
-from game.program_writer import REVIEW_INTERVAL
+from game.program.program import ACCOUNT, CONTROL
+from game.program.writer import REVIEW_INTERVAL
 from game.simulation import Energy
-from game.stack import Stack
 from game.step_size import automatic_step, first_step, is_outgrown, step_limit
+from game.sweeps.batch_program import BatchProgram
+from game.sweeps.stack import Stack
 from systems.base import StopReason
 from systems.physics.spectrum import spectra
 

@@ -88,7 +88,7 @@ def _of_force_method(session: Session, quantity: str) -> Any:
 
     superposed.AC is set 2 + set 3, which is to equal real.AC, set 1.
     """
-    from game import force_method_words  # which scipy comes with
+    from game.force_method import words  # which scipy comes with
 
     guide = getattr(session.scenes.active, "guide", None)
     if guide is None:
@@ -98,7 +98,7 @@ def _of_force_method(session: Session, quantity: str) -> Any:
     if quantity == "part":
         return guide.part
     if quantity == "message":
-        return force_method_words.message(guide)
+        return words.message(guide)
     what, _, rod = quantity.partition(".")
     if guide.solution is not None and rod:  # a row of the final table
         return float(getattr(guide.solution, what).axial_force[guide.model.rods[rod].row])

@@ -15,12 +15,12 @@ import numpy as np
 from components.model import Model
 from components.particle import Particle
 from components.snapshot import Snapshot
-from game.contacts import Contacts
-from game.encounter_kernels import kernels, note_encounters
-from game.flight import part_overlaps
-from game.impacts import Impacts
-from game.program import Program
-from game.strikes import TOUCH, Strikes
+from game.collisions.contacts import Contacts
+from game.collisions.encounter_kernels import kernels, note_encounters
+from game.collisions.flight import part_overlaps
+from game.collisions.impacts import Impacts
+from game.collisions.strikes import TOUCH, Strikes
+from game.program.program import Program
 from systems.base import StopReason
 from systems.collision.vicinity import WATCHED, Vicinity
 

@@ -7,7 +7,7 @@ from functools import cache
 from types import ModuleType
 from typing import Any
 
-from game.program_cache import compile_module, is_compiled, note_compiled
+from game.program.cache import compile_module, is_compiled, note_compiled
 
 _SOURCE = '''\
 """Encounters within a step. Generated; safe to delete."""

@@ -1,15 +1,15 @@
 """The source of step programs of very large models: in blocks, which cores share among themselves.
 
-See game/layout.py for what a block is.
+See game/program/layout.py for what a block is.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from game.program_binding import Bound
-from game.program_loops import RodLoop, indented
-from game.program_writer import Writer
+from game.program.binding import Bound
+from game.program.loops import RodLoop, indented
+from game.program.writer import Writer
 from systems.base import ACCOUNTS
 
 _RODS = "block_rods[block], block_rods[block + 1]"

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from components.field import Vector
 from components.view import Page, Status, View
-from game.program_writer import REVIEW_INTERVAL
-from game.script import Failure, Script
+from game.program.writer import REVIEW_INTERVAL
+from game.scripts.script import Failure, Script
 
 if TYPE_CHECKING:
     from game.app import App

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Column
-from game.program import Program
-from game.program_cache import compile_module, note_compiled
-from game.stack import Stack
+from game.program.cache import compile_module, note_compiled
+from game.program.program import Program
+from game.sweeps.stack import Stack
 from systems.base import ACCOUNTS
 
 _SHARED = ("fresh", "breaks", "until", "loads_end")  # one for all blocks, besides what is written anew for each

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from game.moment import Moment
+from game.history.moment import Moment
 from game.simulation import Simulation
 from systems.edit.pull import Hand, Pull
 

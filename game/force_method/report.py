@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from components.model import Model
-from game.force_method import exact_forces
+from game.force_method.guide import exact_forces
 from systems.statics.force_method import find_unknown, redundants, solve
 
 

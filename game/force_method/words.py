@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from game.force_method import PARTS, Guide
+from game.force_method.guide import PARTS, Guide
 
 if TYPE_CHECKING:
     from systems.statics.force_method import Solution, Unknown

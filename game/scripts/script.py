@@ -35,8 +35,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from components.field import Vector
-from game.expectation import check
 from game.overrides import apply_override
+from game.scripts.expectation import check
 
 if TYPE_CHECKING:
     from game.session import Session

@@ -9,9 +9,9 @@ from dataclasses import replace
 from components.commands import Assign, Command, Group
 from components.field import Role
 from components.model import Model
-from game.log import Edit, Entry, Log, Run
-from game.moment import Moment
-from game.shelf import Shelf
+from game.history.log import Edit, Entry, Log, Run
+from game.history.moment import Moment
+from game.history.shelf import Shelf
 from game.simulation import Simulation
 
 MEMORY = 256 * 2**20  # bytes that the states before runs may take; older ones are put on a shelf

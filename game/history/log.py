@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from components.commands import Command
 from components.snapshot import Snapshot
-from game.moment import Moment
-from game.shelf import Shelf, Shelved
+from game.history.moment import Moment
+from game.history.shelf import Shelf, Shelved
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from components.model import Model
-from game.results import ENERGIES, ResultError, Run, State, state
+from game.reports.results import ENERGIES, ResultError, Run, State, state
 from game.session import DEFAULT_LIMIT
 from game.simulation import Simulation
 from systems.base import StopReason

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from components.model import Model
-from game.results import aligned, as_written, plain
+from game.reports.results import aligned, as_written, plain
 from game.session import Session
 from systems.statics.equations import Array
 from systems.statics.events import NoEquilibrium, event_record

@@ -12,11 +12,11 @@ import numpy as np
 from components.field import Column, Role
 from components.load import load_breaks, loads_end
 from components.model import Model
-from game.program_binding import bind, explain
-from game.program_blocks import BlockWriter
-from game.program_cache import compile_module, is_compiled, note_compiled
-from game.program_controlled import MARKS, ControlledWriter
-from game.program_writer import VERY_MANY, Writer, form_of
+from game.program.binding import bind, explain
+from game.program.block_writer import BlockWriter
+from game.program.cache import compile_module, is_compiled, note_compiled
+from game.program.controlled import MARKS, ControlledWriter
+from game.program.writer import VERY_MANY, Writer, form_of
 from systems.base import ACCOUNTS, Driver, StepSystem, StopReason
 
 ACCOUNT = (
@@ -102,7 +102,7 @@ class Program:
 
     @property
     def form(self) -> str:
-        """Which of the forms of program_writer.py it has."""
+        """Which of the forms of writer.py it has."""
         return self._writer.form
 
     @property

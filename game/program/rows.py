@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.model import Model
-from game.program_binding import Bound, bind
+from game.program.binding import Bound, bind
 from systems.base import Commit, Law, StepSystem
 
 Numbers = NDArray[np.float64]

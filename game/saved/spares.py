@@ -17,10 +17,11 @@ from components.field import Column, Role
 from components.model import Model
 from components.table import Table
 from components.world import Handle
-from game import library, models
+from game import models
 from game.desk import Desk
 from game.document import document
-from game.locks import lock_file
+from game.saved import library
+from game.saved.locks import lock_file
 from systems.base import Phase, System
 
 INTERVAL = 2.0  # s between spares of the same model, at least

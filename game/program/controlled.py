@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from components.model import Model
-from game.program_binding import Bound, bind
-from game.program_loops import RodLoop, indented
-from game.program_writer import DRIFT, RATE, SHIFT, Writer
+from game.program.binding import Bound, bind
+from game.program.loops import RodLoop, indented
+from game.program.writer import DRIFT, RATE, SHIFT, Writer
 from systems.base import ACCOUNTS, Driver, StepSystem
 
 MARKS = 4  # per rod and branching system: branch, margin, its slope as the step starts, whether it is watched

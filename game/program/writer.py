@@ -12,8 +12,8 @@ import numpy as np
 
 from components.model import Model
 from components.rod import is_warm
-from game.program_binding import PROVIDED, TRIAL, Bound, bind, check_names, find
-from game.program_loops import RodLoop, indented
+from game.program.binding import PROVIDED, TRIAL, Bound, bind, check_names, find
+from game.program.loops import RodLoop, indented
 from systems.base import ACCOUNTS, Commit, Driver, Law, StepSystem
 from systems.physics.automatic import SMALL
 

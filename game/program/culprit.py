@@ -9,10 +9,10 @@ import numpy as np
 
 from components.model import Model
 from components.snapshot import Snapshot
-from game.program import Program
-from game.program_binding import ProgramError, bind
-from game.program_rows import in_turn
-from game.program_writer import REVIEW_INTERVAL
+from game.program.binding import ProgramError, bind
+from game.program.program import Program
+from game.program.rows import in_turn
+from game.program.writer import REVIEW_INTERVAL
 from systems.base import StepSystem
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ import numpy as np
 from components.model import Model
 from components.paths import Paths
 from components.snapshot import Snapshot
-from game.encounter_kernels import kernels
-from game.impacts import Impacts
+from game.collisions.encounter_kernels import kernels
+from game.collisions.impacts import Impacts
 from systems.collision.system import contacts_of
 from systems.collision.vicinity import LASTING, LEFT_ALONE, WATCHED, Vicinity
 from systems.near import Floats, Rows

@@ -1,0 +1,1 @@
+"""The force method: its guide, the words it is told in, and its report without a window."""

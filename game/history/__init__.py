@@ -1,0 +1,1 @@
+"""The past of a session: undo and redo, and the moments of a run to go back to."""

@@ -1,0 +1,1 @@
+"""Scripted sessions: written, recorded, replayed, watched."""
