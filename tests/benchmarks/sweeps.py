@@ -7,9 +7,9 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from game.cores import cores
 from game.reports.report import Analysis
 from game.session import Session
-from game.sweeps.batch_program import cores
 from game.sweeps.execution import outcomes
 from game.sweeps.plan import Plan
 from game.sweeps.run import plan_of, sweep

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,12 @@ from tests.benchmarks.ceiling import bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, mesh
 from tests.reference.scenes_of_discs import gas, packed
 from tests.stability.cases import damped
+
+
+@pytest.mark.parametrize("name", bench.NAMES)
+def test_every_benchmark_can_be_run(name: str) -> None:
+    """A name that moved is noticed here, not by whoever runs the benchmark next."""
+    assert callable(importlib.import_module(f"tests.benchmarks.{name}").report)
 
 
 @pytest.mark.parametrize("rods", [100, 1_000, 10_000])
