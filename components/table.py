@@ -201,12 +201,21 @@ class Table(Generic[H]):
 
     def free_names(self, count: int, besides: Iterable[str] = ()) -> list[str]:
         """The `count` names of the form "rod n" with the smallest n that neither are used nor among `besides`."""
-        while count and f"{self.kind.noun} {self._lowest_number}" in self._by_name:
-            self._lowest_number += 1
-        others = set(besides)
-        numbered = (f"{self.kind.noun} {n}" for n in itertools.count(self._lowest_number))
-        free = (name for name in numbered if name not in self._by_name and name not in others)
-        return list(itertools.islice(free, count))
+        noun, used, others = self.kind.noun, self._by_name, set(besides)
+        if count:
+            numbers = itertools.count(self._lowest_number)
+            self._lowest_number = next(n for n in numbers if f"{noun} {n}" not in used)
+        found: list[str] = []
+        first = self._lowest_number
+        while (wanted := count - len(found)) > 0:
+            tried = [f"{noun} {n}" for n in range(first, first + wanted)]
+            found += [name for name in tried if name not in used and name not in others]
+            first += wanted
+        return found
+
+    def taken(self, names: Sequence[str]) -> set[str]:
+        """Those of these names that entities have."""
+        return self._by_name.keys() & names
 
     def renamed(self, rows: NDArray[np.intp], old: Column) -> None:
         """Keep the index of names in step after these rows had the names `old`."""

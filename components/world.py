@@ -254,6 +254,8 @@ class World:
         """Raise FieldError unless the names are not empty and, after a renaming, unique in the table."""
         noun = table.kind.noun
         given, free = set[str](), set(instead_of)
+        if all(map(str.strip, names)) and len(set(names)) == len(names) and table.taken(names) <= free:
+            return
         for name in names:
             if not name.strip():
                 raise FieldError(f"The name of a {noun} is empty; type at least one character.")
@@ -372,12 +374,14 @@ class World:
 
     def delete(self, handles: Iterable[Handle]) -> None:
         """Delete entities and whatever refers to them."""
-        doomed = [handle for handle in handles if handle.exists]
-        for handle in doomed:
-            if handle.single:
-                raise ValueError(f"There is exactly one {handle.noun}; it cannot be deleted.")
+        doomed: list[int] = []
+        for name, rows in self.rows_of(handles).items():
+            table = self.tables[name]
+            if table.kind.single and len(rows):
+                raise ValueError(f"There is exactly one {table.kind.noun}; it cannot be deleted.")
+            doomed += table.entities[rows].tolist()
         if doomed:
-            self.execute(Delete(tuple(self._ids(doomed))))
+            self.execute(Delete(tuple(doomed)))
 
     def execute(self, command: Command) -> None:
         """Apply a command and report its inverse to the log; of a group that raises, nothing happened."""
@@ -455,9 +459,10 @@ class World:
             rows = doomed[table.name]
             references = self._references_as_entities(table, rows)
             handles, columns = table.remove(rows)
-            for handle in handles:
-                self.row_of_entity[handle.entity] = -1
-                esper.remove_component(handle.entity, table.kind)
+            entities = [handle.entity for handle in handles]
+            self.row_of_entity[entities] = -1
+            for entity in entities:
+                esper.remove_component(entity, table.kind)
             self._remap_references(table, rows, inserted=False)
             removed.append(Removed(table.name, rows, tuple(handles), columns | references))
         return Restore(tuple(reversed(removed)))
@@ -557,11 +562,18 @@ class World:
         at, rows = self._tagged.get(tag, (None, {}))
         if at != now:
             self.activate()
-            marked = np.zeros(len(self.row_of_entity), dtype=bool)
-            marked[[entity for entity, _ in esper.get_component(tag)]] = True
-            rows = {t.name: np.flatnonzero(marked[t.entities]) for t in self.tables.values()}
+            rows = self._rows_by_table([entity for entity, _ in esper.get_component(tag)])
             self._tagged[tag] = (now, rows)
         return rows[table]
+
+    def rows_of(self, handles: Iterable[Handle]) -> dict[str, NDArray[np.intp]]:
+        """Rows, ascending, of those elements that exist, by table. Raises LookupError for those of another model."""
+        return self._rows_by_table(self._ids(list(handles)))
+
+    def _rows_by_table(self, entities: list[int]) -> dict[str, NDArray[np.intp]]:
+        marked = np.zeros(len(self.row_of_entity), dtype=bool)
+        marked[entities] = True
+        return {table.name: np.flatnonzero(marked[table.entities]) for table in self.tables.values()}
 
     def handle(self, entity: int) -> Handle:
         """The handle of an existing entity. Raises LookupError."""

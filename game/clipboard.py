@@ -19,7 +19,7 @@ from components.table import Table, fields_of
 from components.world import Handle
 from game.document import ModelError, document_of, parse
 from game.models import laid_out
-from systems.edit.moving import movable, rows_of
+from systems.edit.moving import moving_rows
 from systems.edit.refusal import Refusal
 
 Rows = NDArray[np.int64]
@@ -51,15 +51,13 @@ def chosen(model: Model, handles: Iterable[Handle]) -> Chosen:
 
     And of the elements of mods among them. Raises Refusal if there are none.
     """
-    selected = list(handles)
-    particles = rows_of(model, movable(model, selected))
-    others = {kind: rows_of(model, [h for h in selected if type(h) is kind]) for kind in _added()}
-    others = {kind: rows for kind, rows in others.items() if len(rows)}
+    rows = model.rows_of(handles)
+    particles = moving_rows(model, rows)
+    others = {kind: rows[kind.table] for kind in _added() if len(rows[kind.table])}
     if not len(particles) and not others:
         raise Refusal("Nothing is selected that can be copied; click a particle or a rod first.")
-    rods = rows_of(model, [handle for handle in selected if isinstance(handle, Rod)])
     loads = np.flatnonzero(np.isin(model.loads.on, particles))
-    return {Particle: particles, Rod: rods, Load: loads, **others}
+    return {Particle: particles, Rod: rows["rods"], Load: loads, **others}
 
 
 def written(model: Model, rows: Chosen) -> str:
@@ -139,6 +137,6 @@ def _columns(model: Model, kind: Kind, rows: Rows, place: Rows) -> dict[str, Any
 
 def _free_names(table: Table[Any], names: list[str]) -> list[str]:
     """The names, those that are taken replaced by new ones."""
-    taken = [name in table for name in names]
-    fresh = iter(table.free_names(sum(taken), besides=names))
-    return [next(fresh) if is_taken else name for name, is_taken in zip(names, taken, strict=True)]
+    taken = table.taken(names)
+    fresh = iter(table.free_names(len(taken), besides=names))
+    return [next(fresh) if name in taken else name for name in names]

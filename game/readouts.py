@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from components.field import FieldError
 from components.particle import Particle
 from components.rod import Rod
 from components.view import Readout
@@ -50,7 +51,11 @@ def _theory(session: Session) -> Iterator[Readout]:
     elif not session.desk.beside.is_small:
         yield Readout("Theory beside the run", ((f"more than {LARGEST} rods: use", "pinjoint verify"),))
     else:
-        theory, comparison = session.desk.beside.theories, session.desk.beside.comparison()
+        try:
+            theory, comparison = session.desk.beside.theories, session.desk.beside.comparison()
+        except FieldError:  # whoever runs or settles it is told which number it is
+            yield Readout("Theory beside the run", (("numbers too large or too small", ""),))
+            return
         yield Readout("Theory beside the run", tuple(_overview(session, theory, comparison)))
         for handle in session.selected[:MOST_ELEMENTS]:
             yield from _of_element(handle, comparison)

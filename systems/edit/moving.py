@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from components.field import Vector
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod
 from components.view import View
 from components.world import Handle
 from systems.edit.placing import resolution
@@ -20,11 +19,15 @@ Points = NDArray[np.float64]
 
 def movable(model: Model, handles: Iterable[Handle]) -> list[Particle]:
     """The particles that move with some elements: themselves, and the ends of rods; in row order."""
-    chosen = list(handles)
+    return [model.particles[row] for row in moving_rows(model, model.rows_of(handles)).tolist()]
+
+
+def moving_rows(model: Model, rows: Mapping[str, NDArray[np.intp]]) -> NDArray[np.intp]:
+    """Rows of the particles that move with elements in these rows, by table, ascending."""
     moves = np.zeros(model.particles.count, dtype=bool)
-    moves[rows_of(model, [handle for handle in chosen if isinstance(handle, Particle)])] = True
-    moves[model.rods.between[rows_of(model, [handle for handle in chosen if isinstance(handle, Rod)])]] = True
-    return [model.particles[row] for row in np.flatnonzero(moves).tolist()]
+    moves[rows["particles"]] = True
+    moves[model.rods.between[rows["rods"]]] = True
+    return np.flatnonzero(moves)
 
 
 class Movable:

@@ -55,10 +55,11 @@ def join(model: Model, first: Particle, second: Particle) -> Rod:
 def delete(model: Model, handles: Iterable[Handle]) -> None:
     """Delete elements with all that refer to them; the masses of what remains follow from the rods again."""
     doomed = list(handles)
+    rows = model.rows_of(doomed)
     rods = np.zeros(model.rods.count, dtype=bool)
-    rods[rows_of(model, [handle for handle in doomed if isinstance(handle, Rod)])] = True
+    rods[rows["rods"]] = True
     particles = np.zeros(model.particles.count, dtype=bool)
-    particles[rows_of(model, [handle for handle in doomed if isinstance(handle, Particle)])] = True
+    particles[rows["particles"]] = True
     rods |= particles[model.rods.between].any(axis=1)
     ends = np.zeros(model.particles.count, dtype=bool)
     ends[model.rods.between[rods]] = True

@@ -141,7 +141,8 @@ def _may_rest(model: Model, discs: Discs, factors: Sequence[float]) -> bool:
 def _meet(discs: Discs, found: Settlement, start: Start) -> bool:
     """True if discs overlap that do not at the beginning, or move so far that they may pass an obstacle."""
     places = [start.displacement, *(state.displacement for state in found.states)]
-    if len(discs.obstacles) and max(np.hypot(*(end - places[0]).T).max() for end in places) > discs.smallest:
+    farthest = max(np.hypot(*(end - places[0]).T).max(initial=0.0) for end in places)
+    if len(discs.obstacles) and farthest > discs.smallest:
         return True
     return any(len(discs.touching(displacement)) for displacement in places[1:])
 

@@ -75,6 +75,13 @@ def test_without_rods_or_with_very_many_it_says_so() -> None:
     assert shown(large)["Theory beside the run"] == {"more than 2000 rods: use": "pinjoint verify"}
 
 
+def test_numbers_that_cannot_be_computed_with_do_not_stop_the_picture() -> None:
+    session = Session.open("isostatic")
+    session.particles["B"].force = (1e300, 0.0)
+    session.press("m")
+    assert shown(session)["Theory beside the run"] == {"numbers too large or too small": ""}
+
+
 def test_the_energy_account_on_demand() -> None:
     session = Session.open("overshoot_yield")
     session.run(until="rest")

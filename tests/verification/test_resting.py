@@ -239,6 +239,10 @@ def test_a_ball_rests_on_the_floor_and_falls_beside_it() -> None:
     assert "Nothing stops ball, which moves down." in beside.message
 
 
+def test_a_floor_alone_is_settled() -> None:
+    assert settled(walled([], [], ([-1, 0], [1, 0]))).status == "equilibrium"
+
+
 def test_a_ball_rests_in_a_corner_of_slopes() -> None:
     """Between 1:1 and 1:2, at the distance r from both; forces mg sin β / sin(α + β) on the slope of angle α."""
     document = walled([particle("ball", 0.2, 1, mass=2.0, radius=0.1)], [], ([-1, 1], [0, 0]), ([0, 0], [2, 1]))
