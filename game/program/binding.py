@@ -91,7 +91,7 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
             f"The kernel of {system.name} is not compiled; put `@compiled` of systems.kernels above it."
         )
     parameters = tuple(inspect.signature(plain).parameters)
-    arrays = {name: _read_only(array) for name, array in system.arrays(model).items()}
+    arrays = {name: read_only(array) for name, array in system.arrays(model).items()}
     bound = Bound(system, function, parameters, arrays, kernel)
     for name in bound.arrays:
         if _is_column(name, model):
@@ -102,7 +102,7 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     return bound
 
 
-def _read_only(array: NDArray[Any]) -> NDArray[Any]:
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
     """A view that no kernel compiles to write to; the system itself still may, between steps."""
     view = array.view()
     view.flags.writeable = False

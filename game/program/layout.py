@@ -24,9 +24,9 @@ Numbers = NDArray[np.intp]
 class Layout:
     """Which particles and rods of a model a program holds in which of its rows.
 
-    particles, rods: which one is in each row. row: of each particle. ends: rows of the particles at the ends
-    of each row's rod. first_particle, first_rod: where blocks begin, after them the rods between blocks, and
-    where these end.
+    particles, rods: which one is in each row. row: of each particle, -1 if it is left out. ends: rows of the
+    particles at the ends of each row's rod. first_particle, first_rod: where blocks begin, after them the rods
+    between blocks, and where these end.
     """
 
     particles: Numbers
@@ -35,6 +35,13 @@ class Layout:
     ends: NDArray[np.uint32]
     first_particle: Numbers
     first_rod: Numbers
+
+    @classmethod
+    def in_order(cls, model: Model) -> Layout:
+        """A model as it is, in one block."""
+        rows, rods = np.arange(model.particles.count), np.arange(model.rods.count)
+        limits = (np.array([0, count, count], dtype=np.intp) for count in (len(rows), len(rods)))
+        return cls(rows, rods, rows, model.rods.between, *limits)
 
     @classmethod
     def of(cls, model: Model) -> Layout:
@@ -53,6 +60,32 @@ class Layout:
         rods = np.argsort(block_of, kind="stable")
         first_rod = np.searchsorted(block_of[rods], np.arange(blocks + 2))
         return cls(particles, rods, row, ends[rods].astype(np.uint32), first_particle, first_rod)
+
+    def part(self, moving: NDArray[np.bool_]) -> Layout:
+        """What is left without the rods that hold none of these particles, in the same order and blocks.
+
+        moving: which particles, shape (n,). Those at the other ends of their rods stay, too.
+        """
+        here = moving[self.particles]
+        rods = np.asarray(here[self.ends].any(axis=1))
+        here[self.ends[rods]] = True
+        particles = self.particles[here]
+        row = np.full_like(self.row, -1)
+        row[particles] = np.arange(len(particles))
+        return Layout(
+            particles,
+            self.rods[rods],
+            row,
+            row[self.particles[self.ends[rods]]].astype(np.uint32),
+            _remaining(self.first_particle, here),
+            _remaining(self.first_rod, rods),
+        )
+
+
+def _remaining(first: Numbers, stays: NDArray[np.bool_]) -> Numbers:
+    """Where blocks begin of which these rows stay."""
+    before = np.concatenate([[0], np.cumsum(stays)]).astype(np.intp)
+    return before[first]
 
 
 def _along_curve(position: NDArray[np.float64]) -> NDArray[np.uint64]:

@@ -113,7 +113,7 @@ class Program:
     def bind(self) -> None:
         """Take hold of the model's columns; needed after every change of its document."""
         model = self.model
-        particles, rods = model.particles.count, model.rods.count
+        particles, rods = self._rows("particles"), self._rows("rods")
         extra: dict[str, Any] = {}
         for system in self.systems:
             extra.update(bind(system, model).arrays)
@@ -141,6 +141,10 @@ class Program:
         controls = self.driver.estimates_error and settings.time_step is None
         self.tolerance = settings.tolerance if controls else 0.0
         self._state_revision = -1
+
+    def _rows(self, table: str) -> int:
+        """How many of a table it holds."""
+        return self.model.tables[table].count
 
     def _column(self, path: str) -> Any:
         """A column, "table.field", to read."""
