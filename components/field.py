@@ -195,12 +195,12 @@ class Field(Generic[T]):
         if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
             raise FieldError(f"{where}: {title} is {value!r}; it must be a number.")
         try:
-            number: Any = float(value) if self.dtype is float else int(value)
-        except (OverflowError, ValueError):  # 10**400 as a float; infinity as an integer
+            number: Any = float(value)
+        except OverflowError:  # 10**400
             number = math.inf
         if not math.isfinite(number):
             raise FieldError(f"{where}: {title} is {number}; it must be a finite number.")
-        if self.dtype is not float and (number != value or number.bit_length() > 63):
+        if self.dtype is not float and ((number := int(value)) != value or number.bit_length() > 63):
             raise FieldError(f"{where}: {title} is {value}; it must be a whole number below 2^63.")
         problem = self.limit_broken_by(number)
         if problem:

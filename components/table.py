@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Column, Field, Role
+from components.spelling import missing
 
 if TYPE_CHECKING:
     from components.world import Handle, World
@@ -114,7 +115,7 @@ class Table(Generic[H]):
     def __getitem__(self, key: str | int) -> H:
         if isinstance(key, str):
             if key not in self._by_name:
-                raise KeyError(self.world.missing(self.name, key, self._by_name))
+                raise KeyError(missing(self.name, key, self._by_name))
             return self._by_name[key]
         return self.handles[key]
 
@@ -122,7 +123,7 @@ class Table(Generic[H]):
         if name in Table.__slots__ or name.startswith("_"):
             raise AttributeError(name)
         if name not in self.fields:
-            raise AttributeError(f"Table {self.name} has no column '{name}'.")
+            raise AttributeError(missing(f"columns of {self.name}", name, self.fields))
         return self.column(name)
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -131,7 +132,7 @@ class Table(Generic[H]):
         elif name in self.fields:
             self.world.assign(self.handles, name, value)
         else:
-            raise AttributeError(f"Table {self.name} has no column '{name}'.")
+            raise AttributeError(missing(f"columns of {self.name}", name, self.fields))
 
     def __repr__(self) -> str:
         few = ", ".join(self.names[:6]) if "name" in self.fields else ""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import itertools
 import weakref
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 
 from components.commands import Assign, Command, Create, Custom, Delete, Group, Removed, Restore
 from components.field import Column, Field, FieldError, Role, same
+from components.spelling import missing
 from components.table import Table, living
 
 Layout = tuple[tuple[str, tuple[str, ...]], ...]
@@ -230,7 +230,7 @@ class World:
     def _settable(self, table: Table[Any], name: str, where: str) -> Field[Any]:
         """The Field that takes what is assigned to a Field. Raises FieldError."""
         if name not in table.fields:
-            raise FieldError(self.missing(f"Fields of {table.name}", name, table.fields))
+            raise FieldError(missing(f"Fields of {table.name}", name, table.fields))
         field = table.fields[name]
         if field.role is not Role.DERIVED:
             return field
@@ -269,13 +269,6 @@ class World:
         if "name" not in table.fields:
             return handle.noun
         return _called(handle.noun, table._columns["name"][self.row(handle)])
-
-    @staticmethod
-    def missing(table: str, name: str, present: Iterable[str]) -> str:
-        """The sentence that says that a name is not there, and which one comes nearest."""
-        nearest = difflib.get_close_matches(name, list(present), n=1, cutoff=0.4)
-        hint = f"; did you mean '{nearest[0]}'?" if nearest else "."
-        return f"There is no '{name}' among the {table}{hint}"
 
     # --- columns for systems -------------------------------------------------------------------------
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import difflib
 import json
 import os
 import sys
@@ -15,6 +14,7 @@ from typing import Any
 from components.field import FieldError
 from components.model import Model
 from components.settings import INTEGRATORS
+from components.spelling import nearest
 from game import __version__, bench, models
 from game.arguments import (
     BAD_INPUT,
@@ -85,9 +85,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _refuse_misspelt(word: str) -> None:
     """Refuse a word that is no model but nearly a command. Raises UsageError."""
-    nearest = difflib.get_close_matches(word, COMMANDS, n=1, cutoff=0.75)
-    if nearest and word not in models.bundled() and not Path(word).exists():
-        raise UsageError(f"There is no command '{word}'; did you mean '{nearest[0]}'?")
+    near = nearest(word, COMMANDS, cutoff=0.75)
+    if near and word not in models.bundled() and not Path(word).exists():
+        raise UsageError(f"There is no command '{word}'; did you mean '{near}'?")
 
 
 def _open(words: Sequence[str]) -> int:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
 import itertools
 import math
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Callable, Collection, Mapping, Sequence, Set
 from dataclasses import dataclass
 from types import MappingProxyType, NoneType
 from typing import Any, NoReturn
@@ -23,6 +22,7 @@ from components.model import ADDED, Model
 from components.particle import Particle, check_velocities
 from components.rod import Rod
 from components.settings import Settings
+from components.spelling import missing, remedy
 from components.table import fields_of
 from components.world import Handle
 
@@ -116,6 +116,7 @@ def _read_added(model: Model, kinds: Any) -> None:
         if not isinstance(name, str) or "." not in name or not isinstance(elements, list | tuple):
             _fail(path, f'{name!r} must be like "mod.Kind": […].')
         if name not in ADDED:
+            _refuse_misspelt(name, ADDED, path)
             model.foreign_kinds[name] = _copied(elements, f"{path}.{name}")
     for name, kind in ADDED.items():  # what refers to another comes after it
         if name in kinds:
@@ -126,8 +127,9 @@ def _migrated(document: Any) -> Mapping[str, Any]:
     """The document in the present version of the format."""
     if not isinstance(document, Mapping):
         _fail("$", f"it must be an object with the key 'format', not {_kind_of(document)}.")
-    if document.get("format") != FORMAT:
-        _fail("$.format", f'it is {document.get("format")!r}; a model file has "format": "{FORMAT}".')
+    stated = document.get("format")
+    if not isinstance(stated, str) or stated != FORMAT:
+        _fail("$.format", f'it is {stated!r}; a model file has "format": "{FORMAT}".')
     version = document.get("version")
     if isinstance(version, bool) or not isinstance(version, int):
         _fail("$.version", f'it is {version!r}; it must be a whole number, now "version": {VERSION}.')
@@ -196,9 +198,9 @@ def _refuse_unknown(
             continue
         if kind is not None and key in {field.key for field in fields_of(kind) if not field.component}:
             _fail(where, f"'{key}' is computed from the rest and is no part of a model file; remove it.")
-        nearest = difflib.get_close_matches(str(key), keys, n=1)
-        remedy = f"did you mean '{nearest[0]}'?" if nearest else f"the keys are {', '.join(keys)}."
-        _fail(where, f"there is no key '{key}' here; {remedy}")
+        if added := [name for name, of in ADDED.items() if kind is None and str(key) in (name, of.table)]:
+            _fail(where, f'there is no key \'{key}\' here; write "{FOREIGN}": {{"{added[0]}": […]}}.')
+        _fail(where, f"there is no key '{key}' here; {remedy(str(key), keys)}")
 
 
 def _kind_of(value: Any) -> str:
@@ -220,7 +222,10 @@ def _read(model: Model, section: _Section) -> None:
         for name, column in columns.items():
             model.apply(Assign(kind.table, name, (handles[0].entity,), column))
     else:
-        handles = model.create(kind, len(section.elements), **columns)
+        try:
+            handles = model.create(kind, len(section.elements), **columns)
+        except FieldError as error:  # what holds between the facts of a mod's element
+            raise ModelError(f"{section.path}: {error}") from None
     if FOREIGN in section.keys:
         _keep_foreign(model, section, handles)
 
@@ -283,7 +288,7 @@ def _rows_by_name(model: Model, section: _Section, field: Field[Any]) -> Column:
             _fail(section.where(row, field.key), f"it is {value!r}; it must be {form}.")
         for name in names:
             if name not in row_of:
-                _fail(section.where(row, field.key), model.missing(target.name, name, row_of))
+                _fail(section.where(row, field.key), missing(target.name, name, row_of))
         column[row] = [row_of[name] for name in names] if field.shape else row_of[value]
     return column
 
@@ -353,8 +358,18 @@ def _check_components(section: _Section) -> None:
         for name, values in components.items():
             if not isinstance(name, str) or "." not in name or not isinstance(values, Mapping):
                 _fail(where, f'{name!r} must be like "mod.Component": {{…}}.')
+            if name not in known:
+                _refuse_misspelt(name, known, where)
             if name in known:
                 _refuse_unknown(values, list(known[name]), f"{where}: {name}")
+
+
+def _refuse_misspelt(name: str, known: Collection[str], where: str) -> None:
+    """What is kept unread belongs to a mod that is not loaded; one that is knows all that is its own."""
+    components = itertools.chain.from_iterable(map(_components, (*SECTIONS.values(), *ADDED.values())))
+    mod = name.partition(".")[0]
+    if mod in {loaded.partition(".")[0] for loaded in (*ADDED, *components)}:
+        _fail(where, f"the mod '{mod}' has no '{name}' here; {remedy(name, known)}")
 
 
 def _component_section(section: _Section, component: str) -> _Section:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import difflib
 import json
+import math
 import os
 import re
 import shutil
@@ -18,6 +18,7 @@ from typing import Any, NoReturn
 import msgspec
 
 from components.model import Model
+from components.spelling import nearest
 from game.document import ModelError, document, parse
 
 _ENCODER = msgspec.json.Encoder()
@@ -83,8 +84,8 @@ def _found(source: str | Path) -> Path | Traversable:
 
 
 def _missing(source: str | Path) -> ModelError:
-    nearest = difflib.get_close_matches(Path(source).stem, bundled(), n=1, cutoff=0.6)
-    hint = f"; did you mean '{nearest[0]}'?" if nearest else "."
+    near = nearest(Path(source).stem, bundled(), cutoff=0.6)
+    hint = f"; did you mean '{near}'?" if near else "."
     return ModelError(
         f"There is no file and no bundled model '{source}'{hint} pinjoint --help lists the bundled models."
     )
@@ -123,8 +124,17 @@ def _decoded_strictly(raw: bytes, source: str) -> Any:
     def refuse(constant: str) -> NoReturn:
         raise ModelError(f"{source} contains {constant}; every number must be finite.")
 
+    def finite(number: str) -> float:
+        return (
+            float(number)
+            if math.isfinite(float(number))
+            else refuse(number if len(number) < 20 else f"{number[:9]}…")
+        )
+
     try:
-        return json.loads(raw, object_pairs_hook=_Pairs, parse_constant=refuse)
+        return json.loads(
+            raw, object_pairs_hook=_Pairs, parse_constant=refuse, parse_float=finite, parse_int=finite
+        )
     except (json.JSONDecodeError, UnicodeDecodeError) as error:
         raise _not_json(source, error) from None
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from components.field import Field
 from components.model import Model
+from components.spelling import remedy
 from components.table import Table
-from components.world import Handle
 from game.reports.results import ENERGIES
+from game.target import PathError, Target, locate_one
 
 if TYPE_CHECKING:
     from game.session import Session
@@ -52,34 +53,27 @@ def quantity(model: Model, path: str) -> Quantity:
         return _energy(path, rest)
     if table not in model.tables or not rest:
         raise QuantityError(f"There is no quantity '{path}'; {FORM}.")
-    handle, facts = _element(model.tables[table], rest, path)
-    name, _, axis = facts.partition(".")
-    field = model.tables[table].fields.get(name)
-    if field is None or field.dtype not in (float, int, bool):
-        numbers = [f.name for f in model.tables[table].fields.values() if f.dtype in (float, int, bool)]
-        raise QuantityError(f"{path}: there is no number '{name}'; there are {', '.join(numbers)}.")
-    if bool(field.shape) != (axis in ("x", "y")):
-        raise QuantityError(f"{path}: write {name}{'.x or ' + name + '.y' if field.shape else ' only'}.")
-    return _of_element(path, handle, field, axis)
+    try:
+        target = locate_one(model, path, _numbers)
+    except PathError as error:
+        raise QuantityError(f"{path}: {error}") from None
+    if target.field.shape and not target.axis:
+        raise QuantityError(f"{path}: write {target.key}.x or {target.key}.y.")
+    return _of_element(path, target)
+
+
+def _numbers(table: Table[Any]) -> Mapping[str, Field[Any]]:
+    return {name: field for name, field in table.fields.items() if field.dtype in (float, int, bool)}
 
 
 def _energy(path: str, name: str) -> Quantity:
     if name not in ENERGIES:
-        raise QuantityError(f"{path}: there is no energy '{name}'; there are {', '.join(ENERGIES)}.")
+        raise QuantityError(f"{path}: there is no energy '{name}'; {remedy(name, ENERGIES)}")
     return Quantity(path, name.replace("_", " "), "J", lambda session: float(session.energy.as_dict()[name]))
 
 
-def _element(table: Table[Handle], rest: str, path: str) -> tuple[Handle, str]:
-    """The element that a path names (names may hold dots) and what follows."""
-    if table.kind.single:
-        return table[0], rest
-    cuts = [index for index, character in enumerate(rest) if character == "." and rest[:index] in table]
-    if not cuts:
-        raise QuantityError(f"{path}: {table.world.missing(table.name, rest.partition('.')[0], table.names)}")
-    return table[rest[: cuts[-1]]], rest[cuts[-1] + 1 :]
-
-
-def _of_element(path: str, handle: Handle, field: Field[object], axis: str) -> Quantity:
+def _of_element(path: str, target: Target) -> Quantity:
+    handle, field, axis = target.handles[0], target.field, target.axis
     unit, factor = field.shown
     of = handle.world.describe(handle)
     name = f"{field.title}{f' {axis}' if axis else ''} of {of}"

@@ -20,6 +20,7 @@ from components.particle import Particle
 from components.paths import resting
 from components.rod import Rod
 from components.settings import Settings
+from components.spelling import missing
 from components.table import Table
 from components.tags import Selected
 from components.view import View
@@ -232,7 +233,7 @@ class Session:
     def table(self, name: str) -> Table[Any]:
         """The elements of any kind by name, those that mods add included: session.table("walls")["floor"]."""
         if name not in self.model.tables:
-            raise KeyError(self.model.missing("tables", name, self.model.tables))
+            raise KeyError(missing("tables", name, self.model.tables))
         return self.model.tables[name]
 
     @property
@@ -489,7 +490,7 @@ class Session:
     def act(self, name: str, pixel: Vector | None = None) -> None:
         """Perform a named action with the pointer at a pixel; what it refuses is said in `notice`."""
         if name not in ACTIONS:
-            raise ValueError(self.model.missing("actions", name, ACTIONS))
+            raise ValueError(missing("actions", name, ACTIONS))
         if name not in WHILE_DRAWING:
             self.leave_gesture()
         try:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from components.model import Model
+from components.spelling import missing
 
 if TYPE_CHECKING:
     from systems.statics.path import Curve, Goal
@@ -32,7 +33,7 @@ def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal
     if axis not in ("x", "y") or not np.isfinite(value):
         raise ValueError(f"'{until}' is no displacement; write it like B.y=-2.5, in m.")
     if name not in model.particles:
-        raise ValueError(model.missing("particles", name, model.particles.names))
+        raise ValueError(missing("particles", name, model.particles.names))
     particle, direction = model.particles[name], "xy".index(axis)
     if particle.fixed[direction]:
         raise ValueError(

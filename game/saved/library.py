@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 import time
 from pathlib import Path
 
 from platformdirs import user_data_path
 
+from components import spelling
 from game import models
 
 DATA_VARIABLE = "PINJOINT_DATA"  # names another folder than the system's own
@@ -71,7 +71,7 @@ def find(name: str) -> Path | str | None:
 def nearest(name: str) -> str | None:
     """The name of a saved or bundled model that comes nearest, if one does."""
     known = [*(path.stem for path in saved()), *models.bundled()]
-    return next(iter(difflib.get_close_matches(name.strip(), known, n=1, cutoff=0.5)), None)
+    return spelling.nearest(name.strip(), known)
 
 
 def written_age(path: Path) -> str:

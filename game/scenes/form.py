@@ -10,6 +10,7 @@ from components.box import WORD, Box
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.form import Form, Tile
+from components.spelling import missing
 from components.view import View
 from game.scenes.base import Scene, Stage
 from systems.forms import typing
@@ -149,7 +150,7 @@ class FormScene(Scene):
                 typing.select(self.form, box)
                 return
         titles = [box.title for box in self.form.boxes]
-        raise LookupError(self.form.missing("boxes", title, titles))
+        raise LookupError(missing("boxes", title, titles))
 
     def scroll(self, session: Session, rows: int) -> None:
         """Let so many rows go by."""

@@ -7,8 +7,16 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from components.spelling import missing
+from game.target import PathError, locate_one
+
 if TYPE_CHECKING:
     from game.session import Session
+
+_OF_SESSION = ("scene", "time", "message")
+_SECTIONS = ("energy", "force_method", "count")
+_NUMBERS = ("force", "delta_real", "delta_base", "delta_unit")  # of the force method
+_SETS = ("real", "base", "superposed")
 
 _EXPECTATION = re.compile(
     r"^(?P<path>.+?)\s*(?P<relation>≈|~|=|<|>)\s*(?P<value>.+?)(?:\s*(?:±|\+-)\s*(?P<slack>\S+))?\s*$"
@@ -54,32 +62,27 @@ def _holds(got: Any, relation: str, value: str, slack: str | None) -> bool:
 def read(session: Session, path: str) -> Any:
     """A quantity by its path: rods.AB.axial_force, particles.B.displacement.y, energy.imbalance, scene."""
     head, _, rest = path.strip().partition(".")
-    if head in ("scene", "time", "message"):
+    if head in _OF_SESSION:
         return getattr(session, head)
     if head == "energy":
-        return _one_of(session, session.energy.as_dict(), rest, "energies")
+        return _one_of(session.energy.as_dict(), rest, "energies")
     if head == "force_method":
         return _of_force_method(session, rest)
     if head == "count":
-        return len(_one_of(session, session.model.tables, rest, "tables"))
+        return len(_one_of(session.model.tables, rest, "tables"))
     if head not in session.model.tables:
-        raise LookupError(session.model.missing("quantities", head, session.model.tables))
-    table = session.model.tables[head]
-    component = None
-    if rest.endswith((".x", ".y")):
-        rest, component = rest[:-2], "xy".index(rest[-1])
-    name, _, field = rest.rpartition(".")
-    if field not in table.fields:
-        raise LookupError(session.model.missing(f"quantities of {head}", field, table.fields))
-    if not name and not table.kind.single:
-        raise LookupError(f"{path} names no {table.kind.noun}; write {head}.NAME.{rest}.")
-    value = getattr(table[name] if name else table[0], field)
-    return value if component is None else value[component]
+        raise LookupError(missing("quantities", head, [*_OF_SESSION, *_SECTIONS, *session.model.tables]))
+    try:
+        target = locate_one(session.model, path.strip())
+    except PathError as error:
+        raise LookupError(f"{path}: {error}") from None
+    value = getattr(target.handles[0], target.field.name)
+    return value["xy".index(target.axis)] if target.axis else value
 
 
-def _one_of(session: Session, found: Mapping[str, Any], name: str, what: str) -> Any:
+def _one_of(found: Mapping[str, Any], name: str, what: str) -> Any:
     if name not in found:
-        raise LookupError(session.model.missing(what, name, found))
+        raise LookupError(missing(what, name, found))
     return found[name]
 
 
@@ -99,11 +102,13 @@ def _of_force_method(session: Session, quantity: str) -> Any:
         return guide.part
     if quantity == "message":
         return words.message(guide)
-    what, _, rod = quantity.partition(".")
-    if guide.solution is not None and rod:  # a row of the final table
-        return float(getattr(guide.solution, what).axial_force[guide.model.rods[rod].row])
     if guide.solution is None:
         raise LookupError("nothing is released yet; pick an unknown in part 2 first.")
+    what, _, rod = quantity.partition(".")
+    if rod:  # a row of the final table
+        of_set = _one_of({name: getattr(guide.solution, name) for name in _SETS}, what, "sets")
+        return float(of_set.axial_force[guide.model.rods[rod].row])
     if quantity == "exact_force":
         return guide.exact[-1] if guide.exact is not None else None
-    return float(getattr(guide.solution, quantity).ravel()[-1])
+    found = {name: getattr(guide.solution, name) for name in _NUMBERS}
+    return float(_one_of(found, quantity, "quantities of the force method").ravel()[-1])

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from components.field import Column, FieldError
 from components.settings import AUTOMATIC
-from game.overrides import EVERY, Target, locate
 from game.program.program import Program
 from game.reports.results import ENERGIES, reported
 from game.simulation import at_rest_since
@@ -21,6 +20,7 @@ from game.sweeps.measure import Measure
 from game.sweeps.plan import Plan, Record
 from game.sweeps.stack import Stack
 from game.sweeps.variation import Random, Value
+from game.target import EVERY, Target, locate, settable
 from systems.physics.automatic import SMALL, stiffnesses, suited_to
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class Batches:
         self._programs: dict[Hashable, BatchProgram | None] = {}
         with specimen.taken_back():
             specimen.override(plan.overrides)
-            self._targets = [locate(specimen.model, path)[0] for path in plan.varied]
+            self._targets = [locate(specimen.model, path, settable)[0] for path in plan.varied]
             self._base = Stack.of(specimen.model, 1) if self._suits() else None
         self._loads_vary = any(target.table.name == "loads" for target in self._targets)
         rods, particles = specimen.model.rods.count, specimen.model.particles.count

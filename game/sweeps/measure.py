@@ -12,9 +12,9 @@ from typing import Any
 from components.field import Field
 from components.model import Model
 from components.table import Table
-from game.overrides import EVERY, OverrideError, locate
 from game.reports.results import ENERGIES, State, reported
 from game.sweeps.variation import SweepError
+from game.target import EVERY, PathError, locate
 
 _OF_THE_RUN = ("residual", "collisions")
 _TABLES = ("particles", "rods")
@@ -66,8 +66,8 @@ def _read(model: Model, path: str) -> list[Measure]:
     try:
         target, rest = locate(model, path, _reported)
         if rest:
-            raise OverrideError(f"'{rest}' follows the quantity; {_FORM}.")
-    except OverrideError as error:
+            raise PathError(f"'{rest}' follows the quantity; {_FORM}.")
+    except PathError as error:
         raise SweepError(f"--measure {path}: {error}") from None
     elements = target.table.names if target.element == EVERY else [target.element]
     return [
@@ -83,4 +83,4 @@ def _read(model: Model, path: str) -> list[Measure]:
 
 
 def _reported(table: Table[Any]) -> Mapping[str, Field[Any]]:
-    return {field.name: field for field in reported(table.name)}
+    return {field.name: field for field in reported(table.name)} if table.name in _TABLES else {}

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from components.model import Model
-from game.overrides import EVERY, OverrideError, Target, locate
+from game.overrides import read_value
+from game.target import EVERY, PathError, Target, locate, settable
 
 Value = float | bool | str | None
 
@@ -109,17 +110,17 @@ def _listed(path: str, values: Sequence[Value]) -> str:
 
 def _read(model: Model, text: str) -> Variation:
     try:
-        target, rest = locate(model, text)
+        target, rest = locate(model, text, settable)
         if target.field.shape and not target.axis:
-            raise OverrideError(f"vary one component, {target.field.key}.x or {target.field.key}.y.")
+            raise PathError(f"vary one component, {target.field.key}.x or {target.field.key}.y.")
         if rest.startswith("="):
             return Values(
                 target.path(target.element), _values(target, rest[1:]), _label(target, target.element)
             )
         if rest.startswith("~"):
             return _random(target, rest[1:])
-        raise OverrideError(f"it has no values; {FORMS}.")
-    except OverrideError as error:
+        raise PathError(f"it has no values; {FORMS}.")
+    except PathError as error:
         raise SweepError(f"--vary {text}: {error}") from None
 
 
@@ -133,22 +134,22 @@ def _values(target: Target, text: str) -> tuple[Value, ...]:
     parts = [part.strip() for part in text.split(":")]
     if len(parts) > 1 and target.field.dtype is float:
         return _range(parts)
-    values = tuple(target.read(part) for part in text.split(","))
+    values = tuple(read_value(target, part) for part in text.split(","))
     for value in values:
         if isinstance(value, str) and (target.field.dtype is not str or not value):
-            raise OverrideError(f"'{value}' is no value of {target.field.title}; {FORMS}.")
+            raise PathError(f"'{value}' is no value of {target.field.title}; {FORMS}.")
     return values
 
 
 def _range(parts: Sequence[str]) -> tuple[float, ...]:
     spaced = np.geomspace if parts[3:] == ["log"] else np.linspace
     if len(parts) not in (3, 4) or (len(parts) == 4 and parts[3] != "log"):
-        raise OverrideError(f"a range has a start, a stop and a count; {FORMS}.")
+        raise PathError(f"a range has a start, a stop and a count; {FORMS}.")
     start, stop = _finite(parts[0]), _finite(parts[1])
     if not (parts[2].isdecimal() and 1 <= int(parts[2]) <= MOST_VARIANTS):
-        raise OverrideError(f"'{parts[2]}' is no count; write a whole number from 1 on.")
+        raise PathError(f"'{parts[2]}' is no count; write a whole number from 1 on.")
     if spaced is np.geomspace and not start * stop > 0.0:
-        raise OverrideError("equal ratios do not reach or cross 0; leave :log out, or change the limits.")
+        raise PathError("equal ratios do not reach or cross 0; leave :log out, or change the limits.")
     return tuple(spaced(start, stop, int(parts[2])).tolist())
 
 
@@ -156,22 +157,22 @@ def _random(target: Target, text: str) -> Random:
     found = re.fullmatch(r"\s*(\w+)\s*\(([^,()]+),([^,()]+)\)\s*", text)
     kinds = ", ".join(DISTRIBUTIONS)
     if found is None or found[1] not in DISTRIBUTIONS:
-        raise OverrideError(
+        raise PathError(
             f"'{text}' is no distribution; write one of {kinds} with its two parameters, such as"
             " normal(164640,5%) or uniform(100,300)."
         )
     if target.field.dtype is not float:
-        raise OverrideError(f"{target.field.title} is no number; list its values after =.")
+        raise PathError(f"{target.field.title} is no number; list its values after =.")
     kind, first, second = found[1], _finite(found[2]), found[3].strip()
     if kind == "uniform":
         parameters = (first, _finite(second))
         if not parameters[0] < parameters[1]:
-            raise OverrideError("write uniform(LOWEST,HIGHEST), the lowest first.")
+            raise PathError("write uniform(LOWEST,HIGHEST), the lowest first.")
     else:
         deviation = abs(first) * _finite(second[:-1]) / 100.0 if second.endswith("%") else _finite(second)
         parameters = (first, deviation)
         if not deviation >= 0.0 or (kind == "lognormal" and not first > 0.0):
-            raise OverrideError("the deviation must be at least 0, and a lognormal mean above 0.")
+            raise PathError("the deviation must be at least 0, and a lognormal mean above 0.")
     # Strengths and stiffnesses of different rods are independent: each has its own draw.
     elements = target.table.names if target.element == EVERY else [target.element]
     return Random(tuple(map(target.path, elements)), kind, parameters, _label(target, elements[0]))
@@ -183,7 +184,7 @@ def _finite(text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise OverrideError(f"'{text.strip()}' is not a finite number; {FORMS}.")
+        raise PathError(f"'{text.strip()}' is not a finite number; {FORMS}.")
     return value
 
 

@@ -17,6 +17,7 @@ from components.extremes import incomputable
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
+from components.spelling import missing
 from systems.statics.equations import Array, Structure
 from systems.statics.explain import cables_named, describe_motion
 from systems.statics.external import external_forces
@@ -114,7 +115,7 @@ def find_unknown(model: Model, name: str) -> Unknown:
     choices = [*model.rods.names, *supports]
     if name in model.particles:
         raise ForceMethodError(f"'{name}' is a particle; say which constraint, such as {name}.x or {name}.y.")
-    raise ForceMethodError(model.missing("rods and constraints", name, choices))
+    raise ForceMethodError(missing("rods and constraints", name, choices))
 
 
 class _Linear:

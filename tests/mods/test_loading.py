@@ -276,6 +276,9 @@ def test_a_key_that_a_component_does_not_have_is_refused(write_mod: Write) -> No
     wrong = {"name": "A", "position": [0, 0], "components": {"pear.Sail": {"aera": 1.0}}}
     with pytest.raises(ValueError, match=r"particles\[0\].components.*pear.Sail.*'aera'.*did you mean 'area'"):
         Session.open({**BALL, "particles": [wrong]})
+    wrong["components"] = {"pear.Sial": {}}
+    with pytest.raises(ValueError, match=r"the mod 'pear' has no 'pear.Sial' here; did you mean 'pear.Sail'"):
+        Session.open({**BALL, "particles": [wrong]})
 
 
 # --- the command line ------------------------------------------------------------------------------------------------

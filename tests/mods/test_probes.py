@@ -27,10 +27,10 @@ BOX = (0.0, 0.0, 300.0, 150.0)
     ("path", "said"),
     [
         ("rods.XY.axial_force", "There is no 'XY' among the rods"),
-        ("rods.AB.colour", "there is no number 'colour'; there are .*axial_force"),
+        ("rods.AB.colour", "there is no key 'colour'; choose one of .*axial_force"),
         ("particles.B.displacement", "write displacement.x or displacement.y"),
         ("rods.AB.strain.x", "write strain only"),
-        ("energy.heat", "there is no energy 'heat'; there are kinetic"),
+        ("energy.heat", "there is no energy 'heat'; choose one of kinetic"),
         ("speed", "There is no quantity 'speed'; write it like"),
     ],
 )

@@ -38,7 +38,7 @@ def test_a_whole_column_is_assigned_as_one_command(session: Session) -> None:
         ("mass", -1, FieldError, "particle A: mass is -1 kg"),
         ("name", "x", FieldError, "already"),
         ("reaction", 0, FieldError, "computed and cannot be set"),
-        ("masss", 1, AttributeError, "no column 'masss'"),
+        ("masss", 1, AttributeError, "There is no 'masss' among the columns"),
     ],
 )
 def test_a_column_that_cannot_be_assigned_says_why(

@@ -287,7 +287,7 @@ def test_a_plot_is_a_picture_with_a_panel_per_measure(found: Results, tmp_path: 
 # --- refusals --------------------------------------------------------------------------------------------
 
 VARY = {
-    "rods.CX.stiffness=1:2:3": "There is no 'CX' among the rods; did you mean 'CA'?",
+    "rods.CX.stiffness=1:2:3": "There is no 'CX' among the rods; choose one of AB, BC, CA.",
     "rods.CA.stifness=1:2:3": "there is no key 'stifness'; did you mean 'stiffness'?",
     "rods.CA.axial_force=1:2:3": "'axial_force' is computed and cannot be set here",
     "rods.CA.stiffness": "it has no values; write PATH=START:STOP:COUNT",
@@ -319,7 +319,7 @@ def test_variations_that_make_no_sense(text: str, reason: str) -> None:
 
 
 MEASURE = {
-    "rods.CX.strain": "There is no 'CX' among the rods; did you mean 'CA'?",
+    "rods.CX.strain": "There is no 'CX' among the rods; choose one of AB, BC, CA.",
     "rods.CA.stiffness": "there is no key 'stiffness'; choose one of axial_force, length",
     "rods.CA.strain.x": "strain has no part 'x'; write strain only",
     "energy.heat": "there is no energy 'heat'; choose one of kinetic, elastic",

@@ -96,8 +96,10 @@ REFUSED: dict[str, tuple[Any, str, str]] = {
     "newer": (BASE | {"version": 2}, "$.version", "up to 1; update Pinjoint"),
     "version never was": (BASE | {"version": -1}, "$.version", "never was a version -1"),
     "version is a flag": (BASE | {"version": True}, "$.version", "it is True"),
+    "format": (BASE | {"format": np.array([1.0, 2.0])}, "$.format", "it is array([1., 2.])"),
+    "walls as a section": (BASE | {"walls": []}, "$", 'here; write "components": {"walls.Wall": […]}.'),
     "unknown section": (BASE | {"partikles": []}, "$", "'partikles' here; did you mean 'particles'?"),
-    "key is no text": (BASE | {5: []}, "$", "no key '5' here; the keys are format, version"),
+    "key is no text": (BASE | {5: []}, "$", "no key '5' here; choose one of format, version"),
     "title": (BASE | {"title": 5}, "$.title", "it is 5; it must be a text"),
     "section is null": (BASE | {"settings": None}, "$.settings", "must be an object, not null"),
     "section is no list": (BASE | {"rods": {}}, "$.rods", "must be a list, not an object"),
@@ -111,6 +113,7 @@ REFUSED: dict[str, tuple[Any, str, str]] = {
     "integrator": (BASE | {"settings": {"integrator": [1]}}, "$.settings.integrator", "is [1]; choose one of"),
     "steps": (BASE | {"state": {"steps": 1.5}}, "$.state.steps", "is 1.5; it must be a whole number"),
     "many steps": (BASE | {"state": {"steps": 2**70}}, "$.state.steps", "must be a whole number below"),
+    "very many steps": (BASE | {"state": {"steps": 10**400}}, "$.state.steps", "must be a finite number"),
     "two grids shown": (BASE | {"grids": [{}, {}]}, "$.grids[1].shown", "$.grids[0] is shown already"),
     "spacing": (BASE | {"grids": [{"spacing": [1, 0]}]}, "$.grids[0].spacing", "y is 0 m; it must be greater"),
 }
@@ -217,7 +220,7 @@ def test_what_the_data_layer_refuses_is_a_model_error(monkeypatch: pytest.Monkey
         raise FieldError("load 1: not today; come tomorrow.")
 
     monkeypatch.setattr(Load, "after_change", refuse)
-    with pytest.raises(ModelError, match=r"x\.json: load 1: not today"):
+    with pytest.raises(ModelError, match=r"x\.json: \$\.loads: load 1: not today"):
         models.parse(triangle() | {"loads": [{"on": "A"}]}, "x.json")
 
 
@@ -272,7 +275,8 @@ MALFORMED = {
     "bytes": (HEAD + b'"title": "\xff"}', "is not a JSON file"),
     "nan": (HEAD + b'"environment": {"drag": NaN}}', "contains NaN; every number must be finite"),
     "infinity": (HEAD + b'"environment": {"drag": -Infinity}}', "contains -Infinity"),
-    "out of range": (HEAD + b'"environment": {"drag": 1e999}}', "out of range"),
+    "out of range": (HEAD + b'"environment": {"drag": 1e999}}', "contains 1e999; every number must be finite"),
+    "endless integer": (HEAD + b'"environment": {"drag": ' + b"9" * 5000 + b"}}", "contains 999999999…; every"),
     "deep": (b"[" * 100_000, "nested too deeply"),
     "repeated section": (HEAD + b'"rods": [], "rods": []}', "$.rods: this key stands twice"),
     "repeated key": (HEAD + b'"grids": [{"shown": true, "shown": true}]}', "$.grids[0].shown: this key"),

@@ -66,7 +66,7 @@ def test_a_name_or_column_that_is_not_there_is_explained() -> None:
     _, table = beads(3)
     with pytest.raises(KeyError, match=r"There is no 'bed 2' among the beads; did you mean 'bead 2'\?"):
         table["bed 2"]
-    with pytest.raises(AttributeError, match="Table beads has no column 'wieght'"):
+    with pytest.raises(AttributeError, match="'wieght' among the columns of beads; did you mean 'weight'"):
         _ = table.wieght
 
 

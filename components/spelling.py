@@ -1,0 +1,30 @@
+"""Names that are not there: which one was meant, and the words that say so."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Collection
+
+_FEW = 20  # names are told rather than none
+
+
+def nearest(name: str, names: Collection[str], cutoff: float = 0.6) -> str | None:
+    """The one of some names that comes nearest, whatever its capitals; None if none comes near."""
+    folded = {known.casefold(): known for known in names}
+    found = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=cutoff)
+    return folded[found[0]] if found else None
+
+
+def remedy(name: str, names: Collection[str]) -> str:
+    """What to do about a name that is not among some: the end of a sentence."""
+    few = len(names) <= _FEW
+    if near := nearest(name, names, cutoff=0.6 if few else 0.4):
+        return f"did you mean '{near}'?"
+    if not few:
+        return f"there are {len(names)} others."
+    return f"choose one of {', '.join(names)}." if names else "there are none."
+
+
+def missing(group: str, name: str, names: Collection[str]) -> str:
+    """The sentence that says that a name is not in a group, and which one comes nearest."""
+    return f"There is no '{name}' among the {group}; {remedy(name, names)}"
