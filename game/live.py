@@ -26,9 +26,9 @@ class Live:
         revision = simulation.armed_revision
         simulation.advance(0)
         edited = revision != simulation.armed_revision
-        if simulation.halted or (
-            edited and self._large
-        ):  # it cannot be computed; or what was done is shown first
+        if simulation.halted:  # the model cannot be computed
+            return
+        if edited and self._large:  # the edit is shown first
             return
         if self._find_pace() and self._large:
             return

@@ -106,9 +106,8 @@ class Session:
         self.on_resize: Callable[[], None] | None = None  # and here
         self.spares: Spares | None = None  # unsaved work is kept in them, in a window
         self.preparation: Prepares | None = None  # compiles ahead of need, in a window
-        self.performing = (
-            False  # a script is shown in a window: input is not for the scenes, no time passes by itself
-        )
+        # A script is shown in a window: input is not for the scenes, and no time passes by itself.
+        self.performing = False
         self.footer: View | None = None  # what stands below the picture meanwhile
         self.lesson: Script | None = None  # that a person asked for
         self.awaited: Simulation | None = None  # something could not be done without its step program

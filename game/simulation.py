@@ -39,12 +39,8 @@ MOST_RETRIES = 6  # times that an automatic step is halved before a run is given
 DEFAULT_DRIVER = "velocity_verlet"
 FREE_FLIGHT = FreeFlight()
 
-CHOSEN = (
-    "step_size",
-    "guard_energy",
-    "initial_energy",
-    "potential_reference",
-)  # of the clock, when a run begins
+# What the clock is given when a run begins.
+CHOSEN = ("step_size", "guard_energy", "initial_energy", "potential_reference")
 
 MOVING = ("particles.displacement", "particles.velocity", "rods.plastic_strain")
 

@@ -15,10 +15,8 @@ from game.scripts.script import Failure, Script
 if TYPE_CHECKING:
     from game.app import App
 
-FOOTER, LARGER = (
-    112.0,
-    1.25,
-)  # height (points) and type, relative to all other, of what is said below the picture
+FOOTER = 112.0  # points, height of the strip below the picture in which the words of a script stand
+LARGER = 1.25  # its type, relative to all other
 RATE = 60.0  # pictures a second of a run
 BEAT = 0.7  # s between what is done, so that each can be seen
 REACH = 0.4  # s that the pointer takes to where something is done

@@ -12,9 +12,7 @@ from components.field import Vector
 from systems.base import Phase, System
 from systems.input.bindings import TEXT, repeats
 
-CLICK_REACH = (
-    4.0  # points that the pointer may move between pressing and releasing a button in a click; more: a drag
-)
+CLICK_REACH = 4.0  # points that the pointer may move while a button is down; more: a drag
 IDLE_PAUSE = 0.016  # s between looks for events while nothing moves
 IDLE_LOOKS = 16  # until a frame goes by without any
 

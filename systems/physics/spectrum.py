@@ -1,4 +1,4 @@
-"""Highest frequency and damping of a model, and the pace at which its motion is best watched."""
+"""Spectrum: upper bounds of the highest frequency and the highest decay of a model, by Lanczos' method."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def largest_eigenvalues(operator: Callable[[Array], Array], rows: int, bounds: A
     vector = np.tile(start / math.sqrt(float((start * start).sum())), (blocks, 1))
     basis: list[Array] = []
     diagonal: list[Array] = []
-    beside: list[Array] = []
+    off_diagonal: list[Array] = []
     sizes = np.zeros(blocks, dtype=np.int64)
     running = np.ones(blocks, dtype=bool)
     for _ in range(min(LANCZOS_STEPS, 2 * rows)):
@@ -88,7 +88,7 @@ def largest_eigenvalues(operator: Callable[[Array], Array], rows: int, bounds: A
         for known in basis:
             product -= (product * known).sum(axis=1)[:, None] * known
         norm = np.sqrt((product * product).sum(axis=1))
-        beside.append(norm)
+        off_diagonal.append(norm)
         sizes += running
         running &= norm > 1e-13 * bounds
         if not running.any():
@@ -97,19 +97,19 @@ def largest_eigenvalues(operator: Callable[[Array], Array], rows: int, bounds: A
     found = np.empty(blocks)
     for size in np.unique(sizes).tolist():
         at = sizes == size
-        found[at] = _ritz_bounds(np.array(diagonal[:size])[:, at].T, np.array(beside[:size])[:, at].T)
+        found[at] = _ritz_bounds(np.array(diagonal[:size])[:, at].T, np.array(off_diagonal[:size])[:, at].T)
     return np.minimum(found, bounds)
 
 
-def _ritz_bounds(diagonal: Array, beside: Array) -> Array:
+def _ritz_bounds(diagonal: Array, off_diagonal: Array) -> Array:
     """Largest Ritz values plus their residuals of tridiagonal matrices, given by rows."""
     size = diagonal.shape[1]
     tridiagonal = np.zeros((len(diagonal), size, size))
     here = np.arange(size)
     tridiagonal[:, here, here] = diagonal
-    tridiagonal[:, here[1:], here[:-1]] = tridiagonal[:, here[:-1], here[1:]] = beside[:, :-1]
+    tridiagonal[:, here[1:], here[:-1]] = tridiagonal[:, here[:-1], here[1:]] = off_diagonal[:, :-1]
     values, vectors = np.linalg.eigh(tridiagonal)
-    bounds: Array = values[:, -1] + np.abs(beside[:, -1] * vectors[:, -1, -1])
+    bounds: Array = values[:, -1] + np.abs(off_diagonal[:, -1] * vectors[:, -1, -1])
     return bounds
 
 
