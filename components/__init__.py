@@ -17,6 +17,7 @@ from components.component import Component
 from components.environment import Environment
 from components.field import Field, FieldError, Role, Vector
 from components.grid import Grid
+from components.handle import Handle
 from components.load import HistoryKind, Load
 from components.model import Model
 from components.obstacles import Pieces
@@ -27,7 +28,7 @@ from components.snapshot import Snapshot
 from components.table import Table
 from components.tags import Selected
 from components.view import Plot, Readout
-from components.world import Derivation, Handle, World
+from components.world import Derivation, World
 
 __all__ = [
     "Assign",

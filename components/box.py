@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from components.field import Field
-from components.world import Handle
+from components.handle import Handle
 
 NUMBER, WORD, TEXT, FILE_NAME = "number", "word", "text", "file name"
 

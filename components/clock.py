@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from components.field import Field, Role
+from components.handle import Handle
 from components.paths import Paths, check_paths
-from components.world import Handle
 
 
 class Clock(Handle):

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from components.world import Handle, World
+    from components.handle import Handle
+    from components.world import World
 
 
 @dataclass(frozen=True)

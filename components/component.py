@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import ClassVar
 
 from components.field import Role
+from components.handle import Handle
 from components.table import fields_of
-from components.world import Handle
 
 
 class Component:

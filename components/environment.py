@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from components.field import Field, Vector
-from components.world import Handle
+from components.handle import Handle
 
 
 class Environment(Handle):

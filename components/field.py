@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from components.world import Handle
+    from components.handle import Handle
 
 T = TypeVar("T")
 Vector = tuple[float, float]

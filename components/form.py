@@ -7,9 +7,10 @@ from typing import Any, cast
 
 from components.box import Box
 from components.field import Field
+from components.handle import Handle
 from components.table import Table
 from components.tags import Selected
-from components.world import Handle, World
+from components.world import World
 
 
 class Heading(Handle):

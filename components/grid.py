@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Field, Vector
+from components.handle import Handle
 from components.table import Table
-from components.world import Handle
 
 
 class Grid(Handle):

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Role
+from components.handle import Handle
 from components.model import ADDED, KINDS, Model
 from components.table import Table, fields_of
-from components.world import Handle
 
 
 def add_kind(mod: str, kind: type[Handle]) -> str:

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from components.field import Field, FieldError, Vector
+from components.handle import Handle
 from components.particle import Particle
-from components.world import Handle, World
+from components.world import World
 
 History = Mapping[str, Any]
 

@@ -8,12 +8,13 @@ from components.clock import Clock
 from components.derived import DERIVATIONS
 from components.environment import Environment
 from components.grid import Grid
+from components.handle import Handle
 from components.load import Load
 from components.particle import Particle
 from components.rod import Rod
 from components.settings import Settings
 from components.table import Table
-from components.world import Handle, World
+from components.world import World
 
 KINDS = (Environment, Settings, Clock, Particle, Rod, Load, Grid)
 ADDED: dict[str, type[Handle]] = {}  # kinds of mods, as files call them: "walls.Wall"

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from components.handle import Handle
 from components.table import Table
-from components.world import Handle
 
 if TYPE_CHECKING:
     from components.model import Model

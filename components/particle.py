@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Field, FieldError, Role, Vector
+from components.handle import Handle
 from components.table import Table
-from components.world import Handle, World
+from components.world import World
 
 DEFAULT_MASS = 1.0  # kg, of a particle without rods
 

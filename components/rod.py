@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from components.field import Field, FieldError, Role
+from components.handle import Handle
 from components.particle import Particle, rods_without_length
 from components.table import Table
-from components.world import Handle, World
+from components.world import World
 
 
 class Rod(Handle):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from components.field import Field
-from components.world import Handle
+from components.handle import Handle
 
 AUTOMATIC = "automatic"
 INTEGRATORS: dict[str, str] = {AUTOMATIC: "chosen for the model by a fixed rule"}

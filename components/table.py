@@ -14,7 +14,8 @@ from components.field import Column, Field, Role
 from components.spelling import missing
 
 if TYPE_CHECKING:
-    from components.world import Handle, World
+    from components.handle import Handle
+    from components.world import World
 
 H = TypeVar("H", bound="Handle")
 

@@ -1,4 +1,4 @@
-"""World: one esper context and its tables; the only code that creates, deletes or switches esper things."""
+"""World: one esper context and its tables; no other code creates, deletes or switches esper's entities and worlds."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import weakref
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, ClassVar, NoReturn, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 import esper
 import numpy as np
@@ -15,60 +15,14 @@ from numpy.typing import NDArray
 
 from components.commands import Assign, Command, Create, Custom, Delete, Group, Removed, Restore
 from components.field import Column, Field, FieldError, Role, same
+from components.handle import Handle
 from components.spelling import missing
-from components.table import Table, living
+from components.table import Table
 
+H = TypeVar("H", bound=Handle)
 Layout = tuple[tuple[str, tuple[str, ...]], ...]
 
 _world_numbers = itertools.count(1)
-
-
-class Handle:
-    """The component of an entity: its identity, whose Fields read and write one row of a table.
-
-    It does not keep its world alive: esper keeps every component, and so would keep every world for ever.
-    """
-
-    __slots__ = ("_world", "entity")
-
-    table: ClassVar[str]  # name of the table, such as "rods"
-    noun: ClassVar[str]  # what a person calls one, such as "rod"
-    single: ClassVar[bool] = False  # exactly one in every world
-    points: ClassVar[tuple[str, ...]] = ()  # Fields that are places in the plane (m), which move with it
-
-    def __init__(self, world: World, entity: int) -> None:
-        self._world = weakref.ref(world)
-        self.entity = entity
-
-    @property
-    def world(self) -> World:
-        """The world it belongs to. Raises LookupError if that is gone."""
-        world = self._world()
-        return world if world is not None else living(self._world, f"this {self.noun}")
-
-    @property
-    def row(self) -> int:
-        """The row of the table in which this entity's values are now. Raises LookupError if deleted."""
-        return self.world.row(self)
-
-    @property
-    def exists(self) -> bool:
-        """False once the entity is deleted (and True again when that is undone)."""
-        world = self._world()
-        return world is not None and bool(world.row_of_entity[self.entity] >= 0)
-
-    @classmethod
-    def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
-        """Make what follows from changed Fields of some rows agree with them, or refuse it by FieldError.
-
-        Called after rows were created (all Fields changed) or assigned to, inside the same transaction.
-        """
-
-    def __repr__(self) -> str:
-        return f"<{self.world.describe(self)}>" if self.exists else f"<deleted {self.noun}>"
-
-
-H = TypeVar("H", bound=Handle)
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from components.view import MAGNIFICATIONS, MARGIN, Plot, View, drawn_places, ma
 from game.desk import Desk, ModelFile
 from game.preparation import Preparation
 from game.raster_program import load_raster
+from game.saved.autosave import Autosave
 from game.saved.preferences import (
     DEFAULT_THEME,
     preferred_magnification,
@@ -29,7 +30,6 @@ from game.saved.preferences import (
     remember_magnification,
     remember_theme,
 )
-from game.saved.spares import SpareKeeper
 from game.scenes.load import Load
 from game.scripts.performance import FOOTER, LARGER, Performance
 from game.scripts.script import Failure, Recorder, Script
@@ -75,7 +75,7 @@ def open_window(
     expected in vain is returned.
     """
     path, source = record
-    app = App(model, file, _spares(), theme or preferred_theme(), Preparation(), preferred_magnification())
+    app = App(model, file, _autosave(), theme or preferred_theme(), Preparation(), preferred_magnification())
     app.session.lesson = lesson
     if path is not None:
         with open(path, "w", encoding="utf-8") as script:
@@ -86,10 +86,10 @@ def open_window(
     return app.run()
 
 
-def _spares() -> SpareKeeper | None:
+def _autosave() -> Autosave | None:
     """None where nothing can be written; the program is of use all the same."""
     try:
-        return SpareKeeper()
+        return Autosave()
     except OSError:
         return None
 
@@ -112,7 +112,7 @@ class App:
         self,
         model: Model,
         file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
-        spares: SpareKeeper | None = None,
+        autosave: Autosave | None = None,
         theme: str = DEFAULT_THEME,
         preparation: Preparation | None = None,
         magnification: float = 1.0,
@@ -131,12 +131,12 @@ class App:
         self.input = PygameInput()
         raster = preparation.raster if preparation else load_raster
         self.render = PygameRender(self.window.get_surface(), raster)
-        further = [system for system in (spares, preparation) if system is not None]
+        further = [system for system in (autosave, preparation) if system is not None]
         systems: list[System] = [self.input, Hover(), *further, self.render]
         self.session = Session(model, systems, View(theme=theme), file)
         self.session.window = self
         self.session.faults_told = 0  # also which mods were left out is shown
-        self.session.spares = self.spares = spares
+        self.session.autosave = self.autosave = autosave
         self.session.preparation = self.preparation = preparation
         self._theme = theme
         self._magnification = magnification
@@ -154,8 +154,8 @@ class App:
             if self.session.lesson is not None:
                 lesson, self.session.lesson = self.session.lesson, None
                 failures += Performance(self, lesson).play()
-        if self.spares is not None:
-            self.spares.close(self.session.desks)
+        if self.autosave is not None:
+            self.autosave.close(self.session.desks)
         if self.preparation is not None:
             self.preparation.close()
         pygame.display.quit()

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Role, Vector
+from components.handle import Handle
 from components.load import Load
 from components.model import ADDED, Model
 from components.particle import Particle
 from components.rod import Rod
 from components.table import Table, fields_of
-from components.world import Handle
 from game.document import ModelError, document_of, parse
 from game.models import laid_out
 from systems.edit.moving import moving_rows

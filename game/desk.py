@@ -11,7 +11,7 @@ from components.field import Role
 from components.model import Model
 from components.snapshot import Snapshot
 from game import models
-from game.beside import Beside
+from game.assessment import Assessment
 from game.history.history import History
 from game.history.timeline import Timeline
 from game.live import Live
@@ -44,7 +44,7 @@ class Desk:
         self.history = History(model, self.simulation, on_edit=self._edited)
         self.live = Live(self.simulation)
         self.beginning: Snapshot | None = None
-        self.beside = Beside(model, self.simulation)
+        self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)
         self.file = file
         self.spare: Path | None = None
@@ -53,12 +53,12 @@ class Desk:
     def _edited(self) -> None:
         self._last_edit = self.model.revision
         self.timeline.clear()
-        self.beside.disturb()
+        self.assessment.disturb()
 
     def begin(self) -> None:
         """Time begins to pass from the present state."""
         self.beginning = self.simulation.present()
-        self.beside.begin(self.beginning)
+        self.assessment.begin(self.beginning)
 
     @property
     def newest(self) -> int:

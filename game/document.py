@@ -17,6 +17,7 @@ from components.commands import Assign
 from components.environment import Environment
 from components.field import Column, Field, FieldError, Role
 from components.grid import Grid
+from components.handle import Handle
 from components.load import Load
 from components.model import ADDED, Model
 from components.particle import Particle, check_velocities
@@ -24,7 +25,6 @@ from components.rod import Rod
 from components.settings import Settings
 from components.spelling import missing, remedy
 from components.table import fields_of
-from components.world import Handle
 
 FORMAT = "pinjoint model"
 VERSION = 1

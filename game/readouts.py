@@ -9,10 +9,10 @@ from components.field import FieldError
 from components.particle import Particle
 from components.rod import Rod
 from components.view import Readout
-from game.beside import LARGEST
+from game.assessment import LARGEST
 
 if TYPE_CHECKING:
-    from components.world import Handle
+    from components.handle import Handle
     from game.session import Session
     from systems.statics.verify import Comparison, Row, Theories
 
@@ -36,7 +36,7 @@ def _energy(session: Session) -> Readout:
         (name.replace("_", " "), f"{value:.5g} J".replace("-", "−"))
         for name, value in session.energy.as_dict().items()
     ]
-    error = session.desk.beside.error() if not session.busy else None  # measuring takes a run of its own
+    error = session.desk.assessment.error() if not session.busy else None  # measuring takes a run of its own
     if error is not None:
         rows.append(("error of displacements, measured", f"{error.relative:.1e} of the largest"))
     return Readout("Energy account", tuple(rows))
@@ -48,11 +48,11 @@ def _energy(session: Session) -> Readout:
 def _theory(session: Session) -> Iterator[Readout]:
     if session.model.rods.count == 0:
         yield Readout("Theory beside the run", (("no rods", ""),))
-    elif not session.desk.beside.is_small:
+    elif not session.desk.assessment.is_small:
         yield Readout("Theory beside the run", ((f"more than {LARGEST} rods: use", "pinjoint verify"),))
     else:
         try:
-            theory, comparison = session.desk.beside.theories, session.desk.beside.comparison()
+            theory, comparison = session.desk.assessment.theories, session.desk.assessment.comparison()
         except FieldError:  # whoever runs or settles it is told which number it is
             yield Readout("Theory beside the run", (("numbers too large or too small", ""),))
             return
@@ -77,7 +77,7 @@ def _overview(session: Session, theory: Theories, comparison: Comparison) -> Ite
                 f"largest error, {_WAYS[way].split()[0]}",
                 f"{getattr(worst, f'{way}_error'):.1e} ({_symbol(worst)})",
             )
-    if not session.desk.beside.undisturbed:
+    if not session.desk.assessment.undisturbed:
         yield "edited during the run: theory", "without that history"
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from components.camera import Viewport
 from components.environment import Environment
 from components.field import FieldError, Vector
+from components.handle import Handle
 from components.load import Load, loads_end
 from components.model import Model
 from components.particle import Particle
@@ -24,7 +25,6 @@ from components.spelling import missing
 from components.table import Table
 from components.tags import Selected
 from components.view import View
-from components.world import Handle
 from game import models
 from game.actions import ACTIONS, WHILE_DRAWING
 from game.catalogue import step_systems
@@ -42,7 +42,7 @@ from game.scenes import Scenes, Stage, all_scenes
 from game.schedule import Schedule
 from game.showing import show
 from game.simulation import FREE_FLIGHT, Energy, Simulation
-from game.surroundings import Prepares, Spares, Window
+from game.surroundings import Autosaves, Prepares, Window
 from game.toolbar import toolbar_of
 from systems.base import Law, Phase, StopReason, System
 from systems.edit.pull import Pull
@@ -104,7 +104,7 @@ class Session:
         self.window: Window | None = None
         self.on_press: Callable[[str, Vector | None], None] | None = None  # a recorder listens here
         self.on_resize: Callable[[], None] | None = None  # and here
-        self.spares: Spares | None = None  # unsaved work is kept in them, in a window
+        self.autosave: Autosaves | None = None  # keeps unsaved work, in a window
         self.preparation: Prepares | None = None  # compiles ahead of need, in a window
         # A script is shown in a window: input is not for the scenes, and no time passes by itself.
         self.performing = False
@@ -275,7 +275,7 @@ class Session:
     @property
     def remarks(self) -> tuple[Event, ...]:
         """What the run did that a slowly growing load would not have done, once it is at rest."""
-        return self.desk.beside.remarks
+        return self.desk.assessment.remarks
 
     @property
     def fault(self) -> str:
@@ -353,7 +353,7 @@ class Session:
         >>> s.compare().worst("linear").title
         'displacement y of particle B'
         """
-        return self.desk.beside.comparison()
+        return self.desk.assessment.comparison()
 
     def load_path(self, factor: float = 1.0, *, until: str | None = None, points: int = 500) -> Curve:
         """The load–displacement curve, through limit points, up to a load factor or a displacement "B.y=-2.5".

@@ -29,7 +29,7 @@ class Window(Protocol):
         """Put a text on the system's clipboard."""
 
 
-class Spares(Protocol):
+class Autosaves(Protocol):
     """Where a window keeps unsaved work against a crash."""
 
     def left(self) -> list[Path]:

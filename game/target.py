@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from components.field import Field, Role
+from components.handle import Handle
 from components.model import Model
 from components.spelling import missing, remedy
 from components.table import Table
-from components.world import Handle
 
 EVERY = "*"  # in place of a name: all elements of the table
 

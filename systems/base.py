@@ -143,7 +143,7 @@ class Commit(StepSystem):
 
 
 class Driver(StepSystem):
-    """Advances time: an integrator. Its kernel is *source*: see systems/physics/integrators.py.
+    """Advances time: an integrator. Its kernel is *source*: see systems/physics/fixed_steps.py.
 
     stable_step: the largest stable step (s) for the highest angular frequency ω (rad/s) and decay ζω
         (1/s) of a model, not both 0; infinite if unconditionally stable, 0 if stable at none.
@@ -158,7 +158,7 @@ class Driver(StepSystem):
     """
 
     order: ClassVar[int] = 0
-    entry: ClassVar[str] = "systems.physics.integrators:advance"
+    entry: ClassVar[str] = "systems.physics.fixed_steps:advance"
     parts: ClassVar[tuple[str, ...]] = ()
     constants: ClassVar[Mapping[str, Any]] = {}
     controlled: ClassVar[bool] = False

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from components.field import Vector
-from components.world import Handle
+from components.handle import Handle
 from game.actions.registry import action
 from game.clipboard import Part, chosen, parsed, paste, taken, written
 from systems.edit.placing import snapped

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from components.field import Column, Role
+from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 from components.table import Table
 from components.tags import Selected
 from components.view import View
-from components.world import Handle
 from game.document import document, parse
 from game.live import Live
 from game.schedule import Schedule

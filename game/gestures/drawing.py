@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING, ClassVar
 
 from components.field import Vector
+from components.handle import Handle
 from components.particle import Particle
 from components.view import Preview, drawn_positions
-from components.world import Handle
 from game.gestures.base import Gesture
 from systems.edit.arrows import arrow_end, arrow_value, usual_force, usual_speed
 from systems.edit.picking import pick_particle

@@ -18,7 +18,7 @@ from systems.edit.pull import hand_on
 from systems.edit.refusal import Refusal
 
 if TYPE_CHECKING:
-    from components.world import Handle
+    from components.handle import Handle
     from game.session import Session
 
 
@@ -108,7 +108,7 @@ class PullParticle(Gesture):
             raise Refusal("Displacements are drawn at scale 0, so nothing can be pulled; set it above 0.")
         self._particle = particle
         session.simulation.advance(0)
-        session.desk.beside.disturb()
+        session.desk.assessment.disturb()
         session.timeline.hold(hand_on(session.model, session.view, particle, lambda: session.pace))
 
     def move(self, session: Session, pixel: Vector) -> None:

@@ -11,13 +11,13 @@ import numpy as np
 
 from components.component import Component, add_component, remove_component
 from components.field import FieldError, Vector
+from components.handle import Handle
 from components.kind import add_kind
 from components.load import HISTORIES, HistoryKind, register_history
 from components.model import ADDED
 from components.obstacles import SHAPES, Pieces, Shape, check_pieces
 from components.settings import INTEGRATORS
 from components.view import Readout
-from components.world import Handle
 from game import models, registry
 from game.actions.drawing import use
 from game.actions.registry import ACTIONS, WHILE_DRAWING, Action, action

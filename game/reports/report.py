@@ -54,7 +54,7 @@ class Analysis:
             return self.run(session.simulation, name)
         session.run(steps=0)  # the beginning is noted, for theory beside the run
         found = self.run(session.simulation, name)
-        error = session.desk.beside.error(at_any_cost=self.measures_error)
+        error = session.desk.assessment.error(at_any_cost=self.measures_error)
         return {
             **found,
             "message": session.message,

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from components.field import Column, Field
+from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 from components.table import fields_of
-from components.world import Handle
 from game.models import laid_out
 
 ENERGIES = (

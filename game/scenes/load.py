@@ -8,7 +8,7 @@ from components.form import Form, Tile
 from game import models
 from game.desk import ModelFile
 from game.saved import library
-from game.saved.spares import spare_name
+from game.saved.autosave import spare_name
 from game.scenes.files import FileScene, saved_tiles, tile
 from game.scripts.script import Script, lessons
 
@@ -68,8 +68,8 @@ class Load(FileScene):
         """Open what a tile stands for, or, asked twice, discard what was recovered."""
         if tile.source is not DISCARD:
             self._open(session, tile.source)
-        elif self._asked and session.spares is not None:
-            session.spares.discard()
+        elif self._asked and session.autosave is not None:
+            session.autosave.discard()
             self.form = self.make_form(session)
         else:
             self._asked = True
@@ -97,9 +97,9 @@ class Load(FileScene):
             if isinstance(source, Script):
                 session.open_here(source.source)
                 session.lesson = source
-            elif session.spares is not None and source in session.spares.left():
+            elif session.autosave is not None and source in session.autosave.left():
                 session.adopt(models.load(source), ModelFile(None, spare_name(source)))
-                session.spares.take_over(source, session.desk)
+                session.autosave.take_over(source, session.desk)
             else:
                 session.open_here(source)
         except models.ModelError as error:
@@ -123,7 +123,7 @@ class Load(FileScene):
 
 def _left_behind(session: Session) -> list[dict[str, Any]]:
     """Unsaved work that a crash left behind."""
-    files = session.spares.left() if session.spares is not None else []
+    files = session.autosave.left() if session.autosave is not None else []
     tiles = [
         tile(LEFT_BEHIND, spare_name(path) or "Untitled", library.written_age(path), "", path) for path in files
     ]

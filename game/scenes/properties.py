@@ -11,12 +11,12 @@ import numpy as np
 from components.camera import Viewport
 from components.field import Vector
 from components.form import Form
+from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 from components.toolbar import Toolbar
 from components.view import View, drawn_positions
-from components.world import Handle
 from game.scenes.base import Stage
 from game.scenes.form import FormScene
 from systems.edit.picking import pick

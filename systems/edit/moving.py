@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from components.field import Vector
+from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
 from components.view import View
-from components.world import Handle
 from systems.edit.placing import resolution
 
 Points = NDArray[np.float64]

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from components.field import Vector
 from components.grid import Grid
+from components.handle import Handle
 from components.kind import outlines
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 from components.view import View, drawn_positions
-from components.world import Handle
 
 Numbers = NDArray[np.float64]
 

@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from components.field import Vector
+from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
 from components.view import View, drawn_positions
-from components.world import Handle
 from systems.edit.picking import PARTICLE_REACH, pick_point
 from systems.edit.refusal import Refusal
 

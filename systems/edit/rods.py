@@ -8,10 +8,10 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, spawn_rods
-from components.world import Handle
 from systems.edit.moving import rows_of
 from systems.edit.refusal import Refusal
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from components.field import Vector
+from components.handle import Handle
 from components.kind import outlines
 from components.model import Model
 from components.view import drawn_positions
-from components.world import Handle
 
 
 def inside(model: Model, corner: Vector, opposite: Vector) -> list[Handle]:

@@ -10,9 +10,9 @@ from typing import Any
 from components.box import Box
 from components.field import Field, FieldError
 from components.form import Form
+from components.handle import Handle
 from components.load import HISTORIES
 from components.model import Model
-from components.world import Handle
 from systems.forms.properties import KIND
 from systems.forms.typing import YES_NO
 

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from components.box import NUMBER, TEXT, WORD, Box
 from components.field import Field, Role
 from components.form import Form
+from components.handle import Handle
 from components.load import HISTORIES, Load
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 from components.settings import Settings
-from components.world import Handle
 from systems.forms.typing import YES_NO
 
 MIXED = "mixed"

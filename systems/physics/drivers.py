@@ -1,4 +1,7 @@
-"""Integrators: what each is, how accurate, up to which step it is stable, and when to choose it."""
+"""Drivers: the integrators, how accurate each is, up to which step it is stable, and when to choose it.
+
+Their kernels are source, in fixed_steps.py, runge_kutta.py and implicit.py.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +13,10 @@ from systems.physics.tableaus import CLASSICAL, DORMAND_PRINCE_8, KENNEDY_CARPEN
 
 _RUNGE_KUTTA = "systems.physics.runge_kutta"
 _IMPLICIT = "systems.physics.implicit"
-_INTEGRATORS = "systems.physics.integrators"
+_FIXED_STEPS = "systems.physics.fixed_steps"
 
-_CHECKS = (f"{_INTEGRATORS}:is_check_due", f"{_INTEGRATORS}:steps_to_check")
-_PLAIN = (*_CHECKS, f"{_INTEGRATORS}:enter_loads", f"{_INTEGRATORS}:enter_powers")
+_CHECKS = (f"{_FIXED_STEPS}:is_check_due", f"{_FIXED_STEPS}:steps_to_check")
+_PLAIN = (*_CHECKS, f"{_FIXED_STEPS}:enter_loads", f"{_FIXED_STEPS}:enter_powers")
 _CONTROLLED = (
     *_CHECKS,
     *(
@@ -43,7 +46,7 @@ class VelocityVerlet(Integrator):
 
     name = "physics.velocity_verlet"
     parts = _PLAIN
-    kernel = f"{_INTEGRATORS}:velocity_verlet"
+    kernel = f"{_FIXED_STEPS}:velocity_verlet"
     order: ClassVar[int] = 2
     guard = 1.0
 
@@ -62,7 +65,7 @@ class SemiImplicitEuler(Integrator):
     name = "physics.semi_implicit_euler"
     guard = 2.0
     parts = _PLAIN
-    kernel = f"{_INTEGRATORS}:semi_implicit_euler"
+    kernel = f"{_FIXED_STEPS}:semi_implicit_euler"
     order: ClassVar[int] = 1
 
     @staticmethod
@@ -79,7 +82,7 @@ class ThesisTaylor(Integrator):
 
     name = "physics.taylor2"
     parts = _PLAIN
-    kernel = f"{_INTEGRATORS}:taylor2"
+    kernel = f"{_FIXED_STEPS}:taylor2"
     order: ClassVar[int] = 1
 
     @staticmethod

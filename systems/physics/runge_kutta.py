@@ -1,6 +1,6 @@
 """Runge–Kutta drivers as source: one loop with error control and events for every tableau.
 
-Written like integrators.py, which says what `*columns` is. Besides, the program provides
+Written like fixed_steps.py, which says what `*columns` is. Besides, the program provides
 
     evaluate(time, dt, displacement, velocity, force, resisting, direction, power, *columns)
         like forces(), and power ← what each account gains per second (kN·m/s)

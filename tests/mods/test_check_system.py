@@ -20,7 +20,7 @@ from game.document import document
 from game.included.probes import Sampling
 from game.preparation import Preparation
 from game.registry import SYSTEMS
-from game.saved.spares import SpareKeeper
+from game.saved.autosave import Autosave
 from systems.base import Law, Phase, StepSystem, System
 from systems.collision.system import Collision, Support
 from systems.edit.hover import Hover
@@ -98,7 +98,7 @@ def test_our_frame_systems_pass(tmp_path: Path) -> None:
         PygameInput,
         partial(PygameRender, surface),
         Preparation,
-        partial(SpareKeeper, tmp_path),
+        partial(Autosave, tmp_path),
     ]
     for make in frames:
         assert check_system(make, [EVERYTHING, BODIES]).needed == 2

@@ -13,10 +13,10 @@ from collections.abc import Iterator
 import esper
 import pytest
 
+from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
 from components.tags import DiagramShown, Hovered, Selected
-from components.world import Handle
 
 
 class A:

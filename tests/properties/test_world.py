@@ -18,12 +18,12 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, pr
 from components.commands import Command
 from components.field import Field, FieldError, Role
 from components.grid import Grid
+from components.handle import Handle
 from components.load import CONSTANT, Load
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, spawn_rods
 from components.table import fields_of
-from components.world import Handle
 
 KINDS: dict[str, type[Handle]] = {kind.table: kind for kind in (Particle, Rod, Load, Grid)}
 REFERENCES = {"rods": "between", "loads": "on"}

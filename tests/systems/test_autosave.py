@@ -20,7 +20,7 @@ from components.rod import spawn_rods
 from game import Session, models
 from game.desk import ModelFile
 from game.saved import library
-from game.saved.spares import LAST_SESSION, SpareKeeper, spare_name
+from game.saved.autosave import LAST_SESSION, Autosave, spare_name
 from game.scenes.files import FileScene
 from tests.reference.models import triangle
 
@@ -33,8 +33,8 @@ import sys, time
 from game import models
 from game.app import App
 from game.desk import ModelFile
-from game.saved.spares import SpareKeeper
-app = App(models.load(sys.argv[1]), ModelFile(None, "work"), SpareKeeper(interval=float(sys.argv[2])))
+from game.saved.autosave import Autosave
+app = App(models.load(sys.argv[1]), ModelFile(None, "work"), Autosave(interval=float(sys.argv[2])))
 value = 1000.0
 while not app.input.closed:
     value += 1.0
@@ -92,7 +92,7 @@ def model_file(tmp_path: Path) -> Path:
     return tmp_path / "model.json"
 
 
-def kept(keeper: SpareKeeper, session: Session) -> None:
+def kept(keeper: Autosave, session: Session) -> None:
     """Let frames pass until everything is written."""
     for _ in range(200):
         keeper.process(session.frame(0.0))
@@ -121,7 +121,7 @@ def test_a_killed_window_loses_at_most_the_last_moments(model_file: Path) -> Non
         told = values_until(process, 1.5)
         process.send_signal(signal.SIGKILL)
         process.wait()
-    (left,) = SpareKeeper().left()
+    (left,) = Autosave().left()
     recovered = models.load(left)
     value = recovered.rods[0].stiffness
     assert told[0][1] < value <= told[-1][1]  # how long ago, a busy machine decides
@@ -151,7 +151,7 @@ def test_closing_the_window_leaves_nothing_but_the_last_session(
     pygame = pytest.importorskip("pygame")
     from game.app import App
 
-    keeper = SpareKeeper(interval=0.0)
+    keeper = Autosave(interval=0.0)
     app = App(models.load(model_file), ModelFile(None, "work"), keeper)
     app.session.rods[0].stiffness = 5.0
     kept(keeper, app.session)
@@ -167,7 +167,7 @@ def test_closing_the_window_leaves_nothing_but_the_last_session(
 
 
 def test_what_is_saved_needs_no_spare(data: Path) -> None:
-    keeper = SpareKeeper(interval=0.0)
+    keeper = Autosave(interval=0.0)
     session = Session.open(triangle(), [keeper])
     session.frame(0.0)
     assert not list((data / "autosave").glob("*.json"))
@@ -180,7 +180,7 @@ def test_what_is_saved_needs_no_spare(data: Path) -> None:
 
 
 def test_every_model_with_unsaved_work_has_its_spare(data: Path) -> None:
-    keeper = SpareKeeper(interval=0.0)
+    keeper = Autosave(interval=0.0)
     session = Session.open(triangle(), [keeper])
     session.rods["AB"].stiffness = 5.0
     session.open_here("isostatic")
@@ -193,7 +193,7 @@ def test_every_model_with_unsaved_work_has_its_spare(data: Path) -> None:
 
 
 def test_a_model_that_was_saved_and_left_at_once_leaves_no_spare(data: Path) -> None:
-    keeper = SpareKeeper(interval=0.0)
+    keeper = Autosave(interval=0.0)
     session = Session.open(triangle(), [keeper])
     session.rods["AB"].stiffness = 5.0
     kept(keeper, session)
@@ -204,7 +204,7 @@ def test_a_model_that_was_saved_and_left_at_once_leaves_no_spare(data: Path) -> 
 
 
 def test_a_spare_is_written_at_most_every_few_seconds(data: Path) -> None:
-    keeper = SpareKeeper(interval=60.0)
+    keeper = Autosave(interval=60.0)
     session = Session.open(triangle(), [keeper])
     session.rods["AB"].stiffness = 5.0
     kept(keeper, session)
@@ -219,7 +219,7 @@ def test_a_spare_is_written_at_most_every_few_seconds(data: Path) -> None:
 
 
 def test_ten_thousand_rods_do_not_stop_the_picture() -> None:
-    keeper = SpareKeeper(interval=0.0)
+    keeper = Autosave(interval=0.0)
     session = Session(lattice(71), [])
     assert session.rods.count > 9900
     session.rods[0].stiffness = 5.0
@@ -248,16 +248,16 @@ def left_behind(data: Path, stiffness: float) -> Path:
     return folder / "dead.1.my work.json"
 
 
-def with_spares(keeper: SpareKeeper) -> Session:
+def with_autosave(keeper: Autosave) -> Session:
     session = Session.open(triangle(), [keeper])
-    session.spares = keeper
+    session.autosave = keeper
     return session
 
 
 def test_what_was_left_behind_is_offered_first_and_opened(data: Path) -> None:
     left = left_behind(data, 5.0)
-    keeper = SpareKeeper(interval=0.0)
-    session = with_spares(keeper)
+    keeper = Autosave(interval=0.0)
+    session = with_autosave(keeper)
     session.press("d")
     scene = session.scenes.active
     assert isinstance(scene, FileScene)
@@ -280,8 +280,8 @@ def test_what_was_left_behind_is_offered_first_and_opened(data: Path) -> None:
 
 def test_what_was_left_behind_is_discarded_when_asked_twice(data: Path) -> None:
     left = left_behind(data, 5.0)
-    keeper = SpareKeeper()
-    session = with_spares(keeper)
+    keeper = Autosave()
+    session = with_autosave(keeper)
     session.press("d")
     scene = session.scenes.active
     assert isinstance(scene, FileScene)
@@ -295,22 +295,22 @@ def test_what_was_left_behind_is_discarded_when_asked_twice(data: Path) -> None:
     assert not left.exists()
     assert scene.form.tiles[0].title == "New, empty model"
     keeper.close(session.desks)
-    assert SpareKeeper().left() == []
+    assert Autosave().left() == []
 
 
 def test_what_was_not_opened_is_offered_again(data: Path) -> None:
     left = left_behind(data, 5.0)
-    keeper = SpareKeeper()
-    keeper.close(with_spares(keeper).desks)
+    keeper = Autosave()
+    keeper.close(with_autosave(keeper).desks)
     assert left.exists()
-    assert SpareKeeper().left() == [left]
+    assert Autosave().left() == [left]
 
 
 def test_unsaved_work_of_a_running_program_is_not_offered(model_file: Path, data: Path) -> None:
     with window(model_file) as process:
         values_until(process, 0.6)
         assert list((data / "autosave").glob("*.json"))
-        keeper = SpareKeeper()
+        keeper = Autosave()
         assert keeper.left() == []
         keeper.close([])
         assert list((data / "autosave").glob("*.json"))

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from components.field import Field, Role
+from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, spawn_rods
 from components.table import Table, fields_of
-from components.world import Handle, World
+from components.world import World
 
 
 class Bead(Handle):

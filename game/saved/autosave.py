@@ -1,4 +1,4 @@
-"""Spares: unsaved work, written every few seconds, so that a crash loses no more than that."""
+"""Autosave: unsaved work, written every few seconds, so that a crash loses no more than that."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from typing import Any, cast
 import msgspec
 
 from components.field import Column, Role
+from components.handle import Handle
 from components.model import Model
 from components.table import Table
-from components.world import Handle
 from game import models
 from game.desk import Desk
 from game.document import document
@@ -34,14 +34,14 @@ def spare_name(path: Path) -> str:
     return path.stem.partition(".")[2].partition(".")[2]
 
 
-class SpareKeeper(System):
+class Autosave(System):
     """Writes the unsaved work of a window to files that only a crash leaves behind.
 
     The folder holds, for every running program, a lock "ID.lock" that its end releases, however it ends,
     and its spares "ID.NUMBER.NAME.json".
     """
 
-    name = "files.spares"
+    name = "files.autosave"
     phase = Phase.EVENTS
 
     def __init__(self, folder: Path | None = None, interval: float = INTERVAL) -> None:

@@ -1,4 +1,4 @@
-"""Drivers as source: the step program is written around them and compiled as one module.
+"""Drivers with fixed steps, as source: the step program is written around them and compiled as one module.
 
 In this source `*columns` stands for the flat list of the model's columns (particles_mobility,
 particles_mass, … can therefore be used by name), which the program writer puts in: arrays in tuples cost

@@ -1,4 +1,4 @@
-"""Beside: theory beside the run of one model, and its error, found when somebody asks, and again after an edit."""
+"""Assessment: how a run compares with theory, and how large its error is; computed when asked for."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from game.catalogue import step_systems
 from systems.base import Law, StopReason
 
 if TYPE_CHECKING:
-    from game.finer import MeasuredError
+    from game.measured_error import MeasuredError
     from game.simulation import Simulation
     from systems.statics.events import Event
     from systems.statics.verify import Comparison, Theories
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 LARGEST = 2000  # rods up to which theory is found without being asked for; more would take noticeable time
 
 
-class Beside:
-    """What theory says about a run, from the moment it began.
+class Assessment:
+    """A run beside theory, from the moment it began; what was computed is kept until the model is edited.
 
     undisturbed: nobody has edited the model or pulled a particle since.
     """
@@ -94,7 +94,7 @@ class Beside:
 
         at_any_cost: also if it takes long to measure; else only if it does not, or has been measured.
         """
-        from game.finer import is_quick, measure_error
+        from game.measured_error import is_quick, measure_error
 
         key = (self._simulation.armed_revision, self._model.clock.steps)
         if self._error is not None and self._error[0] == key:

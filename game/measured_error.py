@@ -1,4 +1,4 @@
-"""Finer: a run taken again by finer steps, whose difference from it measures its error."""
+"""Measured error: a run taken again with finer steps, whose difference from it measures its error."""
 
 from __future__ import annotations
 

@@ -1,0 +1,60 @@
+"""Handle: the component of an entity, through which its Fields are read and written."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Collection
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.table import Table, living
+
+if TYPE_CHECKING:
+    from components.world import World
+
+
+class Handle:
+    """The component of an entity: its identity, whose Fields read and write one row of a table.
+
+    It does not keep its world alive: esper keeps every component, and so would keep every world for ever.
+    """
+
+    __slots__ = ("_world", "entity")
+
+    table: ClassVar[str]  # name of the table, such as "rods"
+    noun: ClassVar[str]  # what a person calls one, such as "rod"
+    single: ClassVar[bool] = False  # exactly one in every world
+    points: ClassVar[tuple[str, ...]] = ()  # Fields that are places in the plane (m), which move with it
+
+    def __init__(self, world: World, entity: int) -> None:
+        self._world = weakref.ref(world)
+        self.entity = entity
+
+    @property
+    def world(self) -> World:
+        """The world it belongs to. Raises LookupError if that is gone."""
+        world = self._world()
+        return world if world is not None else living(self._world, f"this {self.noun}")
+
+    @property
+    def row(self) -> int:
+        """The row of the table in which this entity's values are now. Raises LookupError if deleted."""
+        return self.world.row(self)
+
+    @property
+    def exists(self) -> bool:
+        """False once the entity is deleted (and True again when that is undone)."""
+        world = self._world()
+        return world is not None and bool(world.row_of_entity[self.entity] >= 0)
+
+    @classmethod
+    def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
+        """Make what follows from changed Fields of some rows agree with them, or refuse it by FieldError.
+
+        Called after rows were created (all Fields changed) or assigned to, inside the same transaction.
+        """
+
+    def __repr__(self) -> str:
+        return f"<{self.world.describe(self)}>" if self.exists else f"<deleted {self.noun}>"
