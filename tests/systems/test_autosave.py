@@ -22,6 +22,7 @@ from game.desk import ModelFile
 from game.saved import library
 from game.saved.autosave import LAST_SESSION, Autosave, spare_name
 from game.scenes.files import FileScene
+from tests.reference.lines import lines_run
 from tests.reference.models import triangle
 
 ROOT = Path(__file__).parents[2]
@@ -212,7 +213,8 @@ def test_a_spare_is_written_at_most_every_few_seconds(data: Path) -> None:
     for value in range(6, 30):
         session.rods["AB"].stiffness = float(value)
         session.frame(0.0)
-    time.sleep(0.05)
+    assert keeper._thread is not None
+    keeper._thread.join()  # of what would have been written too soon
     content = models.load(spare)
     assert content.rods["AB"].stiffness == 5.0
     keeper.close(session.desks)
@@ -224,14 +226,8 @@ def test_ten_thousand_rods_do_not_stop_the_picture() -> None:
     assert session.rods.count > 9900
     session.rods[0].stiffness = 5.0
     frame = session.frame(0.0)
-    longest = 0.0
-    for value in range(5):
-        session.rods[0].stiffness = 10.0 + value
-        started = time.thread_time()
-        keeper.process(frame)
-        longest = max(longest, time.thread_time() - started)
-        kept(keeper, session)
-    assert longest < 0.016  # s, one frame; it took 0.002 when this was written
+    assert lines_run(lambda: keeper.process(frame)) < 2000  # none for each rod: a thread writes them
+    kept(keeper, session)
     keeper.close(session.desks)
 
 

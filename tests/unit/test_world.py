@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import gc
-import time
 import weakref
 from typing import Any
 
 import esper
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from components.commands import Assign, Command, Create, Delete, Group
 from components.derived import DERIVATIONS
@@ -22,6 +22,7 @@ from components.particle import DEFAULT_MASS, Particle
 from components.rod import Rod, spawn_rods
 from components.tags import DiagramShown, Selected
 from components.world import Derivation, World
+from tests.reference.lines import lines_run
 
 
 def triangle() -> Model:
@@ -260,19 +261,22 @@ def test_creation_takes_columns_overrides_and_defaults() -> None:
     assert spawn_rods(model, []) == []
 
 
-def test_a_hundred_thousand_rods_are_created_and_cut_at_once() -> None:
-    side = 231  # odd: every second particle is a colour of the chessboard
+def chessboard(side: int) -> tuple[Model, NDArray[np.intp]]:
+    """A square lattice of particles and rods, with the rows of the particles at the ends of each rod."""
     grid = np.arange(side * side).reshape(side, side)
     pairs = [np.stack([grid[:, :-1], grid[:, 1:]], axis=-1), np.stack([grid[:-1], grid[1:]], axis=-1)]
     between = np.concatenate([part.reshape(-1, 2) for part in pairs])
     x, y = np.meshgrid(np.arange(side), np.arange(side))
     model = Model()
-    started = time.perf_counter()
     model.create(Particle, side * side, position=np.stack([x, y], axis=-1).reshape(-1, 2))
-    rods = spawn_rods(model, between)
-    seconds = time.perf_counter() - started
-    assert len(rods) == len(between) == 106_260
-    assert seconds < 10.0  # usually 0.5; a loop that is quadratic takes minutes
+    spawn_rods(model, between)
+    return model, between
+
+
+def test_many_rods_are_created_and_cut_at_once() -> None:
+    side = 101  # odd: every second particle is a colour of the chessboard
+    model, between = chessboard(side)
+    assert model.rods.count == len(between) == 20_200
     assert model.rods.original_length.tolist() == [1.0] * len(between)
     inner = model.particles.mass.reshape(side, side)[1:-1, 1:-1]
     np.testing.assert_allclose(inner, 4 * 0.5 * 6.15, rtol=1e-15)
@@ -284,18 +288,21 @@ def test_a_hundred_thousand_rods_are_created_and_cut_at_once() -> None:
     np.testing.assert_array_equal(model.rods.between, between)
 
 
-def test_one_at_a_time_is_not_slower_in_a_large_model_than_a_pass_over_it() -> None:
-    model = Model()
-    model.create(Particle, 5000, position=np.arange(10_000).reshape(-1, 2))
-    rows = np.arange(4999)
-    spawn_rods(model, np.stack([rows, rows + 1], axis=1))
-    fastest = np.inf
-    for row in range(0, 300, 50):
-        started = time.perf_counter()
-        for other in range(row, row + 50):
-            spawn_rods(model, [(other, other + 2)])
-        fastest = min(fastest, (time.perf_counter() - started) / 50)
-    assert fastest < 1e-3  # s a rod, usually 0.2 ms; with a search through all names it was 1.7 ms
+def test_creating_takes_time_in_proportion() -> None:
+    few, many = (lines_run(lambda side=side: chessboard(side)) for side in (20, 40))
+    assert many < 4.3 * few  # four times as many rods; a loop that is quadratic runs 16 times as many lines
+
+
+def test_one_at_a_time_takes_no_longer_in_a_large_model() -> None:
+    def lines(particles: int) -> int:
+        model = Model()
+        model.create(Particle, particles, position=np.arange(2 * particles).reshape(-1, 2))
+        rows = np.arange(particles - 1)
+        spawn_rods(model, np.stack([rows, rows + 1], axis=1))
+        spawn_rods(model, [(10, 12)])  # the first looks for the lowest free name, once
+        return lines_run(lambda: [spawn_rods(model, [(row, row + 2)]) for row in range(10)])
+
+    assert lines(2000) <= 1.1 * lines(20)  # a search through all names would run a line for each
 
 
 # --- commands and transactions ---------------------------------------------------------------------------
