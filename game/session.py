@@ -47,8 +47,7 @@ from game.toolbar import toolbar_of
 from systems.base import Law, Phase, StopReason, System
 from systems.edit.pull import Pull
 from systems.edit.refusal import Refusal
-from systems.input.bindings import PANELS as FORMS
-from systems.input.bindings import TEXT, action_for
+from systems.input.bindings import FORMS, TEXT, action_for
 from systems.physics.pace import natural_pace
 
 if TYPE_CHECKING:

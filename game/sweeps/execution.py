@@ -8,8 +8,8 @@ from typing import Any
 
 from game.cores import VARIABLE, cores
 from game.sweeps.plan import Outcome, Plan
-from game.sweeps.specimen import Bench, compute
 from game.sweeps.variation import INSTALL, SweepError
+from game.sweeps.worker import Worker, compute
 
 MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
 TASKS_PER_WORKER = 16  # so that no worker waits long for another's last task
@@ -33,12 +33,12 @@ def outcomes(
     workers: 1 computes in this process; more start that many on this machine; None: as many as suit.
     scheduler: the address of that of a running Dask cluster, which computes instead. Raises SweepError.
     """
-    bench = Bench(plan, cores())
+    here = Worker(plan, cores())
     if workers is None:
-        workers = suitable_workers(plan, len(numbers), bench.at_a_time)
+        workers = suitable_workers(plan, len(numbers), here.at_a_time)
     if scheduler is None and workers == 1:
-        for task in _tasks(numbers, 1, bench.at_a_time):
-            yield bench.compute(task)
+        for task in _tasks(numbers, 1, here.at_a_time):
+            yield here.compute(task)
         return
     try:
         import distributed
@@ -50,7 +50,7 @@ def outcomes(
     with (
         _local_client(distributed, workers) if scheduler is None else _client_of(distributed, scheduler)
     ) as client:
-        yield from _distributed(distributed, client, plan, numbers, bench.at_a_time)
+        yield from _distributed(distributed, client, plan, numbers, here.at_a_time)
 
 
 def _local_client(distributed: Any, workers: int) -> Any:

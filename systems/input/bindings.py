@@ -8,8 +8,8 @@ from functools import cache
 SIMULATION, PAUSE = "simulation", "pause"
 PROPERTIES, SAVE, LOAD, FORCE_METHOD = "properties", "save", "load", "force method"
 LIVE = (SIMULATION, PAUSE)
-PANELS = (PROPERTIES, SAVE, LOAD)
-EVERY = (*LIVE, *PANELS, FORCE_METHOD)
+FORMS = (PROPERTIES, SAVE, LOAD)
+EVERY = (*LIVE, *FORMS, FORCE_METHOD)
 
 TEXT = "text "  # what begins the "key" that is typed text, such as "text a"
 
@@ -92,8 +92,8 @@ BINDINGS: list[Binding] = [
     Binding("return", "accept", (LOAD,), "open"),
     Binding("escape", "cancel", (PROPERTIES,), "restore the box; without one, apply all and go back"),
     Binding("escape", "cancel", (SAVE, LOAD), "restore the box; without one, go back"),
-    Binding("tab", "next box", PANELS, "next box", repeats=True),
-    Binding("shift+tab", "previous box", PANELS, "previous box", repeats=True),
+    Binding("tab", "next box", FORMS, "next box", repeats=True),
+    Binding("shift+tab", "previous box", FORMS, "previous box", repeats=True),
     Binding("click", "click form", (PROPERTIES,), "select a box, turn a switch"),
     Binding("click", "click form", (SAVE, LOAD), "choose"),
     Binding("up", "go up", (PROPERTIES,), "box above, or the previous choice", repeats=True),
@@ -104,18 +104,18 @@ BINDINGS: list[Binding] = [
     Binding("down", "go down", (SAVE, LOAD), "choose a picture", repeats=True),
     Binding("left", "go left", (SAVE, LOAD), "choose a picture", repeats=True),
     Binding("right", "go right", (SAVE, LOAD), "choose a picture", repeats=True),
-    Binding("home", "to the beginning", PANELS, ""),
-    Binding("end", "to the end", PANELS, ""),
-    Binding("backspace", "erase", PANELS, "erase", repeats=True),
-    Binding("delete", "erase after", PANELS, "erase after the caret", repeats=True),
-    Binding("ctrl+a", "mark all", PANELS, "mark all"),
-    Binding("ctrl+c", "copy text", PANELS, "copy"),
-    Binding("ctrl+x", "cut text", PANELS, "cut"),
-    Binding("ctrl+v", "paste text", PANELS, "paste"),
-    Binding("wheel up", "scroll up", PANELS, "scroll up"),
-    Binding("wheel down", "scroll down", PANELS, "scroll down"),
-    Binding("page up", "scroll up", PANELS, "", repeats=True),
-    Binding("page down", "scroll down", PANELS, "", repeats=True),
+    Binding("home", "to the beginning", FORMS, ""),
+    Binding("end", "to the end", FORMS, ""),
+    Binding("backspace", "erase", FORMS, "erase", repeats=True),
+    Binding("delete", "erase after", FORMS, "erase after the caret", repeats=True),
+    Binding("ctrl+a", "mark all", FORMS, "mark all"),
+    Binding("ctrl+c", "copy text", FORMS, "copy"),
+    Binding("ctrl+x", "cut text", FORMS, "cut"),
+    Binding("ctrl+v", "paste text", FORMS, "paste"),
+    Binding("wheel up", "scroll up", FORMS, "scroll up"),
+    Binding("wheel down", "scroll down", FORMS, "scroll down"),
+    Binding("page up", "scroll up", FORMS, "", repeats=True),
+    Binding("page down", "scroll down", FORMS, "", repeats=True),
     Binding("ctrl++", "larger", EVERY, "larger or smaller type", repeats=True),
     Binding("ctrl+shift++", "larger", EVERY, "", repeats=True),
     Binding("ctrl+-", "smaller", EVERY, "larger or smaller type", repeats=True),
@@ -223,8 +223,8 @@ def repeats(scene: str, key: str) -> bool:
 
 @cache
 def toolbar(scene: str) -> tuple[tuple[Binding, ...], ...]:
-    """Groups of what the toolbar offers in a scene: the same while time passes as in pause; none in panels."""
-    scenes = set(LIVE if scene in LIVE else () if scene in PANELS else (scene,))
+    """Groups of what the toolbar offers in a scene: the same while time passes as in pause; none in forms."""
+    scenes = set(LIVE if scene in LIVE else () if scene in FORMS else (scene,))
     found = [binding for binding in BINDINGS if scenes & set(binding.scenes)]
     found.sort(key=lambda binding: scene not in binding.scenes)  # keys that work here come first
     offered = {binding.action: binding for binding in reversed(found)}

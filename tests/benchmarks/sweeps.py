@@ -13,7 +13,8 @@ from game.session import Session
 from game.sweeps.execution import outcomes
 from game.sweeps.plan import Plan
 from game.sweeps.run import plan_of, sweep
-from game.sweeps.specimen import Bench, Specimen
+from game.sweeps.specimen import Specimen
+from game.sweeps.worker import Worker
 from tests.benchmarks.models import lattice
 
 ANALYSES = {"settled": Analysis(load_factors=(1.0,)), "run to rest": Analysis()}
@@ -39,12 +40,12 @@ def variants(count: int) -> list[Row]:
 
 def _variant(name: str, analysis: Analysis, count: int) -> Row:
     plan, numbers = _plan(analysis, count), range(count)
-    bench, specimen = Bench(plan), Specimen(plan)
-    together = _cpu(lambda: bench.together(numbers)) * 1e3 / count
+    worker, specimen = Worker(plan), Specimen(plan)
+    together = _cpu(lambda: worker.together(numbers)) * 1e3 / count
     return {
         "analysis": name,
         "variants": count,
-        "together_cpu_ms": together if bench.at_a_time > 1 else "–",
+        "together_cpu_ms": together if worker.at_a_time > 1 else "–",
         "one_by_one_cpu_ms": _cpu(lambda: [specimen.records(n) for n in numbers]) * 1e3 / count,
         "opened_anew_cpu_ms": _cpu(lambda: [Specimen(plan).records(n) for n in numbers]) * 1e3 / count,
     }
@@ -57,12 +58,12 @@ def steps(count: int) -> list[Row]:
     vary = ["rods.*.stiffness~normal(164640,5%)"]
     analysis = Analysis(times=(STEP * STEPS,))
     plan = plan_of("isostatic", vary, ["residual"], analysis, (*elastic, *integrator), count, 1)
-    bench = Bench(plan, cores())
+    worker = Worker(plan, cores())
     session = Session(lattice(3 * count, damping=0.0))
     session.model.settings.integrator, session.model.settings.time_step = "velocity_verlet", STEP
     rows = []
     for name, rods, work in [
-        ("batch of triangles", 3 * count, lambda: bench.together(range(count))),
+        ("batch of triangles", 3 * count, lambda: worker.together(range(count))),
         ("one lattice", session.rods.count, lambda: session.simulation.advance(STEPS)),
     ]:
         seconds = _cpu(work)

@@ -10,8 +10,9 @@ import pytest
 from game.reports.report import Analysis
 from game.sweeps.plan import Plan, Record
 from game.sweeps.run import plan_of
-from game.sweeps.specimen import Bench, Specimen
+from game.sweeps.specimen import Specimen
 from game.sweeps.stack import Stack
+from game.sweeps.worker import Worker
 from systems.physics.automatic import choose, stiffnesses, suited_to
 from systems.physics.spectrum import spectra, spectrum
 from tests.reference.models import square, triangle
@@ -91,13 +92,13 @@ CASES: dict[str, tuple[Any, list[str], Analysis, int | None]] = {
 @pytest.mark.parametrize("name", CASES)
 def test_together_they_have_the_bits_of_single_runs(name: str) -> None:
     plan = planned(*CASES[name])
-    together = Bench(plan).together(range(plan.size))
+    together = Worker(plan).together(range(plan.size))
     assert together == {number: alone(plan, number) for number in range(plan.size)}
 
 
 def test_the_number_of_threads_changes_no_bit() -> None:
     plan = planned(TRIANGLE, ["rods.*.stiffness~normal(164640,5%)"], TIMES, 30)
-    one, three = (Bench(plan, threads).together(range(plan.size)) for threads in (1, 3))
+    one, three = (Worker(plan, threads).together(range(plan.size)) for threads in (1, 3))
     assert len(one) == 30
     assert one == three
 
@@ -111,10 +112,10 @@ def test_what_cannot_be_computed_together_is_left_to_single_runs() -> None:
         "rods.CA.stiffness=-1,1e-40,1e5",
     ]
     plan = planned(TRIANGLE, vary, Analysis(limit=0.1))
-    bench = Bench(plan)
-    together = bench.together(range(plan.size))
+    worker = Worker(plan)
+    together = worker.together(range(plan.size))
     assert set(together) == {plan.size - 1}
-    statuses = {records[-1][0] for _, records in bench.compute(range(plan.size))}
+    statuses = {records[-1][0] for _, records in worker.compute(range(plan.size))}
     assert statuses == {"failed", "diverged", "limit reached", "at rest"}
 
 
@@ -128,14 +129,14 @@ def test_what_cannot_be_computed_together_is_left_to_single_runs() -> None:
     ids=["statics", "supports", "no rods"],
 )
 def test_other_sweeps_are_single_runs(source: Any, vary: str, analysis: Analysis) -> None:
-    assert Bench(planned(source, [vary], analysis)).at_a_time == 1
+    assert Worker(planned(source, [vary], analysis)).at_a_time == 1
 
 
 def test_structures_whose_particles_can_meet_are_single_runs() -> None:
     apart = {"name": "E", "position": [5, 5]}
     source = TRIANGLE | {"particles": [*TRIANGLE["particles"], apart]}
     plan = planned(source, ["settings.collisions=true,false"], TIMES)
-    assert set(Bench(plan).together(range(2))) == {1}
+    assert set(Worker(plan).together(range(2))) == {1}
 
 
 @pytest.mark.parametrize(

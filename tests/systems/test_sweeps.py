@@ -18,7 +18,8 @@ from game.sweeps import SweepError, sweep
 from game.sweeps.execution import outcomes
 from game.sweeps.results import Results
 from game.sweeps.run import plan_of
-from game.sweeps.specimen import Specimen, compute
+from game.sweeps.specimen import Specimen
+from game.sweeps.worker import compute
 from tests.reference.models import square, triangle
 
 MODEL = triangle(damping=100, density=6.15, tensile_strength=215, compressive_strength=215)
