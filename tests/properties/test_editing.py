@@ -11,6 +11,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, ru
 from game import Session
 from systems.input.bindings import BINDINGS, LIVE
 from tests.properties.soundness import check_sound, contents
+from tests.reference.sessions import put_states_aside
 
 EMPTY = {"format": "pinjoint model", "version": 1}
 FRAME = 1.0 / 60.0
@@ -25,7 +26,7 @@ class Editing(RuleBasedStateMachine):
     def open(self, model: Any) -> None:
         self.session = Session.open(model)
         self.session.view.camera.scale = 100.0
-        self.session.history._memory = 4 * self.session.simulation.moment().state.size  # most goes on the shelf
+        put_states_aside(self.session, beyond=4 * self.session.simulation.moment().state.size)  # most of them
         self.start = contents(self.session.model)
 
     @rule(at=places, key=st.sampled_from("plcfv"))

@@ -14,6 +14,7 @@ from game import Session
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import square
+from tests.reference.sessions import put_states_aside, states_put_aside
 
 Step = tuple[str, Any]
 
@@ -186,13 +187,14 @@ def test_work_of_an_edit_is_the_energy_that_it_gives() -> None:
 
 def test_states_that_were_put_aside_come_back_with_the_paths_of_discs() -> None:
     session = Session.open("collision_i")
-    session.history._memory = 0  # all go on the shelf
+    put_states_aside(session, beyond=0)
     start = bits.columns(session.model)
     for _ in range(3):
         session.run(time=0.2)
         session.particles[0].force = (0.0, 0.001)
     session.run(time=0.2)
     end = bits.columns(session.model)
+    assert states_put_aside(session) == 4
     while session.undo():
         pass
     assert bits.different(bits.columns(session.model), start) == []

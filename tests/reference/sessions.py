@@ -1,0 +1,19 @@
+"""Sessions for tests, as no person has them."""
+
+from __future__ import annotations
+
+from game import Session
+from game.history.history import History
+from game.history.log import Run
+
+
+def put_states_aside(session: Session, beyond: int) -> None:
+    """Let a session that has just begun keep only so many bytes of states in memory, and the others on a shelf."""
+    desk = session.desk
+    desk.history = History(desk.model, desk.simulation, desk._edited, beyond)
+
+
+def states_put_aside(session: Session) -> int:
+    """How many states of its undo log are on the shelf now."""
+    entries = session.history._done._entries
+    return sum(isinstance(entry, Run) and entry.shelved is not None for entry in entries)
