@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -70,7 +71,7 @@ class Page:
     """
 
     lines: tuple[str, ...] = ()
-    table: tuple[tuple[str, ...], ...] = ()
+    table: Sequence[tuple[str, ...]] = ()
     first: int = 0
 
 

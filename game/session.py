@@ -575,6 +575,7 @@ class Session:
         """Move the pointer to a point of the model (m); returns its pixel. Raises ValueError."""
         if not (math.isfinite(x) and math.isfinite(y)):
             raise ValueError(f"The point is ({x}, {y}); give finite coordinates, in m.")
+        self.scenes.active.finish()
         x, y = self.focus[1].camera.to_pixels((x, y)).tolist()
         self.focus[1].pointer = x, y
         return x, y

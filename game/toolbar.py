@@ -56,7 +56,7 @@ def _has_particles(session: Session) -> bool:
 
 
 def _guided(session: Session, condition: Callable[[Any], bool]) -> bool:
-    guide = getattr(session.scenes.active, "guide", None)
+    guide = getattr(session.scenes.active, "shown_guide", None)
     return guide is not None and condition(guide)
 
 

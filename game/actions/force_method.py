@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from components.field import Vector
 from game.actions.registry import action
-from game.scenes.force_method import PARTS, ForceMethod
+from game.force_method import PARTS
+from game.scenes.force_method import ForceMethod
 from systems.edit.picking import pick
 from systems.edit.refusal import Refusal
 
@@ -20,11 +22,23 @@ def _guide(session: Session) -> Guide | None:
     return scene.guide if isinstance(scene, ForceMethod) else None
 
 
+def _work(session: Session, text: str, do: Callable[[], object]) -> None:
+    scene = session.scenes.active
+    assert isinstance(scene, ForceMethod)
+    scene.work(session, text, do)
+
+
 @action("next part")
 def _next_part(session: Session, pixel: Vector) -> None:
     guide = _guide(session)
-    if guide is not None and not guide.next():
+    if guide is None:
+        return
+    if guide.part == PARTS:
         session.scenes.request("pause")
+    elif guide.part == 2:
+        guide.next()
+    else:
+        _work(session, f"Computing part {guide.part + 1}", guide.next)
 
 
 @action("pick unknown")
@@ -32,7 +46,8 @@ def _pick_unknown(session: Session, pixel: Vector) -> None:
     guide = _guide(session)
     if guide is not None and guide.part == 2:
         model, view = session.focus
-        guide.pick(pick(model, view, pixel) if view.camera.viewport.contains(pixel) else None)
+        hit = pick(model, view, pixel) if view.camera.viewport.contains(pixel) else None
+        _work(session, "Releasing it and solving anew", lambda: guide.pick(hit))
 
 
 @action("release x")
@@ -59,7 +74,7 @@ def _release_another(session: Session, pixel: Vector) -> None:
 def _pick_axis(session: Session, axis: int) -> None:
     guide = _guide(session)
     if guide is not None:
-        guide.pick_axis(axis)
+        _work(session, "Releasing it and solving anew", lambda: guide.pick_axis(axis))
 
 
 @action("toggle diagrams of sets")

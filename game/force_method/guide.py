@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from components.commands import Assign
 from components.field import Column, Role
 from components.handle import Handle
 from components.model import Model
@@ -17,7 +18,7 @@ from components.rod import Rod
 from components.table import Table
 from components.tags import Selected
 from components.view import View
-from game.document import document, parse
+from game.force_method import PARTS
 from game.live import Live
 from game.schedule import Schedule
 from game.shapes import DRAWN_SHARE, extent
@@ -33,7 +34,6 @@ from systems.statics.force_method import (
 )
 from systems.statics.settle import settle
 
-PARTS = 7
 DIAGRAM_HEIGHT = 34.0  # px of the largest force diagram
 SWING = 3.0  # s in which a mechanism is shown to move there and back
 
@@ -154,10 +154,10 @@ class Guide:
     def next(self) -> bool:
         """Go on to the next part; False after the last. Part 2 is left by picking an unknown."""
         self._forget_refusal()
-        for running in self.running:
-            running.settle()
         if self.part == PARTS:
             return False
+        for running in self.running:
+            running.settle()
         if self.part == 2:
             self.refusal = "Pick the rod or the constraint first."
             return True
@@ -271,13 +271,17 @@ def view_like(view: View) -> View:
 
 def elastic_copy(model: Model) -> Model:
     """The same structure without yielding, undisplaced and at rest, at the beginning of time."""
-    copy = parse(document(model))
+    copy = Model()
+    for name, table in model.tables.items():
+        kept = [field.name for field in table.fields_in(Role.DOCUMENT)] + ["plastic_strain"] * (name == "rods")
+        columns = {field: table.column(field) for field in kept}
+        if table.kind.single:
+            [one] = copy.tables[name]
+            for field, column in columns.items():
+                copy.apply(Assign(name, field, (one.entity,), column))
+        else:
+            copy.create(table.kind, table.count, **columns)
     copy.settings.plasticity = False
-    for name in ("particles", "rods", "clock"):
-        table = copy.tables[name]
-        for field in table.fields_in(Role.STATE):
-            if field is not Rod.plastic_strain:
-                copy.writable(f"{name}.{field.name}")[...] = field.allocate(len(table))
     return copy
 
 

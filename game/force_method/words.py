@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, overload
 
-from game.force_method.guide import PARTS, Guide
+from game.force_method import PARTS
 
 if TYPE_CHECKING:
+    from game.force_method.guide import Guide
     from systems.statics.force_method import Solution, Unknown
 
 Caption = tuple[str, ...]
-Table = tuple[tuple[str, ...], ...]
 
 NAMES = ("Set 1: real structure", "Set 2: base structure", "Set 3: base structure")
 TO_COME = ("", "follows in part 3", "follows in part 5")
@@ -150,20 +151,37 @@ def _equations(solution: Solution) -> tuple[str, ...]:
     return (*lines, ",  ".join(forces))
 
 
-def table(guide: Guide) -> Table:
+def table(guide: Guide) -> Sequence[tuple[str, ...]]:
     """Set 1 = set 2 + set 3, rod by rod (part 7), in kN."""
     solution = guide.solution
-    if solution is None or guide.part < PARTS:
-        return ()
-    total = solution.superposed.axial_force
-    columns = solution.real.axial_force, solution.base.axial_force, total - solution.base.axial_force
-    residual = total - solution.real.axial_force
-    names = guide.model.rods.names
-    rows = zip(names, *(column.tolist() for column in columns), residual.tolist(), strict=True)
-    return (
-        ("kN", "set 1", "= set 2", "+ set 3", "residual"),
-        *((name, *(signed(n) for n in forces), _power(rest)) for name, *forces, rest in rows),
-    )
+    return Superposition(guide.model.rods.names, solution) if solution and guide.part == PARTS else ()
+
+
+class Superposition(Sequence[tuple[str, ...]]):
+    """The rows of the last table, each written when it is asked for: a large structure has more than are seen."""
+
+    def __init__(self, names: list[str], solution: Solution) -> None:
+        total = solution.superposed.axial_force
+        real, base = solution.real.axial_force, solution.base.axial_force
+        self._names, self._forces, self._residual = names, (real, base, total - base), total - real
+
+    def __len__(self) -> int:
+        return 1 + len(self._names)
+
+    @overload
+    def __getitem__(self, index: int) -> tuple[str, ...]: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[tuple[str, ...]]: ...
+    def __getitem__(self, index: int | slice) -> tuple[str, ...] | list[tuple[str, ...]]:
+        places = range(len(self))[index]
+        return self._row(places) if isinstance(places, int) else [self._row(place) for place in places]
+
+    def _row(self, place: int) -> tuple[str, ...]:
+        if place == 0:
+            return ("kN", "set 1", "= set 2", "+ set 3", "residual")
+        rod = place - 1
+        forces = (signed(column[rod]) for column in self._forces)
+        return (self._names[rod], *forces, _power(float(self._residual[rod])))
 
 
 def _power(number: float) -> str:

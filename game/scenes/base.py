@@ -42,6 +42,9 @@ class Scene:
     def advance(self, session: Session, elapsed: float) -> None:
         """Let the time of one frame pass, where it does."""
 
+    def finish(self) -> None:
+        """Do now what was put off until a picture has announced it."""
+
     def zoom(self, session: Session, factor: float, pixel: Vector) -> None:
         """Look closer, so that what is under a pixel stays there."""
         session.view.camera.zoom(factor, pixel)

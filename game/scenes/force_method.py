@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.model import Model
 from components.view import Page, Status, View, drawn_positions
+from game.force_method import PARTS, words
 from game.scenes.base import Scene
 from systems.render.overlays import heading_height
 from systems.render.page import page_height
@@ -17,19 +20,29 @@ if TYPE_CHECKING:
     from game.force_method.guide import Guide, Mechanism, Set
     from game.session import Session
 
-PARTS = 7
 WIDE = 1.1  # width / height from which the sets stand side by side
 MOST_OF_HEIGHT = 0.45  # that the working takes; more is scrolled
+LARGE = 500  # rods beyond which a picture says what is being worked on before it is
 CAPTION, SCALE, MARGIN = 66.0, 28.0, 40.0  # points above, below and beside a structure in its set
 
 
+@dataclass
+class _Work:
+    """What takes a while, and what is said of it; `said` once a frame has shown that."""
+
+    text: str
+    do: Callable[[], object]
+    said: bool = False
+
+
 class ForceMethod(Scene):
-    """The seven parts of the force method. `guide` is None if the structure cannot be solved."""
+    """The seven parts of the force method. `shown_guide` has not done yet what is only announced."""
 
     name = "force method"
 
     def __init__(self) -> None:
-        self.guide: Guide | None = None
+        self.shown_guide: Guide | None = None
+        self._work: _Work | None = None
         self._problem = ""
         self._mechanism: Mechanism | None = None  # what the whole structure is, if it cannot be solved
         self._page, self._page_of, self._first = Page(), -1, 0
@@ -38,6 +51,10 @@ class ForceMethod(Scene):
         self._head, self._foot = View(page=Page(), legend=False), View(page=Page(), legend=False)
 
     def enter(self, session: Session) -> None:
+        self._problem, self._mechanism, self._page_of = "", None, -1
+        self.work(session, "Solving the structure", partial(self._begin, session))
+
+    def _begin(self, session: Session) -> None:
         from game.force_method.guide import (  # scipy is imported only here
             Guide,
             Mechanism,
@@ -46,9 +63,8 @@ class ForceMethod(Scene):
         )
         from systems.statics.force_method import ForceMethodError
 
-        self._problem, self._mechanism, self._page_of = "", None, -1
         try:
-            self.guide = Guide(session.model, session.schedule, session.view)
+            self.shown_guide = Guide(session.model, session.schedule, session.view)
         except ForceMethodError as error:
             self._problem = str(error)
             if error.motion is not None:
@@ -56,35 +72,55 @@ class ForceMethod(Scene):
                 self._mechanism = Mechanism(copy, error.motion, view_like(session.view))
 
     def exit(self, session: Session) -> None:
-        self.guide = self._mechanism = None
+        self.shown_guide = self._mechanism = self._work = None
+
+    @property
+    def guide(self) -> Guide | None:
+        """Where the person is, all work done; None if the structure cannot be solved."""
+        self.finish()
+        return self.shown_guide
+
+    def finish(self) -> None:
+        work, self._work = self._work, None
+        if work is not None:
+            work.do()
+
+    def work(self, session: Session, text: str, do: Callable[[], object]) -> None:
+        """Do something: if it may take a while, once a picture has said so, or when somebody asks for the guide."""
+        if session.model.rods.count <= LARGE:
+            do()
+        else:
+            self._work = _Work(f"{text} with {session.model.rods.count} rods …", do)
 
     def _moving(self) -> list[Set | Mechanism]:
-        if self.guide is not None:
-            return self.guide.moving
+        if self.shown_guide is not None:
+            return self.shown_guide.moving
         return [self._mechanism] if self._mechanism is not None else []
 
     def advance(self, session: Session, elapsed: float) -> None:
+        if self._work is not None and not self._work.said:
+            self._work.said = True
+            return
+        self.finish()
         for moving in self._moving():
             moving.view.forces_known = moving.simulation is None or session.has_program(moving.simulation)
             if moving.view.forces_known:
                 moving.advance(elapsed)
 
     def busy(self, session: Session) -> bool:
-        return bool(self._moving())
+        return self._work is not None or bool(self._moving())
 
     def hint(self, session: Session) -> str:
-        from game.force_method import words
-
-        return words.hint(self.guide) if self.guide else "Esc back to pause"
+        return words.hint(self.shown_guide) if self.shown_guide else "Esc back to pause"
 
     # --- what is seen ------------------------------------------------------------------------------
 
     def focus(self, session: Session) -> tuple[Model, View]:
         """Set 1, from which an unknown is picked."""
         self._lay_out(session)
-        if self.guide is None:
+        if self.shown_guide is None:
             return self._blank, self._foot
-        return self.guide.sets[0].model, self.guide.sets[0].view
+        return self.shown_guide.sets[0].model, self.shown_guide.sets[0].view
 
     def stages(self, session: Session) -> list[tuple[Model, View]]:
         """The message, the sets, and the working with the status line."""
@@ -92,11 +128,11 @@ class ForceMethod(Scene):
 
     def _lay_out(self, session: Session) -> list[tuple[Model, View]]:
         """Place everything in the window; returns what stands in the middle."""
-        from game.force_method import words
-
-        guide, ratio, whole = self.guide, session.view.pixel_ratio, session.view.canvas
+        guide, ratio, whole = self.shown_guide, session.view.pixel_ratio, session.view.canvas
         self._head.heading = words.message(guide) if guide else self._problem
         part = f"Part {guide.part} of {PARTS}" if guide else "Not possible"
+        if self._work is not None:
+            self._head.heading, part = self._work.text, "Working"
         self._foot.status = Status(time=None, state=part, hint=self.hint(session))
         self._foot.page = self._working()
         head = round(heading_height(self._head.heading, whole.width, ratio))
@@ -111,9 +147,7 @@ class ForceMethod(Scene):
 
     def _working(self) -> Page:
         """The equations and the table; made anew in every part only, since a table may be long."""
-        from game.force_method import words
-
-        guide = self.guide
+        guide = self.shown_guide
         if guide is None:
             return Page()
         if guide.part != self._page_of:
@@ -125,10 +159,8 @@ class ForceMethod(Scene):
         return Page(self._page.lines, self._page.table, self._first)
 
     def _sets(self, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
-        from game.force_method import words
-
-        captions = words.captions(self.guide) if self.guide else [("",)] * 3
-        there: list[Set | Mechanism] = [*self.guide.shown] if self.guide else self._moving()
+        captions = words.captions(self.shown_guide) if self.shown_guide else [("",)] * 3
+        there: list[Set | Mechanism] = [*self.shown_guide.shown] if self.shown_guide else self._moving()
         shown = []
         for index, caption in enumerate(captions):
             viewport = _third(middle, index)

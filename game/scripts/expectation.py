@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from components.spelling import missing
+from game.force_method import words
 from game.target import PathError, locate_one
 
 if TYPE_CHECKING:
@@ -91,8 +92,6 @@ def _of_force_method(session: Session, quantity: str) -> Any:
 
     superposed.AC is set 2 + set 3, which is to equal real.AC, set 1.
     """
-    from game.force_method import words  # which scipy comes with
-
     guide = getattr(session.scenes.active, "guide", None)
     if guide is None:
         raise LookupError("the force method is not going on; press K in pause first.")

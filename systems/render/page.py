@@ -67,16 +67,16 @@ def _table(sheet: Sheet, layout: _Layout, y: float, bottom: float) -> list[Mark]
     """As many rows as there is room for, from the one that was scrolled to."""
     if not layout.page.table:
         return []
-    head, *rows = layout.page.table
+    table = layout.page.table
     room = max(int((bottom - _BELOW * sheet.unit - y - 0.5 * layout.step) / layout.step + 0.01), 1)
     high = min(layout.rows, room)
     first = min(layout.page.first, max(layout.rows - high, 0))
     marks: list[Mark] = []
     for block in range(layout.blocks):
         begin = block * layout.rows
-        shown = rows[begin + first : min(begin + first + high, begin + layout.rows)]
+        shown = table[1 + begin + first : 1 + min(begin + first + high, begin + layout.rows)]
         left = sheet.viewport.left + _EDGE * sheet.unit + block * layout.block
-        for number, row in enumerate([head, *shown] if shown else []):
+        for number, row in enumerate([table[0], *shown] if shown else []):
             colour = sheet.theme.muted if number == 0 else sheet.theme.text
             marks += _row(layout, row, left, y + number * layout.step, colour)
     return marks

@@ -21,7 +21,7 @@ from components.spelling import missing
 from systems.statics.equations import Array, Structure
 from systems.statics.explain import cables_named, describe_motion
 from systems.statics.external import external_forces
-from systems.statics.factor import Factor, soft_modes
+from systems.statics.factor import Factor, soft_count, soft_modes
 
 _KEPT = 1e6  # weight of supports against rods when redundants are chosen: rods are released first
 _RANK = 1e-9  # relative size below which a pivot is zero
@@ -139,8 +139,7 @@ class _Linear:
         self._compatibility = structure.compatibility(response)
         matrix = csc_matrix(self._compatibility.T @ diags(along) @ self._compatibility)
         self._factor = Factor(matrix)
-        modes = soft_modes(matrix, structure.weight)
-        if modes.shape[1]:
+        if soft_count(matrix, structure.weight) and (modes := soft_modes(matrix, structure.weight)).shape[1]:
             motions = np.array([structure.spread(mode) for mode in modes.T])
             first = motions[0] / np.hypot(*motions[0].T).max()
             raise ForceMethodError(self._mechanism(released, describe_motion(model, motions)), first)

@@ -21,6 +21,7 @@ from tests.benchmarks.models import lattice
 
 FRAME = 1.0 / 60.0
 MOST = 50.0  # ms within which one wants to see what one did
+ANNOUNCED = "…"  # ends the names of what is worked on after a picture that says so
 
 Row = dict[str, object]
 
@@ -68,6 +69,10 @@ def keys(*pressed: str) -> Act:
     return lambda hand: [hand.press(key) for key in pressed] and None  # type: ignore[func-returns-value]
 
 
+def nothing(hand: Hand) -> None:
+    """See what a frame does."""
+
+
 def at_particle(*pressed: str) -> Act:
     """Press these keys over a particle."""
 
@@ -105,6 +110,10 @@ def _drag(hand: Hand) -> None:
 def _type(hand: Hand) -> None:
     hand.session.click_box("stiffness")
     hand.session.type("2")
+
+
+def _click_support(hand: Hand) -> None:
+    hand.session.click(0.0, hand.session.particles.position[:, 1].max() // 2)
 
 
 # What is done, in this order, and how often; a name without times is done once and not measured.
@@ -147,7 +156,7 @@ SESSION: tuple[tuple[str, Act, int], ...] = (
     ("open the list of models", keys("d"), 1),
     ("leave it", keys("escape"), 1),
     ("run", keys("space"), 1),
-    ("a frame while it runs", lambda hand: None, 7),
+    ("a frame while it runs", nothing, 7),
     ("new particle while it runs", lambda hand: hand.press("p", hand.point(0.5, 0.25)), 7),
     ("delete while it runs", at_particle("click", "delete"), 7),
     ("pull a particle", at_particle("drag"), 3),
@@ -155,6 +164,24 @@ SESSION: tuple[tuple[str, Act, int], ...] = (
     ("pause", keys("space"), 1),
     ("a step", keys("."), 7),
     ("a step back", keys(","), 7),
+    ("force method", keys("k"), 1),
+    ("its first set …", nothing, 1),
+    ("its run", nothing, 7),
+    ("part 2", keys("k"), 1),
+    ("its equilibrium …", nothing, 1),
+    ("pick a support", _click_support, 1),
+    ("", nothing, 1),
+    ("its direction", keys("x"), 1),
+    ("the base structure …", nothing, 1),
+    ("part 4", keys("k"), 1),
+    ("its equilibrium …", nothing, 1),
+    ("part 5", keys("k"), 1),
+    ("the third set …", nothing, 1),
+    ("part 6", keys("k"), 1),
+    ("its equilibrium …", nothing, 1),
+    ("part 7", keys("k"), 1),
+    ("the table …", nothing, 1),
+    ("back to pause", keys("escape"), 1),
 )
 
 
@@ -162,6 +189,7 @@ def reactions(*, quick: bool) -> Iterator[Row]:
     """Milliseconds from an action to the picture that shows it: the median, the longest, the median of the processor.
 
     The last is what counts as in time, for it is what one waits where nothing else keeps the machine busy.
+    What the picture before said that it is worked on need not be.
     """
     with tempfile.TemporaryDirectory() as folder:
         before = os.environ.get(library.DATA_VARIABLE)
@@ -179,7 +207,11 @@ def reactions(*, quick: bool) -> Iterator[Row]:
                     "median_ms": waited[len(waited) // 2],
                     "longest_ms": waited[-1],
                     "processor_ms": processor,
-                    "seen_in_time": "yes" if processor <= MOST else "no",
+                    "seen_in_time": "announced"
+                    if what.endswith(ANNOUNCED)
+                    else "no"
+                    if processor > MOST
+                    else "yes",
                 }
         del os.environ[library.DATA_VARIABLE]
         if before is not None:

@@ -9,13 +9,14 @@ from components.model import Model
 from components.particle import Particle
 from game import Session, models
 from game.force_method import words
-from game.force_method.guide import Guide
+from game.force_method.guide import Guide, elastic_copy
 from game.scenes.force_method import ForceMethod
 from systems.render.marks import Text
 from systems.render.page import draw_page
 from systems.render.picture import compose
 from systems.render.sheet import measure
 from systems.render.theme import load_theme
+from tests.benchmarks.models import lattice
 
 
 def guide_of(session: Session) -> Guide:
@@ -272,3 +273,49 @@ def test_in_the_end_all_sets_are_drawn_to_one_scale_so_that_they_add_up() -> Non
     guide = released(session, "BD")
     settings = [one.model.settings for one in guide.sets]
     assert len({(one.displacement_scale, one.diagram_scale) for one in settings}) == 1
+
+
+def test_a_large_structure_is_worked_on_after_a_picture_that_says_so() -> None:
+    """Who asks for the guide, such as the next key, does not wait for a picture."""
+    session = Session(lattice(600))
+    session.press("k")
+    session.frame(1 / 60)
+    assert "Solving the structure" in "".join(said(session))
+    assert session.busy
+    session.frame(1 / 60)
+    assert "Real structure under the real load" in "".join(said(session))
+    assert guide_of(session).sets[0].model.clock.steps > 0
+    session.press("k")
+    assert "Computing part 2" in "".join(said(session))
+    session.click(0.0, 6.0)
+    session.press("x")
+    assert "Releasing it" in "".join(said(session))
+    assert guide_of(session).part == 3
+    session.press("k")
+    session.press("escape")
+    assert session.scene == "pause"
+
+
+def said(session: Session) -> list[str]:
+    """All texts in the window."""
+    marks = (mark for shown, view in session.stages for mark in compose(shown, view, load_theme("light")).marks)
+    return [mark.text for mark in marks if isinstance(mark, Text)]
+
+
+def test_a_copy_is_elastic_undisplaced_and_at_rest_and_keeps_what_else_was_drawn() -> None:
+    session = Session.open("hyperstatic_yield")
+    session.rods["AC"].temperature_change = 20.0
+    session.model.environment.acceleration = (0.0, -9.81)
+    session.run(time=0.01)
+    session.model.writable("rods.plastic_strain")[2] = 1e-3
+    copy = elastic_copy(session.model)
+    expected = models.document(session.model)
+    del expected["state"]
+    for particle in expected["particles"]:
+        for key in ("displacement", "velocity"):
+            particle.pop(key, None)
+    expected["settings"]["plasticity"] = False
+    found = models.document(copy)
+    assert found.pop("settings") == expected.pop("settings")
+    for key in ("environment", "particles", "rods", "loads"):
+        assert found.get(key) == expected.get(key), key
