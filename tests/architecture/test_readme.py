@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+import shlex
 from pathlib import Path
 
 import pytest
 
 from game import models
-from game.cli import COMMANDS
+from game.cli import COMMANDS, main
 from systems.input.bindings import BINDINGS
 
 ROOT = Path(__file__).parents[2]
@@ -69,6 +70,25 @@ def test_every_command_exists(page: Path) -> None:
     for block in blocks("sh", page.read_text(encoding="utf-8")):
         for word in re.findall(r"(?:^|bin/)pinjoint ([\w-]+)", block, flags=re.MULTILINE):
             assert word.isupper() or word in COMMANDS or word in models.bundled(), word
+
+
+LONG = ("open", "bench", "sweep", "play")  # or with a window, or tried elsewhere
+WITHOUT_WINDOW = [
+    words
+    for line in re.findall(r"^pinjoint (.*)$", "".join(blocks("sh")), flags=re.MULTILINE)
+    if (words := shlex.split(line, comments=True))[0] in set(COMMANDS) - set(LONG) and len(words) > 1
+]
+
+
+@pytest.mark.parametrize("words", WITHOUT_WINDOW, ids=" ".join)
+def test_every_command_does_what_it_says(
+    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("RECORD.csv").write_text("0,0\n0.1,1\n0.2,0\n", encoding="utf-8")
+    assert main(words) == 0
+    if "--output" in words:
+        assert Path(words[words.index("--output") + 1]).stat().st_size > 0
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pymunk  # here, so that a missing peer is told before anything is measured
 
 from systems.collision.discs import Discs
 from tests.reference.scenes_of_discs import GRAVITY, Scene, gas, packed, stacked
@@ -28,8 +29,6 @@ def _ours(scene: Scene, seconds: float, **rest: Any) -> tuple[float, Discs]:
 
 def _pymunk_space(scene: Scene, restitution: float, gravity: float) -> tuple[Any, list[Any]]:
     """The same discs in pymunk, without friction; held ones are static."""
-    import pymunk
-
     space = pymunk.Space(threaded=False)
     space.gravity = (0.0, -gravity)
     bodies = []

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pymunk  # here, so that a missing peer is told before anything is measured
 
 from components.model import Model
 from game.catalogue import DRIVERS, step_systems
@@ -221,8 +222,6 @@ def peers(*, quick: bool) -> list[Row]:
 
 
 def _pymunk_springs(size: int) -> Row:
-    import pymunk
-
     model = lattice(size, damping=1.0)
     space = pymunk.Space(threaded=False)
     bodies = []
