@@ -1,5 +1,14 @@
-"""`python -m game` is `pinjoint`."""
+"""The program: `pinjoint`, or `python -m game`."""
 
-from game.cli import main
+from game.interrupts import unheard
 
-raise SystemExit(main())
+
+def main() -> int:
+    """Run the command line; returns the exit status."""
+    with unheard():
+        from game import cli
+    return cli.main()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
