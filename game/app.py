@@ -282,7 +282,7 @@ def render_png(session: Session, path: str, size: tuple[int, int], theme: str = 
     """Draw a session to a PNG file, without a display. Raises OSError if it cannot be written."""
     surface = _drawn(session, size, theme, drawn_places(session.model))
     with open(path, "wb") as file:
-        pygame.image.save(surface, file, path if path.lower().endswith((".png", ".jpg", ".bmp")) else ".png")
+        pygame.image.save(surface, file, Path(path).suffix)
 
 
 def picture(session: Session, size: tuple[int, int], theme: str, around: Points) -> Colours:

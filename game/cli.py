@@ -46,6 +46,7 @@ from systems.render.theme import theme_names
 
 ANSWERED, NOT_ANSWERED, NO_DISPLAY = 0, 1, 3
 
+_PICTURES = (".png", ".gif", ".jpg", ".bmp")
 _FORMATS = {"table": as_table, "json": as_json, "csv": as_csv}
 
 
@@ -76,8 +77,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:  # whoever reads has seen enough, such as `head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return NOT_ANSWERED
+    except OSError as error:
+        if error.filename is None:  # and not tried again on leaving
+            _drop_output()
+        place = error.filename or "Standard output"
+        print(f"pinjoint: {place} cannot be used: {error.strerror or error}.", file=sys.stderr)
+        return BAD_INPUT
+
+
+def _drop_output() -> None:
+    """Let what is still on its way to standard output go nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 # --- opening the window ----------------------------------------------------------------------------------
@@ -422,6 +434,8 @@ def _render(words: Sequence[str]) -> int:
     parser.add_argument("--limit", type=positive, default=DEFAULT_LIMIT, help=argparse.SUPPRESS)
     options = parser.parse_args(words)
     width, height = _size(options.size)
+    if Path(options.output).suffix.lower() not in _PICTURES:
+        raise UsageError(f"--output {options.output}: write a file that ends with {' or '.join(_PICTURES)}.")
     session = _session(options)
     session.view.all_diagrams = options.diagrams
     _show_shape(session, options)

@@ -235,7 +235,10 @@ def run(words: list[str]) -> int:
     if output.suffix not in (".csv", ".png"):
         raise UsageError(f"--output {output}: write a file that ends with .csv or .png.")
     record(session, probe, options.until, options.samples)
-    (write_png if output.suffix == ".png" else write_csv)(probe, output)
+    try:
+        (write_png if output.suffix == ".png" else write_csv)(probe, output)
+    except OSError as error:
+        raise UsageError(f"{output} cannot be written: {error.strerror}. Choose another --output.") from None
     return 0
 
 

@@ -112,6 +112,8 @@ def plain(value: Any, where: str) -> Any:
         value = value.tolist()
     if isinstance(value, float) and not math.isfinite(value):
         raise ResultError(f"{where} is {value}, not finite; report a state before it.")
+    if isinstance(value, str):
+        return value.encode("utf-8", "replace").decode()  # names of files need not be UTF-8
     if isinstance(value, Mapping):
         return {str(key): plain(item, f"{where}.{key}") for key, item in value.items()}
     if isinstance(value, list | tuple):

@@ -35,6 +35,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from components.field import Vector
+from components.spelling import remedy
 from game.overrides import apply_override
 from game.scripts.expectation import check
 
@@ -103,7 +104,10 @@ class Script:
 
     def _read(self) -> Iterator[tuple[int, dict[str, Any]]]:
         try:
-            text = self.path.read_text(encoding="utf-8")
+            text = self.path.read_text(encoding="utf-8-sig")
+        except FileNotFoundError:
+            reason = f"There is no file and no lesson '{self.path}'; {remedy(str(self.path), lessons())}"
+            raise ScriptError(reason) from None
         except OSError as error:
             raise ScriptError(f"{self.path} cannot be read: {error.strerror}. Check its path.") from None
         except UnicodeDecodeError as error:
