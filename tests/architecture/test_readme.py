@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from game import models
-from game.cli import COMMANDS, main
+from game.cli import main
+from game.registry import COMMANDS
 from systems.input.bindings import BINDINGS
 
 ROOT = Path(__file__).parents[2]

@@ -40,7 +40,7 @@ def bandwidth(size: float) -> float:
     """Bytes per second that one core reads and writes, again and again, in arrays of so many bytes together."""
     arrays = [np.ones(max(int(size / 24), 1)) for _ in range(3)]
     times = max(int(2e7 / size), 1)
-    return 24 * len(arrays[0]) * times / _shortest(lambda: triad(*arrays, times))
+    return 24 * len(arrays[0]) * times / _shortest(lambda: triad(*arrays, times))  # type: ignore[call-arg]
 
 
 def seconds_per_rod() -> float:
@@ -48,7 +48,7 @@ def seconds_per_rod() -> float:
     rng = np.random.default_rng(0)
     columns = [rng.uniform(1.0, 2.0, SMALL) for _ in range(8)]
     times = 300
-    return _shortest(lambda: axial_forces(*columns, times)) / times / SMALL
+    return _shortest(lambda: axial_forces(*columns, times)) / times / SMALL  # type: ignore[call-arg]
 
 
 def _shortest(run: Callable[[], object], rounds: int = 9) -> float:

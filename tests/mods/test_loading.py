@@ -11,7 +11,8 @@ import pytest
 from components import Particle
 from game import Session, mods
 from game.actions import ACTIONS
-from game.cli import COMMANDS, main
+from game.cli import main
+from game.registry import COMMANDS
 from systems.input.bindings import BINDINGS, action_for
 from tests.mods.conftest import Write
 

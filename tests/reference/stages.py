@@ -26,7 +26,8 @@ class Kernel:
     """A step system's kernel as plain Python, and how to call it for one row."""
 
     def __init__(self, system: StepSystem, model: Model) -> None:
-        self.system, self.model = system, model
+        self.system: Any = system  # a law or a commit, whose attributes differ
+        self.model = model
         self.function: Callable[..., Any] = _plain(system.kernel)
         self.parameters = tuple(inspect.signature(self.function).parameters)
         self.arrays = system.arrays(model)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -46,6 +48,11 @@ def press_at(session: Session, key: str, x: float, y: float) -> None:
 def run_frames(session: Session, frames: int) -> None:
     for _ in range(frames):
         session.frame(FRAME)
+
+
+def names(handles: Iterable[Any]) -> list[str]:
+    """What elements are called."""
+    return [handle.name for handle in handles]
 
 
 def preview(session: Session) -> Preview:
@@ -226,7 +233,7 @@ def test_delete_removes_the_selected_with_what_depends_on_it_and_undo_brings_it_
     assert triangle.notice == "1 particle, 2 rods deleted."
     triangle.press("ctrl+z")
     assert document(triangle.model) == before
-    assert [handle.name for handle in triangle.selected] == ["B"]
+    assert names(triangle.selected) == ["B"]
 
 
 def test_delete_of_a_shown_grid(empty: Session) -> None:
@@ -245,8 +252,8 @@ def test_nothing_selected_nothing_deleted(triangle: Session) -> None:
 # --- selecting -----------------------------------------------------------------------------------------
 
 
-def names(session: Session) -> set[str]:
-    return {handle.name for handle in session.selected}
+def selected_names(session: Session) -> set[str]:
+    return set(names(session.selected))
 
 
 def test_a_drag_on_empty_space_selects_in_a_box(triangle: Session) -> None:
@@ -254,21 +261,21 @@ def test_a_drag_on_empty_space_selects_in_a_box(triangle: Session) -> None:
     triangle.drag_to(1.2, -0.2)
     assert preview(triangle).kind == "box"
     triangle.drop()
-    assert names(triangle) == {"A", "B", "AB"}
+    assert selected_names(triangle) == {"A", "B", "AB"}
     triangle.drag((1.8, 0.3), (2.3, -0.3), button="ctrl+click")
-    assert names(triangle) == {"A", "B", "C", "AB"}
+    assert selected_names(triangle) == {"A", "B", "C", "AB"}
     triangle.drag((-1.0, -1.0), (-0.5, -0.5))
-    assert names(triangle) == set()
+    assert selected_names(triangle) == set()
 
 
 def test_ctrl_click_adds_and_removes_ctrl_a_takes_all(triangle: Session) -> None:
     triangle.click(0.0, 0.0)
     triangle.click(2.0, 0.0, button="ctrl+click")
-    assert names(triangle) == {"A", "C"}
+    assert selected_names(triangle) == {"A", "C"}
     triangle.click(0.0, 0.0, button="ctrl+click")
-    assert names(triangle) == {"C"}
+    assert selected_names(triangle) == {"C"}
     triangle.press("ctrl+a")
-    assert names(triangle) == {"A", "B", "C", "AB", "BC", "CA"}
+    assert selected_names(triangle) == {"A", "B", "C", "AB", "BC", "CA"}
     assert triangle.notice == "6 elements selected."
 
 
@@ -279,7 +286,7 @@ def test_what_a_click_would_hit_is_marked_before(triangle: Session) -> None:
     session = Session(triangle.model, [Hover()])
     session.point(1.03, 1.0)
     session.frame(FRAME)
-    assert [handle.name for handle in session.model.tagged(Hovered)] == ["B"]
+    assert names(session.model.tagged(Hovered)) == ["B"]
 
 
 # --- moving --------------------------------------------------------------------------------------------
@@ -500,6 +507,7 @@ def test_cut_and_paste_keeps_names(triangle: Session) -> None:
 def test_duplicate_beside(triangle: Session) -> None:
     triangle.click(1.0, 1.0)
     triangle.press("ctrl+d")
+    copy: Any
     [copy] = triangle.selected
     assert copy.position == (1.3, 0.7)
     assert copy.force == triangle.particles["B"].force

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from typing import Any
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
@@ -13,6 +14,7 @@ import pytest
 import systems.edit.hover
 from game import models
 from game.app import App
+from systems.edit.picking import pick
 from systems.input import pygame_input
 
 
@@ -58,8 +60,12 @@ def test_a_running_window_draws_every_frame_and_one_at_rest_none(app: App) -> No
 
 def test_what_lies_under_a_resting_pointer_is_looked_up_once(app: App, monkeypatch: pytest.MonkeyPatch) -> None:
     looked: list[object] = []
-    found = systems.edit.hover.pick
-    monkeypatch.setattr(systems.edit.hover, "pick", lambda *where: looked.append(where) or found(*where))
+
+    def looked_up(*where: Any) -> Any:
+        looked.append(where)
+        return pick(*where)
+
+    monkeypatch.setattr(systems.edit.hover, "pick", looked_up)
     app.session.view.pointer = tuple(app.session.view.camera.to_pixels(app.session.particles["B"].position))
     assert frames(app, 20) == 1  # it is marked
     assert len(looked) <= 2  # and once more, now that its mark has changed the model

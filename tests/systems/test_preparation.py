@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -281,7 +282,7 @@ def test_a_folder_of_somebody_else_is_not_used(tmp_path: Path, monkeypatch: pyte
     """What lies in the cache is run: one that another person made where all may write is left alone."""
     monkeypatch.setattr(cache, "user_cache_path", lambda name: tmp_path / "blocked")
     (tmp_path / "blocked").write_text("not a folder")
-    monkeypatch.setattr(cache.tempfile, "gettempdir", lambda: str(tmp_path))
-    monkeypatch.setattr(cache.os, "getuid", lambda: 12345)
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setattr(os, "getuid", lambda: 12345)
     find: Callable[[], Path] = cache.cache_folder.__wrapped__
     assert find().parent != tmp_path or find().name != "pinjoint-programs-12345"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -18,8 +17,12 @@ def test_a_step_looks_up_nothing_and_an_edit_does(monkeypatch: pytest.MonkeyPatc
     session = Session(lattice(200, damping=1.0))
     session.step()
     looked: list[Any] = []
-    near_pairs: Callable[..., Any] = vicinity.near_pairs
-    monkeypatch.setattr(vicinity, "near_pairs", lambda *where: looked.append(where) or near_pairs(*where))
+
+    def looked_up(*where: Any) -> Any:
+        looked.append(where)
+        return near_pairs(*where)
+
+    monkeypatch.setattr(vicinity, "near_pairs", looked_up)
     for _ in range(5):
         session.step()
     assert not looked

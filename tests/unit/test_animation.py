@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,8 +15,13 @@ from game.cli import main
 from game.session import Session
 
 
+def opened(path: Path) -> Any:
+    """A picture, with what only those that move have."""
+    return Image.open(path)
+
+
 def frames(path: Path) -> list[np.ndarray]:
-    with Image.open(path) as image:
+    with opened(path) as image:
         pictures = []
         for number in range(image.n_frames):
             image.seek(number)
@@ -32,7 +38,7 @@ def test_a_run_to_a_time_moves_from_the_first_picture_to_the_last(tmp_path: Path
     assert {picture.shape for picture in pictures} == {(80, 160, 3)}
     changed = [np.abs(after - before).max() for before, after in pairwise(pictures)]
     assert min(changed) > 50
-    with Image.open(path) as image:
+    with opened(path) as image:
         assert image.info["loop"] == 0
         assert image.info["duration"] == round(1000 * FRAME)
         image.seek(image.n_frames - 1)
