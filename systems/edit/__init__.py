@@ -1,1 +1,1 @@
-
+"""Editing: picking, placing, moving, joining, selecting, and pulling what moves."""

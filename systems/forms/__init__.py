@@ -1,1 +1,1 @@
-"""Panels: typing into boxes, and boxes that show and change what elements are."""
+"""Forms: typing into boxes, and boxes that show and change what elements are."""

@@ -1,1 +1,1 @@
-
+"""Input: the table of keys and buttons, and the window's events."""

@@ -1,1 +1,1 @@
-
+"""Loads that change in time."""

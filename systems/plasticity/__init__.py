@@ -1,1 +1,1 @@
-
+"""Perfect plasticity: strengths, yielding."""

@@ -1,1 +1,1 @@
-"""See kernels."""
+"""Crowds of discs in lasting contact."""
