@@ -317,7 +317,8 @@ class World:
         """Execute the command that gives a whole column, named "table.field", computed values."""
         table, _, field = name.partition(".")
         entities = tuple(self.tables[table].entities.tolist())
-        self.execute(Assign(table, field, entities, np.asarray(values).copy()))
+        with self.transaction(f"{self.tables[table].fields[field].title} of all {table}"):
+            self.execute(Assign(table, field, entities, np.asarray(values).copy()))
 
     def delete(self, handles: Iterable[Handle]) -> None:
         """Delete entities and whatever refers to them."""
@@ -328,7 +329,8 @@ class World:
                 raise ValueError(f"There is exactly one {table.kind.noun}; it cannot be deleted.")
             doomed += table.entities[rows].tolist()
         if doomed:
-            self.execute(Delete(tuple(doomed)))
+            with self.transaction("delete"):
+                self.execute(Delete(tuple(doomed)))
 
     def execute(self, command: Command) -> None:
         """Apply a command and report its inverse to the log; of a group that raises, nothing happened."""

@@ -7,8 +7,10 @@ import json
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from components.field import FieldError
@@ -37,6 +39,7 @@ from game.registry import COMMANDS
 from game.reports.curve import as_csv as as_curve
 from game.reports.report import FOUND, Analysis, AnalysisError
 from game.reports.results import ResultError, as_csv, as_json, as_table
+from game.saved import library
 from game.scripts import script
 from game.session import DEFAULT_LIMIT, Session
 from game.shapes import NoShape, numbered
@@ -397,12 +400,24 @@ def _play(words: Sequence[str]) -> int:
     parser.add_argument(
         "--window", action="store_true", help="show it in a window, at a pace to follow, and go on from there"
     )
+    parser.add_argument(
+        "--data",
+        type=Path,
+        metavar="FOLDER",
+        help="where it saves and loads: without a window in an empty folder that is gone afterwards, else in yours",
+    )
     options = parser.parse_args(words)
     loaded = script.Script(options.script)
-    if options.window:
-        failures = _in_window(models.load(loaded.source), file_of(loaded.source), lesson=loaded)
-    else:
-        failures = loaded.play(loaded.open())
+    with ExitStack() as kept:
+        if options.data is not None:
+            kept.enter_context(library.data_in(options.data))
+        if options.window:
+            failures = _in_window(models.load(loaded.source), file_of(loaded.source), lesson=loaded)
+        else:
+            session = loaded.open()
+            if options.data is None:  # so that it ends alike however often it is played
+                kept.enter_context(library.data_in(Path(kept.enter_context(TemporaryDirectory()))))
+            failures = loaded.play(session)
     for failure in failures:
         print(f"{options.script} {failure}", file=sys.stderr)
     failed = f"{len(failures)} expectation{'s' if len(failures) > 1 else ''} failed"

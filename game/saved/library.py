@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from platformdirs import user_data_path
@@ -24,6 +26,20 @@ def data_folder() -> Path:
     """Where this person's data lies; it need not exist yet."""
     chosen = os.environ.get(DATA_VARIABLE)
     return Path(chosen) if chosen else user_data_path("pinjoint", appauthor=False)
+
+
+@contextmanager
+def data_in(folder: Path) -> Iterator[None]:
+    """As long as this lasts, this person's data lies in another folder."""
+    before = os.environ.get(DATA_VARIABLE)
+    os.environ[DATA_VARIABLE] = str(folder)
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[DATA_VARIABLE]
+        else:
+            os.environ[DATA_VARIABLE] = before
 
 
 def models_folder() -> Path:

@@ -8,6 +8,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from itertools import count
+from pathlib import Path
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
@@ -191,9 +192,7 @@ def reactions(*, quick: bool) -> Iterator[Row]:
     The last is what counts as in time, for it is what one waits where nothing else keeps the machine busy.
     What the picture before said that it is worked on need not be.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        before = os.environ.get(library.DATA_VARIABLE)
-        os.environ[library.DATA_VARIABLE] = folder
+    with tempfile.TemporaryDirectory() as folder, library.data_in(Path(folder)):
         hand = Hand(2_000 if quick else 10_000)
         hand.session.save_as(library.data_folder() / "lattice.json")
         for what, act, times in SESSION:
@@ -201,21 +200,15 @@ def reactions(*, quick: bool) -> Iterator[Row]:
             waited, busy = (sorted(column) for column in zip(*taken, strict=True))
             if what:
                 processor = busy[len(busy) // 2]
+                in_time = "yes" if processor <= MOST else "no"
                 yield {
                     "action": what,
                     "rods": hand.session.rods.count,
                     "median_ms": waited[len(waited) // 2],
                     "longest_ms": waited[-1],
                     "processor_ms": processor,
-                    "seen_in_time": "announced"
-                    if what.endswith(ANNOUNCED)
-                    else "no"
-                    if processor > MOST
-                    else "yes",
+                    "seen_in_time": "announced" if what.endswith(ANNOUNCED) else in_time,
                 }
-        del os.environ[library.DATA_VARIABLE]
-        if before is not None:
-            os.environ[library.DATA_VARIABLE] = before
 
 
 def _milliseconds(hand: Hand, act: Act) -> tuple[float, float]:

@@ -6,8 +6,7 @@ They depend on nothing but the program: no saved models, time by steps, a fixed 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
@@ -16,20 +15,20 @@ import pygame
 
 from components.camera import Viewport
 from game import Session
-from game.saved.library import DATA_VARIABLE
+from game.saved.library import data_in
 from systems.render.picture import compose
 from systems.render.pygame_canvas import Canvas
 from systems.render.theme import load_theme
 
 FOLDER = Path(__file__).parent
 SIZE = 640, 480
-NOWHERE = "nowhere"  # in place of the person's saved models; there is no such folder
+NOWHERE = Path("nowhere")  # in place of the person's saved models; there is no such folder
 EMPTY = {"format": "pinjoint model", "version": 1}
 
 
 def drawn(name: str) -> pygame.Surface:
     """The picture of that name."""
-    with _without_saved_models():
+    with data_in(NOWHERE):
         session = SCENES[name]()
         session.update_view()
         surface = pygame.Surface(SIZE, depth=32)
@@ -37,18 +36,6 @@ def drawn(name: str) -> pygame.Surface:
         for shown, view in session.stages:
             canvas.draw(surface, compose(shown, view, load_theme(session.view.theme)))
         return surface
-
-
-@contextmanager
-def _without_saved_models() -> Iterator[None]:
-    before = os.environ.get(DATA_VARIABLE)
-    os.environ[DATA_VARIABLE] = NOWHERE
-    try:
-        yield
-    finally:
-        del os.environ[DATA_VARIABLE]
-        if before is not None:
-            os.environ[DATA_VARIABLE] = before
 
 
 def _opened(source: object = "isostatic") -> Session:

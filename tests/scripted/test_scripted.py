@@ -33,6 +33,17 @@ def test_lesson(name: str) -> None:
     assert lesson.description
 
 
+def test_a_script_that_saves_can_be_played_again_and_leaves_nothing_behind(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(DATA_VARIABLE, str(tmp_path / "mine"))
+    saving = next(path for path in SCRIPTS if path.stem == "every_scene")
+    assert [main(["play", str(saving)]) for _ in range(2)] == [0, 0]
+    assert not (tmp_path / "mine").exists()
+    assert main(["play", str(saving), "--data", str(tmp_path / "kept")]) == 0
+    assert list((tmp_path / "kept").rglob("*.json"))
+
+
 def test_an_expectation_that_fails_says_what_where_expected_and_got(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -201,3 +201,10 @@ def test_states_that_were_put_aside_come_back_with_the_paths_of_discs() -> None:
     while session.redo():
         pass
     assert bits.different(bits.columns(session.model), end) == []
+
+
+def test_what_a_script_deletes_is_undone_by_name() -> None:
+    session = Session.open("isostatic")
+    session.model.delete([session.rods["AB"]])
+    assert session.undo() == "delete"
+    assert session.redo() == "delete"
