@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from components.extremes import incomputable
 from components.load import loads_end
 from components.model import Model
 
+Array = NDArray[np.float64]
+
 DENSE = 100  # particles up to which a full matrix is solved, without loading a library for others
+SLIGHTLY = 1e-10  # of the largest stiffness: holds mechanisms, which then move far, but not infinitely
 PERIOD_SHOWN = 2.0  # s in which one oscillation is shown
 CREEP_SHOWN = 0.7  # s in which an overdamped model creeps by 1 − 1/e of the way
 LOADING_SHOWN = 4.0  # s in which a load history is shown
@@ -41,8 +45,7 @@ def _response_time(model: Model) -> float | None:
     if displacement is None:
         return None
     rods = model.rods
-    ends = rods.between.astype(np.intp)
-    axis = rods.difference / np.where(rods.original_length > 0.0, rods.original_length, 1.0)[:, None]
+    ends, axis = _ends_and_axes(model)
     elongation = ((displacement[ends[:, 1]] - displacement[ends[:, 0]]) * axis).sum(axis=1)
     inertia = float((model.particles.mass[:, None] * displacement**2).sum()) / 1000.0
     if inertia == 0.0:
@@ -58,47 +61,73 @@ def _response_time(model: Model) -> float | None:
     return 1.0 / creep / CREEP_SHOWN
 
 
-def _static_displacement(model: Model) -> np.ndarray | None:
-    """Linear displacement under the present loads, or None where it is not small."""
-    particles, rods = model.particles, model.rods
-    free = np.flatnonzero(particles.mobility.ravel() > 0.0)
-    ends = rods.between.astype(np.intp)
-    axis = rods.difference / np.where(rods.original_length > 0.0, rods.original_length, 1.0)[:, None]
-    columns = np.concatenate(
-        [2 * ends[:, :1], 2 * ends[:, :1] + 1, 2 * ends[:, 1:], 2 * ends[:, 1:] + 1], axis=1
-    )
-    rows = np.repeat(np.arange(rods.count), 4)
-    entries = np.concatenate([-axis, axis], axis=1)
-    force = particles.constant_force.ravel().copy()
-    for load in model.loads:
-        force[2 * load.on : 2 * load.on + 2] += load.force
-    if not force[free].any():
+def _static_displacement(model: Model) -> Array | None:
+    """Linear displacement (n, 2) under the present loads, m; None where it is not small."""
+    free = np.flatnonzero(model.particles.mobility.ravel() > 0.0)
+    force = _forces(model)
+    if not force[free].any():  # then any will do that excites all directions
         force = np.ones_like(force) * np.where(np.arange(len(force)) % 2, -1.0, 0.3)
-    stiffness = rods.stiffness / rods.rest_length
-    slightly = 1e-10 * float(stiffness.max())  # so that a mechanism moves far, but not infinitely
-    displacement = np.zeros(2 * particles.count)
+    solve = _solved_in_full if model.particles.count <= DENSE else _solved_sparsely
+    displacement = np.zeros(2 * model.particles.count)
     try:
-        if particles.count <= DENSE:
-            dense = np.zeros((rods.count, 2 * particles.count))
-            dense[rows, columns.ravel()] = entries.ravel()
-            dense = dense[:, free]
-            matrix = dense.T @ (dense * stiffness[:, None]) + slightly * np.eye(len(free))
-            displacement[free] = np.linalg.solve(matrix, force[free])
-        else:
-            from scipy.sparse import csc_matrix, identity
-            from scipy.sparse.linalg import splu
-
-            sparse = csc_matrix((entries.ravel(), (rows, columns.ravel())), (rods.count, 2 * particles.count))
-            sparse = sparse[:, free]
-            matrix = sparse.T @ sparse.multiply(stiffness[:, None]).tocsc()
-            matrix = csc_matrix(matrix + slightly * identity(len(free), format="csc"))
-            displacement[free] = splu(matrix).solve(force[free])
+        displacement[free] = solve(model, free, force[free])
     except (RuntimeError, np.linalg.LinAlgError):  # exactly singular
         return None
-    size = float(np.ptp(particles.position, axis=0).max())
+    size = float(np.ptp(model.particles.position, axis=0).max())
     if not np.isfinite(displacement).all() or np.abs(displacement).max() > 0.5 * size:
         return None
     return displacement.reshape(-1, 2)
+
+
+def _forces(model: Model) -> Array:
+    """What acts on the particles with all loads at their full values (kN), flattened, (2n,)."""
+    force: Array = model.particles.constant_force.ravel().copy()
+    for load in model.loads:
+        force[2 * load.on : 2 * load.on + 2] += load.force
+    return force
+
+
+def _ends_and_axes(model: Model) -> tuple[NDArray[np.intp], Array]:
+    """Rows of the particles at the ends of each rod, and its unit vector in the original geometry; (rods, 2)."""
+    rods = model.rods
+    length = np.where(rods.original_length > 0.0, rods.original_length, 1.0)
+    return rods.between.astype(np.intp), rods.difference / length[:, None]
+
+
+def _compatibility(model: Model) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
+    """How rods elongate when particles move: entries, rows and columns of a matrix (rods, 2n), four a rod."""
+    ends, axis = _ends_and_axes(model)
+    columns = np.concatenate(
+        [2 * ends[:, :1], 2 * ends[:, :1] + 1, 2 * ends[:, 1:], 2 * ends[:, 1:] + 1], axis=1
+    )
+    entries = np.concatenate([-axis, axis], axis=1)
+    return entries.ravel(), np.repeat(np.arange(len(ends)), 4), columns.ravel()
+
+
+def _solved_in_full(model: Model, free: NDArray[np.intp], force: Array) -> Array:
+    """The displacements of free directions under forces, both (k,), by a full matrix."""
+    entries, rows, columns = _compatibility(model)
+    stiffness = model.rods.stiffness / model.rods.rest_length
+    elongations = np.zeros((model.rods.count, 2 * model.particles.count))
+    elongations[rows, columns] = entries
+    elongations = elongations[:, free]
+    matrix = elongations.T @ (elongations * stiffness[:, None])
+    return np.linalg.solve(matrix + SLIGHTLY * stiffness.max() * np.eye(len(free)), force)
+
+
+def _solved_sparsely(model: Model, free: NDArray[np.intp], force: Array) -> Array:
+    """The same by a sparse matrix. Raises RuntimeError if it is singular."""
+    from scipy.sparse import csc_matrix, identity
+    from scipy.sparse.linalg import splu
+
+    entries, rows, columns = _compatibility(model)
+    stiffness = model.rods.stiffness / model.rods.rest_length
+    elongations = csc_matrix((entries, (rows, columns)), (model.rods.count, 2 * model.particles.count))
+    elongations = elongations[:, free]
+    matrix = elongations.T @ elongations.multiply(stiffness[:, None]).tocsc()
+    held = matrix + SLIGHTLY * stiffness.max() * identity(len(free), format="csc")
+    solved: Array = splu(csc_matrix(held)).solve(force)
+    return solved
 
 
 def _flight_pace(model: Model) -> float:
