@@ -30,7 +30,10 @@ def add_kind(mod: str, kind: type[Handle]) -> str:
     if not kind.table.isidentifier() or hasattr(Model, kind.table):
         raise ValueError(f"{kind.__name__}: '{kind.table}' cannot be the name of a table; use another plural.")
     if kind.single:
-        raise ValueError(f"{kind.__name__}: what there is one of is a component of Settings or Environment.")
+        raise ValueError(
+            f"{kind.__name__}: of a kind there may be any number; what belongs to the whole model is a component"
+            " of Settings or Environment."
+        )
     if "name" not in fields or fields["name"].dtype is not str:
         raise ValueError(f"{kind.__name__} needs a Field 'name' of dtype str: what a person calls each.")
     for field in fields.values():

@@ -16,7 +16,7 @@ from components.world import Layout, World
 class Snapshot:
     """Copies of all state as it is stored, and which entities its rows belong to, by table.
 
-    layout: the table and the columns that each array holds; several are numbers of what there is one of.
+    layout: the table and the columns that each array holds; several are numbers of a table with a single row.
     """
 
     layout: Layout

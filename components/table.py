@@ -71,7 +71,7 @@ class Table(Generic[H]):
         self._blocks = self._side_by_side() if kind.single else {}
 
     def _side_by_side(self) -> dict[tuple[str, ...], Column]:
-        """Let numbers of what there is one of lie in one array for each type and role, to be handled as one."""
+        """Let the numbers of a single row lie in one array for each type and role, to be copied together."""
         alike: dict[tuple[Any, Role], list[str]] = {}
         for name, field in self.fields.items():
             if field.dtype in (float, int) and not field.shape:
@@ -190,7 +190,7 @@ class Table(Generic[H]):
         return self._columns[group[0]][: self.count] if len(group) == 1 else self._blocks[group]
 
     def together(self, names: Sequence[str]) -> Column:
-        """Numbers of what there is one of, declared one after the other, as storage of shape (len(names),)."""
+        """Numbers of a single row, declared one after the other, as storage of shape (len(names),)."""
         for known, block in self._blocks.items():
             first = known.index(names[0]) if names[0] in known else len(known)
             if known[first : first + len(names)] == tuple(names):

@@ -164,7 +164,9 @@ def _run(words: Sequence[str]) -> int:
     _add_output(parser)
     parser.add_argument("--events", type=writable, metavar="FILE", help="write all impacts to a file, as CSV")
     parser.add_argument(
-        "--measure-error", action="store_true", help="by a run with finer steps, even if that takes long"
+        "--measure-error",
+        action="store_true",
+        help="measure the error by a run with finer steps, even if that takes long",
     )
     options = parser.parse_args(words)
     session = _session(options)
@@ -343,8 +345,12 @@ def _curve(words: Sequence[str]) -> int:
     )
     _add_model(parser)
     goal = parser.add_mutually_exclusive_group()
-    goal.add_argument("--factor", type=finite, default=1.0, help="end where the load factor is first this (1)")
-    goal.add_argument("--until", metavar="B.y=-2.5", help="end where a particle is displaced so far (m)")
+    goal.add_argument(
+        "--factor", type=finite, default=1.0, help="end where the load factor first reaches this; default 1"
+    )
+    goal.add_argument(
+        "--until", metavar="B.y=-2.5", help="end where a particle first has this displacement (m)"
+    )
     parser.add_argument("--points", type=count, default=500, metavar="N", help="at most so many equilibria")
     _add_output(parser)
     options = parser.parse_args(words)

@@ -342,7 +342,7 @@ class Session:
             system for system in self.schedule.step_plan(self.model) if isinstance(system, Law) and system.mod
         ]
         if left_out := ", ".join(law.name for law in laws if law.each != "loads"):
-            self.notice += f" Settling does not know the laws of mods: without {left_out}."
+            self.notice += f" Settling leaves out the laws of mods: {left_out}."
         return found.status
 
     def compare(self) -> Comparison:

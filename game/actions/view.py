@@ -106,5 +106,5 @@ def _screenshot(session: Session, pixel: Vector) -> None:
         session.notice = f"Picture saved: {session.window.screenshot()}"
     except OSError as error:
         raise Refusal(
-            f"No picture was saved: {error.filename}: {error.strerror}. Start Pinjoint in a folder of yours."
+            f"No picture was saved: {error.filename}: {error.strerror}. Start Pinjoint in a folder where you may write."
         ) from None

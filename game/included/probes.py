@@ -174,7 +174,7 @@ def save(session: Session, pixel: Vector) -> None:
             write_png(probe, path.with_suffix(".png"), session.view.theme)
     except OSError as error:
         raise Refusal(
-            f"No plot was saved: {error.filename}: {error.strerror}. Start Pinjoint in a folder of yours."
+            f"No plot was saved: {error.filename}: {error.strerror}. Start Pinjoint in a folder where you may write."
         ) from None
     names = ", ".join(path.stem for path in paths)
     session.notice = f"Saved as CSV and PNG: {names}" if paths else "There is no plot to save; O makes one."

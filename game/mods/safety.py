@@ -14,8 +14,8 @@ from game.saved.library import data_folder
 from game.saved.locks import lock_file
 
 LEFT_OUT = (
-    "Pinjoint did not end as it should while your mods were loaded, so this once they are left out. The next"
-    " start loads them again; --no-mods leaves them out."
+    "Pinjoint crashed while your mods were loaded, so they are left out this time. The next"
+    " start loads them again; --no-mods always leaves them out."
 )
 
 

@@ -184,7 +184,7 @@ def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
     if table != rows and not model.tables[table].kind.single:
         raise ProgramError(
             f"The kernel of {name} is called for each of the {rows} and cannot take {parameter}; take a column"
-            f" of the {rows} or of what there is one of, such as the environment."
+            f" of the {rows} or of a table with a single row, such as the environment."
         )
 
 

@@ -94,7 +94,7 @@ def _of_force_method(session: Session, quantity: str) -> Any:
     """
     guide = getattr(session.scenes.active, "guide", None)
     if guide is None:
-        raise LookupError("the force method is not going on; press K in pause first.")
+        raise LookupError("the force method is not active; press K in pause first.")
     if quantity == "unknown":
         return guide.unknown.name if guide.unknown else None
     if quantity == "part":

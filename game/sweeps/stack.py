@@ -22,8 +22,8 @@ class Stack:
 
     A column of all of them, such as `stack["rods.stiffness"]`, has the shape (blocks, rows, …). To functions
     that read the columns of a model, they are those of one model that consists of disjoint blocks:
-    `stack.rods.stiffness` has the rows of all, and references point to rows of the same block. What there is
-    one of in a model, such as the environment, has a row for each particle then.
+    `stack.rods.stiffness` has the rows of all, and references point to rows of the same block. A table
+    with a single row, such as the environment, has a row for each particle then.
     """
 
     def __init__(self, model: Model, columns: dict[str, Column], blocks: int) -> None:
@@ -60,7 +60,7 @@ class Stack:
         return name in self._columns
 
     def single(self, name: str) -> Column:
-        """A column of what there is one of in each block, shape (blocks, …)."""
+        """A column of a table that has a single row in each block, shape (blocks, …)."""
         return self._columns[name][:, 0]
 
     def field(self, name: str) -> Field[object]:

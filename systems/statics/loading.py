@@ -232,7 +232,7 @@ class Loading:
         yielded = np.flatnonzero(self.point.plastic_strain != critical.plastic_strain)
         if kind == "bifurcation":
             what = "Bifurcation: the equilibrium became unstable"
-            after = " It gave way to one side; to the other would have been as possible."
+            after = " It gave way to one side, and might as well have gone to the other."
         else:
             what = "Snap-through: the structure passed through its unstable position"
             after = ""

@@ -342,7 +342,7 @@ class _SettlingWithDiscs(_Settling):
         if alone > MOST_DISCS:
             raise NoEquilibrium(
                 "limit reached",
-                f"Settling follows at most {MOST_DISCS} particles without rods, here are {alone}. Run until rest.",
+                f"Settling follows at most {MOST_DISCS} particles without rods; here there are {alone}. Run until rest.",
             )
         target = self._all(target)
         sinking = Sinking(self.bare, self.discs, target, self.point)
@@ -361,7 +361,7 @@ class _SettlingWithDiscs(_Settling):
             matrix = self.structure.tangent(self.point.response, self.point.response.soft)
             motion = self._particles(self.structure.spread(lowest_mode(matrix, self.structure.weight)[1]))
             message = (
-                f"A balance that is not stable: the least push moves {describe_motion(self.model, motion[None])}"
+                f"An unstable balance: the slightest push moves {describe_motion(self.model, motion[None])}"
                 " further and further. Add something that holds it if that is not meant."
             )
             self.events.append(Event("note", factor, message, motion=motion / np.hypot(*motion.T).max()))

@@ -74,7 +74,7 @@ def test_a_ball_exactly_on_top_of_another_balances_and_that_is_said() -> None:
     found = settle(models.load(document))
     assert found.status == "equilibrium"
     assert found.final.displacement[1] == pytest.approx([0.0, -0.9], abs=1e-12)
-    assert "A balance that is not stable: the least push moves ball along x" in found.message
+    assert "An unstable balance: the slightest push moves ball along x" in found.message
 
 
 def test_what_nothing_supports_falls_and_is_named() -> None:
