@@ -11,7 +11,7 @@ Where to find what:
     schedule.py, catalogue.py   which systems there are, which of them run, in which order
     document.py, models.py      models as plain data, and in files
     saved/                      what a person keeps: models, unsaved work, preferences
-    cli.py, reports/ sweeps/    the command line, and what it computes
+    cli/ reports/ sweeps/       the command line, and what it computes
     scripts/                    scripted sessions
     mods/ included/ checks.py   extensions by others, ours that are written like theirs, and how to test them
     app.py, showing.py          the window, and what it says

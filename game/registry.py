@@ -14,4 +14,4 @@ if TYPE_CHECKING:
 SYSTEMS: list[Callable[[], System]] = []  # frame systems, laws and commits; made anew for every session
 SCENES: list[Callable[[], Scene]] = []  # made anew for every session
 PANELS: list[Callable[[Session], Sequence[Readout]]] = []  # what stands beside the model now
-COMMANDS: dict[str, Callable[[list[str]], int]] = {}  # of the command line, Pinjoint's own (game/cli.py) too
+COMMANDS: dict[str, Callable[[list[str]], int]] = {}  # of the command line, Pinjoint's own (game/cli) too
