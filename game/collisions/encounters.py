@@ -98,12 +98,13 @@ class Encounters:
             reason = take(half)
         if clock.time == start or reason is StopReason.DIVERGED:
             return clock.steps - steps, reason, program
-        time = self._meeting(before)
-        if time == start:
+        time, resting = self._meeting(before), None
+        if time == start:  # what is pressed together from rest is told from the step that was tried
+            resting = self._strikes.rest_speed(before)
             before.restore(self.model)
         elif time <= clock.time:
             reason = self._end_at_meeting(before, take, time)
-        if self._strikes.happen(before):
+        if self._strikes.happen(before, resting):
             program = self._rebind()
         return max(clock.steps - steps, 1), reason, program
 

@@ -28,8 +28,11 @@ class Strikes:
         self._impacts = impacts
         self._near = vicinity
 
-    def happen(self, before: Snapshot) -> bool:
-        """Impacts of all that touch now, after a step from a moment before; True if new contacts last."""
+    def happen(self, before: Snapshot, resting: Floats | None = None) -> bool:
+        """Impacts of all that touch now, after a step from a moment before; True if new contacts last.
+
+        resting: speeds below which pairs stay in contact, if not those that this step tells.
+        """
         near, particles = self._near, self.model.particles
         gap, normal = near.gaps(near.pairs, particles.displacement)
         kinds = near.kinds(before.columns["particles.displacement"])
@@ -38,7 +41,7 @@ class Strikes:
         noise = 1e-14 * np.hypot(*particles.velocity.T).max(initial=0.0)
         if not (rate[touching] < -noise).any() and not (kinds[touching] == WATCHED).any():
             return False
-        slow = self._rest_speed(before)
+        slow = self.rest_speed(before) if resting is None else resting
         slow[kinds == LASTING] = math.inf
         for group in connected(self._apart(near.pairs[touching])):
             self._strike(touching[group], normal, rate, slow)
@@ -57,7 +60,7 @@ class Strikes:
         rates: Floats = (normal * (velocity[pairs[:, 1]] - velocity[pairs[:, 0]])).sum(axis=1)
         return rates
 
-    def _rest_speed(self, before: Snapshot) -> Floats:
+    def rest_speed(self, before: Snapshot) -> Floats:
         """Speed of approach below which pairs stay in contact: √(2 a h), a being the larger acceleration."""
         particles, pairs = self.model.particles, self._near.pairs
         height = TOUCH * self._near.reach(pairs)
