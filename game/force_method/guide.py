@@ -25,10 +25,10 @@ from game.shapes import DRAWN_SHARE, extent
 from game.simulation import Simulation
 from systems.statics.force_method import (
     ForceMethodError,
-    LinearState,
+    SetState,
     Solution,
     Unknown,
-    indeterminacy,
+    counted_indeterminacy,
     solve,
     unit_force,
 )
@@ -60,7 +60,7 @@ class Set:
         """Let the time of one frame pass."""
         self.live.frame(elapsed)
 
-    def scale_to(self, state: LinearState) -> None:
+    def scale_to(self, state: SetState) -> None:
         """Choose drawing scales for the displacements and forces that it will come to."""
         moved = float(np.abs(state.displacement).max(initial=0.0))
         pulled = float(np.abs(state.axial_force).max(initial=0.0))
@@ -114,7 +114,7 @@ class Guide:
         self.mechanism: Mechanism | None = None
         self.axis_wanted: Particle | None = None
         real = solve(model, [])
-        self.degree = indeterminacy(model)
+        self.degree = counted_indeterminacy(model)
         self.sets = [self._make_set([], unit=None)]
         self.sets[0].scale_to(real.real)
 
@@ -252,7 +252,7 @@ class Guide:
             displacement += p * unit.displacement
             axial_force += p * unit.axial_force
         third.model.assign(list(third.model.particles), "force", force.tolist())
-        third.scale_to(LinearState(displacement, axial_force))
+        third.scale_to(SetState(displacement, axial_force))
         for name in ("displacement_scale", "diagram_scale"):  # the same, so that one sees that they add up
             scale = min(getattr(one.model.settings, name) for one in self.sets)
             for one in self.sets:

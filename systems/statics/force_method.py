@@ -52,8 +52,8 @@ class Unknown:
 
 
 @dataclass(frozen=True)
-class LinearState:
-    """Displacements (m, (n, 2)) and axial forces (kN, (rods,)) by first-order theory."""
+class SetState:
+    """What a set comes to by first-order theory: displacements (m, (n, 2)) and axial forces (kN, (rods,))."""
 
     displacement: Array
     axial_force: Array
@@ -72,12 +72,12 @@ class Solution:
     delta_base: Array
     delta_unit: Array
     force: Array
-    real: LinearState
-    base: LinearState
-    units: tuple[LinearState, ...]
+    real: SetState
+    base: SetState
+    units: tuple[SetState, ...]
 
     @property
-    def superposed(self) -> LinearState:
+    def superposed(self) -> SetState:
         """Set 2 + Σ p × set 3, which equals set 1."""
         displacement, axial_force = self.base.displacement.copy(), self.base.axial_force.copy()
         for unknown, force, unit in zip(self.unknowns, self.force.tolist(), self.units, strict=True):
@@ -85,11 +85,11 @@ class Solution:
             axial_force += force * unit.axial_force
             if isinstance(unknown.element, Rod):
                 axial_force[unknown.element.row] = force
-        return LinearState(displacement, axial_force)
+        return SetState(displacement, axial_force)
 
 
-def indeterminacy(model: Model) -> int:
-    """Degree of static indeterminacy of a structure that is no mechanism: what Gauss leaves undetermined.
+def counted_indeterminacy(model: Model) -> int:
+    """Degree of static indeterminacy of a structure that is no mechanism, by counting; theory.py finds ranks.
 
     Rods and constraints of the particles that rods join, less two equations for each.
     """
@@ -154,13 +154,13 @@ class _Linear:
             " It is not a static unknown; choose a redundant rod or constraint."
         )
 
-    def under(self, force: Array, *, prestressed: bool) -> LinearState:
+    def under(self, force: Array, *, prestressed: bool) -> SetState:
         """The state under forces (n, 2); `prestressed`: with what the rods' lack of fit adds."""
         initial = self._prestress if prestressed else np.zeros_like(self._prestress)
         right = self.structure.gather(force) - self._compatibility.T @ initial
         moved = self._factor.solve(right)
         axial = self._along * (self._compatibility @ moved) + initial
-        return LinearState(self.structure.spread(moved), axial)
+        return SetState(self.structure.spread(moved), axial)
 
 
 def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
@@ -237,7 +237,7 @@ def _axis(model: Model, unknown: Unknown) -> Array:
     return axis
 
 
-def _delta(model: Model, unknown: Unknown, state: LinearState) -> float:
+def _delta(model: Model, unknown: Unknown, state: SetState) -> float:
     if unknown.axis is not None:
         return float(state.displacement[unknown.element.row, unknown.axis])
     first, second = model.rods.between[unknown.element.row]
