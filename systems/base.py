@@ -145,6 +145,7 @@ class Commit(StepSystem):
 class Driver(StepSystem):
     """Advances time: an integrator. Its kernel is *source*: see systems/physics/fixed_steps.py.
 
+    begins, ends: instead of a kernel, sources of what becomes of a particle before and after the forces of a step.
     stable_step: the largest stable step (s) for the highest angular frequency ω (rad/s) and decay ζω
         (1/s) of a model, not both 0; infinite if unconditionally stable, 0 if stable at none.
     order: of convergence. entry: source of the loop around the kernel. parts: sources that the kernel calls,
@@ -159,6 +160,8 @@ class Driver(StepSystem):
 
     order: ClassVar[int] = 0
     entry: ClassVar[str] = "systems.physics.fixed_steps:advance"
+    begins: ClassVar[str] = ""
+    ends: ClassVar[str] = ""
     parts: ClassVar[tuple[str, ...]] = ()
     constants: ClassVar[Mapping[str, Any]] = {}
     controlled: ClassVar[bool] = False

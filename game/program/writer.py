@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 import textwrap
 from collections.abc import Callable, Iterable, Sequence
@@ -34,6 +35,12 @@ _ALWAYS = (
 
 EVERY = "displacement.shape[0]"
 _IN_BLOCK = "{0}[block], {0}[block + 1]"
+
+FORCED = (
+    "time, dt, displacement, velocity, force, resisting, direction"  # what forces() takes, before the columns
+)
+PREDICTED = FORCED.replace("velocity", "predicted")
+RESISTED = "time, dt, displacement, velocity, resisting, direction"  # what resist() takes, before the power
 
 SHIFT = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
 DRIFT = {f"drift_{d}": f"velocity[b, {i}] - velocity[a, {i}]" for i, d in enumerate("xy")}
@@ -119,7 +126,7 @@ class Writer:
             self._measure(),
             self._observe(),
             *(self._pasted(part, "inlined") for part in self.driver.parts),
-            self._pasted(f"{self.driver.kernel}=integrate", "compiled"),
+            self._integrate(),
             self._pasted(f"{self.driver.entry}=advance", "entry"),
             *([self._commit()] if self.commits else []),
         ]
@@ -163,7 +170,7 @@ class Writer:
         account = "account, " if accepted else ""
         lines = [
             "@compiled",
-            f"def {name}(time, dt, displacement, velocity, force, resisting, direction, {account}{self._columns_text()}):",
+            f"def {name}({FORCED}, {account}{self._columns_text()}):",
             "    external(time, dt, displacement, velocity, force, resisting, " + self._columns_text() + ")",
         ]
         commits = self.commits if accepted else []
@@ -296,10 +303,7 @@ class Writer:
 
     def _resist(self) -> str:
         """Dampers and drag at a velocity, and what each account gains per second."""
-        head = (
-            "def resist(time, dt, displacement, velocity, resisting, direction, power,"
-            f" {self._columns_text()}):"
-        )
+        head = f"def resist({RESISTED}, power, {self._columns_text()}):"
         body = [*self._resistance(), *(f"power[{slot}] = power_{slot}" for slot in range(len(ACCOUNTS)))]
         return "\n".join(["@compiled", head, *indented(body)])
 
@@ -334,6 +338,64 @@ class Writer:
             ]
         head = f"def load_power(time, velocity, {self._columns_text()}):"
         return "\n".join(["@compiled", head, *indented([*body, "return power"])])
+
+    # --- steps ------------------------------------------------------------------------------------
+
+    def _integrate(self) -> str:
+        """The driver's own function, or steps as it says that they begin and end for each particle."""
+        if self.driver.kernel:
+            return self._pasted(f"{self.driver.kernel}=integrate", "compiled")
+        step = ["time = origin + (first + step) * dt", *self._move(), *self._enter_loads(), *self._complete()]
+        head = (
+            "def integrate(steps, first, origin, dt, displacement, velocity, force, resisting, direction,"
+            f" predicted, power, gained, account, {self._columns_text()}):"
+        )
+        lines = ["for step in range(1, steps + 1):", *indented(step), *self._finish()]
+        return "\n".join(["@compiled", head, *indented(lines)])
+
+    def _move(self) -> list[str]:
+        """To the next displacement; its forces."""
+        accept = f"accept({PREDICTED}, account, {self._columns_text()})"
+        return [*self._particles(self.driver.begins), accept]
+
+    def _complete(self) -> list[str]:
+        """To the next velocity; what resists it."""
+        return [*self._particles(self.driver.ends), *(self._enter_powers("resist") if self.powers else [])]
+
+    def _finish(self) -> list[str]:
+        """What is left to do after many steps."""
+        return []
+
+    def _particles(self, where: str, span: str = EVERY) -> list[str]:
+        """What a driver does with every particle."""
+        lines = self._body_of(where)
+        return [f"for i in range({span}):", *indented(lines)] if lines else []
+
+    def _body_of(self, where: str) -> list[str]:
+        function = ast.parse(_source_of(find(where, self.driver.name))).body[0]
+        assert isinstance(function, ast.FunctionDef)
+        return ast.unparse(function.body[1:]).splitlines()  # type: ignore[arg-type]
+
+    def _enter_loads(self) -> list[str]:
+        """The work of varying loads, their mean force times the displacement of the step."""
+        if not self.loads:
+            return []
+        columns = self._columns_text()
+        return [
+            f"before = load_power(origin + (first + step - 1) * dt, velocity, {columns})",
+            f"account[0] += 500.0 * dt * (before + load_power(time, velocity, {columns}))",
+        ]
+
+    def _enter_powers(self, resist: str, given: str = RESISTED) -> list[str]:
+        """What each account gains in the step that ends here, by the trapezoidal rule."""
+        return [
+            f"{resist}({given}, gained, {self._columns_text()})",
+            f"for k in range({len(ACCOUNTS)}):",
+            "    account[k] += 500.0 * dt * (power[k] + gained[k])",
+            "    power[k] = gained[k]",
+        ]
+
+    # --- reading ----------------------------------------------------------------------------------
 
     def _measure(self) -> str:
         """Energies, residual and scales of an accepted state, for judge()."""
@@ -383,7 +445,7 @@ class Writer:
 
     @property
     def _observed_forces(self) -> str:
-        return f"forces(time, dt, displacement, velocity, force, resisting, direction, {self._columns_text()})"
+        return f"forces({FORCED}, {self._columns_text()})"
 
     def _observe(self) -> str:
         """The derived columns of rods and particles, and the measures, at a state.
@@ -420,9 +482,7 @@ class Writer:
 
     def _commit(self) -> str:
         """The commits at a state that no step has led to."""
-        arguments = (
-            f"time, dt, displacement, velocity, force, resisting, direction, account, {self._columns_text()}"
-        )
+        arguments = f"{FORCED}, account, {self._columns_text()}"
         return f"@entry\ndef commit({arguments}):\n    accept({arguments})"
 
     def _pasted(self, where: str, decorator: str) -> str:

@@ -16,7 +16,6 @@ _IMPLICIT = "systems.physics.implicit"
 _FIXED_STEPS = "systems.physics.fixed_steps"
 
 _CHECKS = (f"{_FIXED_STEPS}:is_check_due", f"{_FIXED_STEPS}:steps_to_check")
-_PLAIN = (*_CHECKS, f"{_FIXED_STEPS}:enter_loads", f"{_FIXED_STEPS}:enter_powers")
 _CONTROLLED = (
     *_CHECKS,
     *(
@@ -45,8 +44,9 @@ class VelocityVerlet(Integrator):
     """
 
     name = "physics.velocity_verlet"
-    parts = _PLAIN
-    kernel = f"{_FIXED_STEPS}:velocity_verlet"
+    parts = _CHECKS
+    begins = f"{_FIXED_STEPS}:verlet_begins"
+    ends = f"{_FIXED_STEPS}:verlet_ends"
     order: ClassVar[int] = 2
     guard = 1.0
 
@@ -64,8 +64,9 @@ class SemiImplicitEuler(Integrator):
 
     name = "physics.semi_implicit_euler"
     guard = 2.0
-    parts = _PLAIN
-    kernel = f"{_FIXED_STEPS}:semi_implicit_euler"
+    parts = _CHECKS
+    begins = f"{_FIXED_STEPS}:euler_begins"
+    ends = f"{_FIXED_STEPS}:euler_ends"
     order: ClassVar[int] = 1
 
     @staticmethod
@@ -81,8 +82,9 @@ class ThesisTaylor(Integrator):
     """
 
     name = "physics.taylor2"
-    parts = _PLAIN
-    kernel = f"{_FIXED_STEPS}:taylor2"
+    parts = _CHECKS
+    begins = f"{_FIXED_STEPS}:taylor2_begins"
+    ends = f"{_FIXED_STEPS}:taylor2_ends"
     order: ClassVar[int] = 1
 
     @staticmethod

@@ -1,5 +1,9 @@
 """Drivers with fixed steps, as source: the step program is written around them and compiled as one module.
 
+An integrator of plain steps says what becomes of each particle `i` as a step begins, and as it ends, once there
+are forces at the new displacement and the predicted velocity. It leaves in `velocity` its mean over the step
+until the end. Any other is a function `integrate` and what it calls.
+
 In this source `*columns` stands for the flat list of the model's columns (particles_mobility,
 particles_mass, … can therefore be used by name), which the program writer puts in: arrays in tuples cost
 twice as much per step in small models. Provided by the program are
@@ -23,163 +27,80 @@ their mean force times the displacement of the step: with it the energy that Ver
 # mypy: ignore-errors
 
 
-def velocity_verlet(
-    steps,
-    first,
-    origin,
-    dt,
-    displacement,
-    velocity,
-    force,
-    resisting,
-    direction,
-    predicted,
-    power,
-    gained,
-    account,
-    *columns,
-):
-    """x₊ = x + h v + h²/2 a; v* = v + h a; a* = a(x₊, v*); v₊ = v + h/2 (a + a*); a₊ = a(x₊, v₊)."""
-    half = 0.5 * dt
-    for step in range(1, steps + 1):
-        time = origin + (first + step) * dt
-        for i in range(displacement.shape[0]):
-            ax = force[i, 0]
-            ay = force[i, 1]
-            if RATES:
-                ax += resisting[i, 0]
-                ay += resisting[i, 1]
-            ax *= particles_mobility[i, 0]
-            ay *= particles_mobility[i, 1]
-            vx = velocity[i, 0]
-            vy = velocity[i, 1]
-            hx = vx + half * ax
-            hy = vy + half * ay
-            displacement[i, 0] += dt * hx
-            displacement[i, 1] += dt * hy
-            velocity[i, 0] = hx
-            velocity[i, 1] = hy
-            if RATES:
-                predicted[i, 0] = vx + dt * ax
-                predicted[i, 1] = vy + dt * ay
-        if LOADS:
-            enter_loads(origin + (first + step - 1) * dt, time, dt, velocity, account, *columns)
-        accept(time, dt, displacement, predicted, force, resisting, direction, account, *columns)
-        for i in range(displacement.shape[0]):
-            ax = force[i, 0]
-            ay = force[i, 1]
-            if RATES:
-                ax += resisting[i, 0]
-                ay += resisting[i, 1]
-            velocity[i, 0] += half * (ax * particles_mobility[i, 0])
-            velocity[i, 1] += half * (ay * particles_mobility[i, 1])
-        if POWERS:
-            enter_powers(
-                time, dt, displacement, velocity, resisting, direction, power, gained, account, *columns
-            )
+def verlet_begins(i, dt, displacement, velocity, force, resisting, predicted, *columns):
+    """x₊ = x + h v + h²/2 a; v* = v + h a; half of the way to v₊."""
+    ax = force[i, 0]
+    ay = force[i, 1]
+    if RATES:
+        ax += resisting[i, 0]
+        ay += resisting[i, 1]
+    ax *= particles_mobility[i, 0]
+    ay *= particles_mobility[i, 1]
+    vx = velocity[i, 0]
+    vy = velocity[i, 1]
+    hx = vx + 0.5 * dt * ax
+    hy = vy + 0.5 * dt * ay
+    displacement[i, 0] += dt * hx
+    displacement[i, 1] += dt * hy
+    velocity[i, 0] = hx
+    velocity[i, 1] = hy
+    if RATES:
+        predicted[i, 0] = vx + dt * ax
+        predicted[i, 1] = vy + dt * ay
 
 
-def taylor2(
-    steps,
-    first,
-    origin,
-    dt,
-    displacement,
-    velocity,
-    force,
-    resisting,
-    direction,
-    predicted,
-    power,
-    gained,
-    account,
-    *columns,
-):
-    """The thesis' x += v h + a h²/2, v += a h."""
-    half = 0.5 * dt
-    for step in range(1, steps + 1):
-        time = origin + (first + step) * dt
-        for i in range(displacement.shape[0]):
-            ax = force[i, 0]
-            ay = force[i, 1]
-            if RATES:
-                ax += resisting[i, 0]
-                ay += resisting[i, 1]
-            ax *= particles_mobility[i, 0]
-            ay *= particles_mobility[i, 1]
-            velocity[i, 0] += half * ax
-            velocity[i, 1] += half * ay
-            displacement[i, 0] += dt * velocity[i, 0]
-            displacement[i, 1] += dt * velocity[i, 1]
-        if LOADS:
-            enter_loads(origin + (first + step - 1) * dt, time, dt, velocity, account, *columns)
-        for i in range(displacement.shape[0]):
-            ax = force[i, 0]
-            ay = force[i, 1]
-            if RATES:
-                ax += resisting[i, 0]
-                ay += resisting[i, 1]
-            velocity[i, 0] += half * (ax * particles_mobility[i, 0])
-            velocity[i, 1] += half * (ay * particles_mobility[i, 1])
-        accept(time, dt, displacement, velocity, force, resisting, direction, account, *columns)
-        if POWERS:
-            enter_powers(
-                time, dt, displacement, velocity, resisting, direction, power, gained, account, *columns
-            )
+def verlet_ends(i, dt, displacement, velocity, force, resisting, predicted, *columns):
+    """v₊ = v + h/2 (a + a*), a* = a(x₊, v*); dampers and drag are then evaluated at v₊."""
+    ax = force[i, 0]
+    ay = force[i, 1]
+    if RATES:
+        ax += resisting[i, 0]
+        ay += resisting[i, 1]
+    velocity[i, 0] += 0.5 * dt * (ax * particles_mobility[i, 0])
+    velocity[i, 1] += 0.5 * dt * (ay * particles_mobility[i, 1])
 
 
-def semi_implicit_euler(
-    steps,
-    first,
-    origin,
-    dt,
-    displacement,
-    velocity,
-    force,
-    resisting,
-    direction,
-    predicted,
-    power,
-    gained,
-    account,
-    *columns,
-):
-    """v += h a(x, v); x += h v."""
-    for step in range(1, steps + 1):
-        time = origin + (first + step) * dt
-        for i in range(displacement.shape[0]):
-            ax = force[i, 0]
-            ay = force[i, 1]
-            if RATES:
-                ax += resisting[i, 0]
-                ay += resisting[i, 1]
-            ax *= particles_mobility[i, 0]
-            ay *= particles_mobility[i, 1]
-            velocity[i, 0] += dt * ax
-            velocity[i, 1] += dt * ay
-            displacement[i, 0] += dt * velocity[i, 0]
-            displacement[i, 1] += dt * velocity[i, 1]
-        if LOADS:
-            enter_loads(origin + (first + step - 1) * dt, time, dt, velocity, account, *columns)
-        accept(time, dt, displacement, velocity, force, resisting, direction, account, *columns)
-        if POWERS:
-            enter_powers(
-                time, dt, displacement, velocity, resisting, direction, power, gained, account, *columns
-            )
+def taylor2_begins(i, dt, displacement, velocity, force, resisting, predicted, *columns):
+    """The thesis' x₊ = x + v h + a h²/2; v₊ = v + a h."""
+    ax = force[i, 0]
+    ay = force[i, 1]
+    if RATES:
+        ax += resisting[i, 0]
+        ay += resisting[i, 1]
+    gain_x = 0.5 * dt * (ax * particles_mobility[i, 0])
+    gain_y = 0.5 * dt * (ay * particles_mobility[i, 1])
+    velocity[i, 0] += gain_x
+    velocity[i, 1] += gain_y
+    displacement[i, 0] += dt * velocity[i, 0]
+    displacement[i, 1] += dt * velocity[i, 1]
+    predicted[i, 0] = velocity[i, 0] + gain_x
+    predicted[i, 1] = velocity[i, 1] + gain_y
 
 
-def enter_loads(before, after, dt, velocity, account, *columns):
-    """The work of varying loads from a time to another, `dt` later (s), at the step's mean velocity."""
-    power = load_power(before, velocity, *columns)
-    account[0] += 500.0 * dt * (power + load_power(after, velocity, *columns))
+def taylor2_ends(i, dt, displacement, velocity, force, resisting, predicted, *columns):
+    """v₊ as predicted; until now v was the mean of the step."""
+    velocity[i, 0] = predicted[i, 0]
+    velocity[i, 1] = predicted[i, 1]
 
 
-def enter_powers(time, dt, displacement, velocity, resisting, direction, power, gained, account, *columns):
-    """What each account gains in the step that ends here, by the trapezoidal rule; dampers and drag anew."""
-    resist(time, dt, displacement, velocity, resisting, direction, gained, *columns)
-    for k in range(power.shape[0]):
-        account[k] += 500.0 * dt * (power[k] + gained[k])
-        power[k] = gained[k]
+def euler_begins(i, dt, displacement, velocity, force, resisting, predicted, *columns):
+    """v₊ = v + h a(x, v); x₊ = x + h v₊."""
+    ax = force[i, 0]
+    ay = force[i, 1]
+    if RATES:
+        ax += resisting[i, 0]
+        ay += resisting[i, 1]
+    velocity[i, 0] += dt * (ax * particles_mobility[i, 0])
+    velocity[i, 1] += dt * (ay * particles_mobility[i, 1])
+    displacement[i, 0] += dt * velocity[i, 0]
+    displacement[i, 1] += dt * velocity[i, 1]
+    if RATES:
+        predicted[i, 0] = velocity[i, 0]
+        predicted[i, 1] = velocity[i, 1]
+
+
+def euler_ends(i, dt, displacement, velocity, force, resisting, predicted, *columns):
+    """Nothing is left to do."""
 
 
 def is_check_due(total, age):
