@@ -121,11 +121,15 @@ class Load(Handle):
         default=0,
         references="particles",
         title="particle",
-        doc="Row of the particle that it acts on.",
+        doc="The particle that it acts on: in files its name, in Python its row.",
     )
     force: Field[Vector] = Field("kN", shape=(2,), title="force", doc="Force at factor 1.")
     history: Field[History] = Field(
-        dtype=object, default=CONSTANT, title="history", doc="Factor in time.", checker=check_history
+        dtype=object,
+        default=CONSTANT,
+        title="history",
+        doc="How its factor changes in time.",
+        checker=check_history,
     )
 
     @property

@@ -28,7 +28,7 @@ class Rod(Handle):
         default=0,
         references="particles",
         title="ends",
-        doc="Rows of the particles at its two ends.",
+        doc="The particles at its two ends: in files names, in Python rows.",
     )
     stiffness: Field[float] = Field(
         "kN", default=164640.0, above=0.0, title="stiffness", doc="EA: force per unit of strain."

@@ -18,7 +18,11 @@ README = ROOT / "README.md"
 TEXT = README.read_text(encoding="utf-8")
 PAGES = [
     README,
-    *(page for top in ("systems", "game", "assets") for page in sorted((ROOT / top).rglob("README.md"))),
+    *(
+        page
+        for top in ("components", "systems", "game", "assets")
+        for page in sorted((ROOT / top).rglob("README.md"))
+    ),
 ]
 
 
