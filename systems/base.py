@@ -128,8 +128,9 @@ class Law(StepSystem):
 class Commit(StepSystem):
     """History of one rod, brought up to date once per accepted step, and before the first after an edit.
 
-    The kernel maps scalars of one rod (`elongation` provided) to (the new value of the one column in
-    `writes`, the energy dissipated in kN·m).
+    The kernel maps scalars of one rod (`elongation`, `axial_force` and `dt` provided; 0 s after an edit) to
+    (the new value of the one column in `writes`, the energy dissipated in kN·m). Those that take the axial
+    force come after the others.
 
     branch, margin: kernels that tell drivers which locate events where the rod's law is not smooth; "": none.
         branch(elongation, rate, …) is the number of the branch of the law that the rod is about to follow;

@@ -14,7 +14,15 @@ from components.field import Role
 from components.model import Model
 from systems.base import ACCOUNTS, Commit, Law, StepSystem
 
-PROVIDED = ("elongation", "rate", "axial_force", "time", "dt", "branch")
+_TO_COMMITS = ("elongation", "axial_force", "time", "dt")
+PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for
+    "rods": (*_TO_COMMITS, "rate"),
+    "particles": ("time", "dt"),
+    "commit": _TO_COMMITS,
+    "branch": ("elongation", "rate", "dt"),
+    "margin": ("elongation", "rate", "dt", "branch"),
+}
+PROVIDED = {name for names in PROVIDED_TO.values() for name in names}
 TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
 
 _KINDS = ("rods", "particles", "loads")
@@ -160,7 +168,8 @@ def find(kernel: str | Callable[..., Any], owner: str) -> Callable[..., Any]:
 def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
     """A kernel is given what its role provides, its own arrays and the columns that its system declares."""
     rows, name = b.each or "rods", b.system.name
-    if parameter in PROVIDED and (parameter != "branch" or b.kernel == "margin"):
+    provided = PROVIDED_TO[(b.each or "commit") if b.kernel == "kernel" else b.kernel]
+    if parameter in provided:
         return
     if parameter in b.arrays:
         if len(b.arrays[parameter]) != model.tables[rows].count:
@@ -173,8 +182,7 @@ def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
     if not _is_column(parameter, model):
         raise ProgramError(
             f"The kernel of {name} has a parameter '{parameter}', but there is no column {table}.{column};"
-            " name parameters <table>_<column>, elongation, rate, axial_force, time, dt or like an entry of"
-            " `arrays`."
+            f" name parameters <table>_<column>, {', '.join(provided)} or like an entry of `arrays`."
         )
     if f"{table}.{column}" not in (*b.system.reads, *b.system.writes):
         raise ProgramError(

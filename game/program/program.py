@@ -278,8 +278,8 @@ class Program:
     def commit(self) -> None:
         """Let history take note of a state that no step has led to, outside the energy account."""
         if self._writer.commits:
-            time, size = self._control[:2].tolist()
-            self.module.commit(time, size, *self._state, np.zeros(len(ACCOUNT)), *self._columns)
+            time = float(self._control[0])
+            self.module.commit(time, 0.0, *self._state, np.zeros(len(ACCOUNT)), *self._columns)
             self._mark_changes()
 
     def observe(self) -> None:

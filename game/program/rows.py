@@ -110,11 +110,13 @@ def in_turn(systems: Sequence[StepSystem], model: Model) -> Iterator[tuple[StepS
     rows = KernelRows(model)
     bound = [bind(system, model) for system in systems if isinstance(system, Law | Commit)]
     laws = sorted((b for b in bound if b.each), key=lambda b: b.system.name)
-    first = [b for b in laws if b.each != "rods"] + [b for b in bound if not b.each]
+    commits = [b for b in bound if not b.each]
+    late = [b for b in commits if "axial_force" in b.parameters]
+    first = [b for b in laws if b.each != "rods"] + [b for b in commits if b not in late]
     summed = [b for b in laws if b.each == "rods" and not {"rate", "axial_force"} & set(b.parameters)]
     replacing = [b for b in bound if b.each == "rods" and b.replaces]
     rates = [b for b in laws if b.each == "rods" and "rate" in b.parameters]
-    for b in (*first, *summed, *replacing, *rates):
+    for b in (*first, *summed, *replacing, *late, *rates):
         given = rows.of(b)
         yield b.system, given
         if b in summed:

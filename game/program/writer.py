@@ -276,9 +276,15 @@ class Writer:
         return forces + direction + self._rate_forces(powers)
 
     def _commits(self, commits: Sequence[Bound]) -> tuple[list[str], dict[str, str]]:
-        """Lines that bring history up to date, and names of what is lost with lines that add it up."""
-        lines, lost = [], {}
-        for b in commits:
+        """Lines that bring history up to date, and names of what is lost with lines that add it up.
+
+        Those that take the axial force come last, when the others have changed it.
+        """
+        lines: list[str] = []
+        lost = {}
+        late = [b for b in commits if "axial_force" in b.parameters]
+        for b in [*(b for b in commits if b not in late), *late]:
+            lines += self._axial_force() if b in late[:1] else []
             lines.append(f"{_column(b)}[r], gone_{b.prefix} = {self._apply(b, 'r')}")
             lost[f"gone_{b.prefix}"] = f"lost_{b.slot} += gone_{b.prefix}"
         return lines, lost

@@ -118,10 +118,13 @@ class Stages:
 
     def commit(self, elongations: list[float], time: float, dt: float) -> None:
         """Every commit for every rod."""
-        for kernel in self.commits:
+        late = [kernel for kernel in self.commits if "axial_force" in kernel.parameters]
+        for kernel in (*(kernel for kernel in self.commits if kernel not in late), *late):
             column, lost = self.history[kernel.system.writes[0]], 0.0
-            for row, elongation in enumerate(elongations):
-                provided = self._past(row) | {"elongation": elongation, "time": time, "dt": dt}
+            forces = self.axial_forces(elongations, time, dt) if kernel in late else elongations
+            for row, (elongation, force) in enumerate(zip(elongations, forces, strict=True)):
+                given = {"elongation": elongation, "axial_force": force, "time": time, "dt": dt}
+                provided = self._past(row) | given
                 column[row], gone = kernel(row, provided)
                 lost += gone
             self.account[kernel.system.account] += 1000.0 * lost

@@ -148,9 +148,10 @@ class ProgressiveDamper(Law):
 
 
 class Fatigue:
-    """The column of a mod: the largest elongation that a rod ever had."""
+    """Columns of a mod: the largest elongation that a rod ever had, and its force over time."""
 
     peak: ClassVar[Field] = Field("m", role=Role.STATE, title="peak", doc="Largest elongation so far.")
+    wear: ClassVar[Field] = Field("kN·s", role=Role.STATE, title="wear", doc="|N| over time so far.")
 
 
 @compiled
@@ -235,6 +236,41 @@ def test_a_commit_writes_its_own_column() -> None:
     assert session.rods.peak.tolist() == [largest]
 
 
+class Wear(Commit):
+    """Adds up the axial force over time (kN·s)."""
+
+    name = "mod.wear"
+    writes = ("rods.wear",)
+
+    @staticmethod
+    @compiled
+    def kernel(rods_wear, axial_force, dt):
+        return rods_wear + abs(axial_force) * dt, 0.0
+
+
+@pytest.mark.parametrize(
+    ("rods", "integrator"), [(1, "velocity_verlet"), (1, "dop853"), (201, "velocity_verlet")]
+)
+def test_a_commit_may_take_the_axial_force_and_edits_take_no_time(rods: int, integrator: str) -> None:
+    """Rod by rod, with error control, and in stages."""
+    particles = [particle(f"A{row}", 0, row, fixed=[True, True]) for row in range(rods)]
+    particles += [
+        particle(f"B{row}", 1, row, fixed=[False, True], velocity=[1 + row, 0]) for row in range(rods)
+    ]
+    document = model(particles, [rod(f"A{row}", f"B{row}", stiffness=1000, damping=0) for row in range(rods)])
+    made = models.load(document | {"settings": {"integrator": integrator}})
+    made.rods.add_column(Fatigue.wear)
+    session = Session(made, [Wear()])
+    expected = np.zeros(rods)
+    for _ in range(20):
+        session.particles["B0"].force = (session.time, 0.0)
+        before = session.time
+        session.run(steps=1)
+        expected += abs(session.rods.axial_force) * (session.time - before)
+    assert session.rods.wear == pytest.approx(expected, rel=1e-12)
+    assert expected.min() > 0.0
+
+
 def test_laws_that_differ_only_in_a_captured_number_are_told_apart() -> None:
     def stiffener(extra: float) -> Law:
         @compiled
@@ -308,6 +344,8 @@ class OwnArray(Law):
         (law("systems.physics.kernels:nothing"), "cannot be found"),
         (law(heated, each="rod"), "choose one of rods, particles, loads"),
         (law(heated, reads=("rods.stiffness",), account="heat"), "choose one of work"),
+        (law(failing, each="particles"), "name parameters <table>_<column>, time, dt or"),
+        (commit(progressive, writes=("rods.yielding",)), "a parameter 'rate', but there is no column"),
         (commit(remembered, writes=("rods.density",)), "no part of the document"),
         (commit(remembered, writes=()), "writes nothing"),
         (OwnArray(), "has 3 rows for 2 particles"),
