@@ -467,9 +467,14 @@ class Simulation:
 
     def _stood_still_since(self, before: Snapshot | None) -> bool:
         """True if all that happened since was lost in rounding: far from where it was drawn, a creep may be."""
-        if before is None or self._safe is None or loads_end(self.model) > self.model.clock.time:
+        if before is None or self._safe is None or self._changes_end > self.model.clock.time:
             return False
         return all(same(before.columns[name], self._safe.columns[name]) for name in MOVING)
+
+    @property
+    def _changes_end(self) -> float:
+        """The time (s) from which on nothing changes but by motion."""
+        return self.program.changes_end if isinstance(self.program, Program) else loads_end(self.model)
 
     def _go_on_without_mod(self) -> bool:
         """If a mod made a number that is not finite, switch it off and return to the last good state."""
@@ -565,9 +570,11 @@ class Simulation:
 
     def _why_not_at_rest(self, limit: float) -> str:
         message = f"Not at rest within {limit:g} s of simulated time."
+        if isinstance(self.program, Program) and self.program.lasting:
+            return f"{message} {self.program.lasting} changes with time, so it never will be; run to a time instead."
         if not self.program.resists_motion:
             return f"{message} Nothing damps the motion, so it never will be; give rods damping or set a drag."
-        if loads_end(self.model) > limit:
+        if self._changes_end > limit:
             return f"{message} A load still changes; raise the limit."
         return f"{message} Raise the limit, or the damping of the rods or the drag."
 

@@ -76,6 +76,12 @@ class Bound:
         return ACCOUNTS.index(self.account)
 
     @property
+    def follows_time(self) -> bool:
+        """Whether what it does changes while nothing moves; of loads their histories know when that ends."""
+        times = ("time",) if self.each else ("time", "dt")
+        return self.each != "loads" and any(name in self.parameters for name in times)
+
+    @property
     def replaces(self) -> bool:
         """Whether a law of rods is given the sum of the others, and its result replaces it."""
         return "axial_force" in self.parameters and "rate" not in self.parameters

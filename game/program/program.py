@@ -110,6 +110,11 @@ class Program:
         """True if something depends on velocity: dampers or drag."""
         return self._writer.rates
 
+    @property
+    def lasting(self) -> str:
+        """The name of a system that changes with time, whether anything moves or not; "" if there is none."""
+        return next((b.system.name for b in self._writer.bound if b.follows_time), "")
+
     def bind(self) -> None:
         """Take hold of the model's columns; needed after every change of its document."""
         model = self.model
@@ -130,7 +135,7 @@ class Program:
         self._direction = np.zeros((rods, 2))
         self._state = (self._displacement, self._velocity, self._force, self._resisting, self._direction)
         self._power, self._gained = np.zeros(len(ACCOUNTS)), np.zeros(len(ACCOUNTS))
-        self._loads_end = loads_end(model)
+        self.changes_end = math.inf if self.lasting else loads_end(model)
         self._breaks = [*load_breaks(model), math.inf]
         self._work = np.zeros((self.driver.particle_rows, particles, 2))
         self._rod_work = np.zeros((self.driver.rod_rows, rods))
@@ -204,7 +209,7 @@ class Program:
             origin,
             size,
             self._coming_breaks(math.inf),
-            self._loads_end,
+            self.changes_end,
             *self._state,
             self._predicted,
             self._power,
@@ -235,7 +240,7 @@ class Program:
             limit or math.inf,
             self._coming_breaks(landing),
             float(until),
-            self._loads_end,
+            self.changes_end,
             control,
             self._search,
             *self._state,

@@ -289,6 +289,29 @@ def test_laws_that_differ_only_in_a_captured_number_are_told_apart() -> None:
     assert forces == pytest.approx([0.2, 0.6], rel=1e-12)
 
 
+@compiled
+def later(time):
+    return 0.001 * max(0.0, time - 0.5), 0.0
+
+
+class Later(Law):
+    """A push that begins after half a second, 1 N for every second."""
+
+    name = "mod.later"
+    each = "particles"
+    kernel = staticmethod(later)
+
+
+def test_what_changes_with_time_does_not_let_a_model_rest() -> None:
+    alone = model([particle("A", 0, 0)], [])
+    session = Session.open(alone, [Later()])
+    session.run(time=1.5)
+    assert session.particles["A"].displacement[0] == pytest.approx(1.0 / 6.0, rel=1e-6)  # t³/6 of 1 kg
+    session = Session.open(alone, [Later()])
+    assert session.run(until="rest", limit=0.4) == "limit reached"
+    assert "mod.later changes with time, so it never will be; run to a time instead." in session.message
+
+
 # --- mistakes --------------------------------------------------------------------------------------------
 
 
