@@ -149,11 +149,16 @@ class App:
     def run(self) -> list[Failure]:
         """Frames at 60 Hz until the window is closed; returns what played scripts expected in vain."""
         failures: list[Failure] = []
-        while not self.input.closed:
-            self.next_frame()
-            if self.session.lesson is not None:
-                lesson, self.session.lesson = self.session.lesson, None
-                failures += Performance(self, lesson).play()
+        thresholds = gc.get_threshold()
+        gc.set_threshold(SELDOM)  # else it looks through thousands of new elements in mid edit; see _clean_up
+        try:
+            while not self.input.closed:
+                self.next_frame()
+                if self.session.lesson is not None:
+                    lesson, self.session.lesson = self.session.lesson, None
+                    failures += Performance(self, lesson).play()
+        finally:
+            gc.set_threshold(*thresholds)
         if self.autosave is not None:
             self.autosave.close(self.session.desks)
         if self.preparation is not None:

@@ -31,7 +31,7 @@ class Hand:
     """Somebody at a window without a display, with a lattice of rods before them."""
 
     def __init__(self, rods: int) -> None:
-        gc.set_threshold(SELDOM)  # as in App.run
+        gc.set_threshold(SELDOM)  # as App.run does
         self.app = App(lattice(rods, damping=1.0), preparation=Preparation())
         self.session = self.app.session
         self._fresh = count(1)  # something else every time: a particle, a place

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 from collections.abc import Iterator
 from typing import Any
@@ -13,7 +14,7 @@ import pytest
 
 import systems.edit.hover
 from game import models
-from game.app import App
+from game.app import SELDOM, App
 from systems.edit.picking import pick
 from systems.input import pygame_input
 
@@ -72,3 +73,18 @@ def test_what_lies_under_a_resting_pointer_is_looked_up_once(app: App, monkeypat
     app.session.view.pointer = (1.0, 1.0)
     assert frames(app, 20) == 1
     assert len(looked) <= 4
+
+
+def test_garbage_is_looked_for_while_nothing_happens(app: App, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not in mid edit: looking through what is new of 10 000 elements takes longer than a frame."""
+    seen: list[int] = []
+
+    def only_frame() -> None:
+        seen.append(gc.get_threshold()[0])
+        app.input.closed = True
+
+    monkeypatch.setattr(app, "next_frame", only_frame)
+    before = gc.get_threshold()
+    app.run()
+    assert seen == [SELDOM]
+    assert gc.get_threshold() == before
