@@ -19,6 +19,7 @@ from game.program.writer import VERY_MANY, form_of
 from systems.base import Driver, StepSystem
 
 _QUICK = ("omp", "tbb")  # threading layers that start the cores in some microseconds
+_SPINS = "10000"  # some 0.1 ms for which a core waits awake: to be woken costs as much as a step of 10 000 rods
 _WORTHWHILE = 100_000  # rods from which another, that takes 50 of them, is worth it
 
 
@@ -77,7 +78,8 @@ class BlockProgram(ArrangedProgram):
 
     def _cores(self) -> int:
         """How many cores are worth it; results do not depend on it."""
-        os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # else they wait for each other at full speed
+        os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # else they wait at full speed for milliseconds
+        os.environ.setdefault("GOMP_SPINCOUNT", _SPINS)
         import numba
 
         available = min(cores(), int(numba.config.NUMBA_NUM_THREADS))  # type: ignore[attr-defined]

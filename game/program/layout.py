@@ -1,13 +1,15 @@
 """Layouts: a large model in blocks that fit a cache and can be computed side by side.
 
-Particles are numbered anew along a space-filling curve through their original positions and cut into blocks of
-about as many rod ends. The rods within each block come first, block after block, then those between blocks, all
-in their order: blocks wait for nobody, and what is between them comes when all are done. So every particle's sum
-has one order, which depends on the model alone.
+A space-filling curve through the original positions of the particles is cut into pieces of about as many rod ends.
+Within each block the particles are numbered row after row of the picture, and rods by their ends, so that what is
+near is near in memory. The rods within each block come first, block after block, then those between blocks: blocks
+wait for nobody, and what is between them comes when all are done. So every particle's sum has one order, which
+depends on the model alone.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +17,8 @@ from numpy.typing import NDArray
 
 from components.model import Model
 
-BLOCK = 4096  # rods in a block, about: some 600 kB, which a core has for itself
+BLOCK = 8192  # rods in a block at most, about: what particles are read and written stays in a core's own cache
+SHARES = 8  # of which there are so many, or a multiple: 2, 4 or 8 cores have as much to do each
 
 Numbers = NDArray[np.intp]
 
@@ -45,19 +48,21 @@ class Layout:
 
     @classmethod
     def of(cls, model: Model) -> Layout:
-        """The layout of a model in blocks of about BLOCK rods."""
-        count, between = model.particles.count, model.rods.between.astype(np.intp)
-        particles = np.argsort(_along_curve(model.particles.position), kind="stable")
+        """The layout of a model in blocks of up to BLOCK rods or so."""
+        position, between = model.particles.position, model.rods.between.astype(np.intp)
+        count, blocks = len(position), SHARES * max(math.ceil(len(between) / (SHARES * BLOCK)), 1)
+        curve = np.argsort(_along_curve(position), kind="stable")
+        crowd = np.cumsum(np.bincount(between.ravel(), minlength=count)[curve])
+        limits = np.searchsorted(crowd, crowd[-1:] * np.arange(1, blocks) / blocks)
+        first_particle = np.concatenate([[0], limits, [count, count]]).astype(np.intp)
+        block = np.repeat(np.arange(blocks + 1), np.diff(first_particle))
+        particles = curve[np.lexsort((*position[curve].T, block))]
         row = np.empty_like(particles)
         row[particles] = np.arange(count)
         ends = row[between]
-        blocks = max(round(len(between) / BLOCK), 1)
-        crowd = np.cumsum(np.bincount(ends.ravel(), minlength=count))
-        limits = np.searchsorted(crowd, crowd[-1:] * np.arange(1, blocks) / blocks)
-        first_particle = np.concatenate([[0], limits, [count, count]]).astype(np.intp)
-        home = np.searchsorted(first_particle[:-2], ends, side="right") - 1
+        home = block[ends]
         block_of = np.where(home[:, 0] == home[:, 1], home[:, 0], blocks)
-        rods = np.argsort(block_of, kind="stable")
+        rods = np.lexsort((ends.max(axis=1), ends.min(axis=1), block_of))
         first_rod = np.searchsorted(block_of[rods], np.arange(blocks + 2))
         return cls(particles, rods, row, ends[rods].astype(np.uint32), first_particle, first_rod)
 
