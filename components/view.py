@@ -18,6 +18,7 @@ from components.toolbar import Toolbar
 MAGNIFICATIONS = (0.5, 0.65, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 4.0)
 COMFORTABLE = 1080.0  # points: on displays higher than this, type and symbols grow
 COMFORTABLE_HEIGHT, LEAST_HEIGHT = 480.0, 240.0  # points that are left in a window by itself, and at all
+BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
 
 

@@ -38,7 +38,7 @@ def _energy(session: Session) -> Readout:
     ]
     error = session.desk.assessment.error() if not session.busy else None  # measuring takes a run of its own
     if error is not None:
-        rows.append(("error of displacements, measured", f"{error.relative:.1e} of the largest"))
+        rows.append(("displacement error", f"{error.relative:.1e} of the largest"))
     return Readout("Energy account", tuple(rows))
 
 

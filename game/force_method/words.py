@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, overload
 
+from components.view import BETWEEN
 from game.force_method import PARTS
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def hint(guide: Guide) -> str:
         steps = ["K finish", "N release another", *steps]
     else:
         steps = ["K finish" if guide.part == PARTS else "K next part", *steps]
-    return "     ".join(steps)
+    return BETWEEN.join(steps)
 
 
 def _released(guide: Guide) -> str:

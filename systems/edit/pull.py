@@ -100,7 +100,8 @@ def hand_on(model: Model, view: View, particle: Particle, pace: Callable[[], flo
     more than the usual force of the model when the pointer is COMFORTABLE points away, so that a stiff
     truss bends instead of being torn apart. The damper is critical for the particle by itself.
     """
-    fastest = 1.0 / (STEPS_PER_RADIAN * model.clock.step_size)
+    step = model.clock.step_size  # 0 where no run could begin
+    fastest = 1.0 / (STEPS_PER_RADIAN * step) if step > 0.0 else math.inf
     if (model.rods.between == particle.row).any():
         reach = COMFORTABLE * view.pixel_ratio / view.camera.scale / model.settings.displacement_scale
         stiffness = min(particle.mass * fastest**2 / 1000.0, usual_force(model) / reach)

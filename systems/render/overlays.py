@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from components.view import BETWEEN
 from systems.render.marks import Mark, Panel, Rectangles, Stamps, Strokes, Text
 from systems.render.sheet import Sheet
 from systems.render.symbols import dashed
@@ -112,13 +113,16 @@ def _shows_hint(sheet: Sheet) -> bool:
 
 
 def _append_hint(sheet: Sheet, marks: list[Mark], x: float, y: float) -> None:
-    """The next possible step at the right end, as much of it as there is room for."""
+    """The next possible steps at the right end, as many as there is room for."""
     v, u, size = sheet.viewport, sheet.unit, sheet.font(12.0)
     if not _shows_hint(sheet):
         return
     right = v.left + v.width - _EDGE * u
-    text = shortened(sheet.view.status.hint, right - x - 6.0 * u, size)
-    if text == sheet.view.status.hint or len(text) > 12:
+    room, steps = right - x - 6.0 * u, sheet.view.status.hint.split(BETWEEN)
+    while len(steps) > 1 and text_width(BETWEEN.join(steps), size) > room:
+        steps.pop()
+    text = shortened(BETWEEN.join(steps), room, size)
+    if text == BETWEEN.join(steps) or len(text) > 12:
         marks.append(Text(text, right, y, size, sheet.theme.muted, anchor="right"))
 
 
@@ -354,7 +358,7 @@ def _empty(sheet: Sheet, bottom: float) -> list[Mark]:
     """A card in the middle that says how to begin."""
     v, u, theme = sheet.viewport, sheet.unit, sheet.theme
     title, size = sheet.font(20.0), sheet.font(13.0)
-    steps = [step.split(" ", 1) for step in sheet.view.status.hint.split("     ") if " " in step]
+    steps = [step.split(" ", 1) for step in sheet.view.status.hint.split(BETWEEN) if " " in step]
     keys = max((text_width(key, size, "semibold") for key, _ in steps), default=0) + 12.0 * u
     written = keys + max((text_width(rest, size) for _, rest in steps), default=0)
     width = min(v.width - 2 * _EDGE * u, max(written + 64.0 * u, 280.0 * u))

@@ -6,13 +6,13 @@ import sys
 
 import pygame
 
-from tests.golden.scenes import FOLDER, SCENES, drawn
+from tests.golden.scenes import FOLDER, GOLDEN, drawn
 
 
 def main() -> None:
     """Write those that are named, or all."""
-    for name in sys.argv[1:] or SCENES:
-        pygame.image.save(drawn(name), FOLDER / f"{name}.png")
+    for name in sys.argv[1:] or GOLDEN:
+        pygame.image.save(drawn(*GOLDEN[name]), FOLDER / f"{name}.png")
         print(f"{name}.png")
 
 

@@ -1,60 +1,85 @@
-"""The pictures to compare: every mode, in a small window, without a display.
+"""What pictures are made of: every mode, in windows of three sizes, without a display.
 
-They depend on nothing but the program: no saved models, time by steps, a fixed window.
+They depend on nothing but the program: no saved models, time by steps, fixed windows.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 import pygame
 
-from components.camera import Viewport
+from components.view import drawn_positions, magnified
 from game import Session
 from game.saved.library import data_in
+from systems.render.marks import Picture
 from systems.render.picture import compose
 from systems.render.pygame_canvas import Canvas
 from systems.render.theme import load_theme
 
 FOLDER = Path(__file__).parent
-SIZE = 640, 480
 NOWHERE = Path("nowhere")  # in place of the person's saved models; there is no such folder
 EMPTY = {"format": "pinjoint model", "version": 1}
 
 
-def drawn(name: str) -> pygame.Surface:
-    """The picture of that name."""
+@dataclass(frozen=True)
+class Window:
+    """So many pixels, and so many of them for each point."""
+
+    width: int
+    height: int
+    ratio: float = 1.0
+
+
+Scene = Callable[[Window], Session]
+LARGE = 2000  # pixels: wider pictures are kept at a quarter of their size
+WINDOWS = {
+    "small": Window(640, 480),
+    "usual": Window(1000, 720),
+    "large": Window(3840, 2160, magnified(2160, 2160, 1.0)),
+}
+
+
+def drawn(name: str, window: Window) -> pygame.Surface:
+    """The picture of that name; a large one as seen from a distance, so that its file is small."""
+    surface = pygame.Surface((window.width, window.height), depth=32)
+    canvas = Canvas()
+    for picture in pictures(name, window):
+        canvas.draw(surface, picture)
+    return surface if window.width < LARGE else pygame.transform.smoothscale_by(surface, 0.25)
+
+
+def pictures(name: str, window: Window) -> list[Picture]:
+    """What it consists of, one above the other."""
     with data_in(NOWHERE):
-        session = SCENES[name]()
+        session = SCENES[name](window)
         session.update_view()
-        surface = pygame.Surface(SIZE, depth=32)
-        canvas = Canvas()
-        for shown, view in session.stages:
-            canvas.draw(surface, compose(shown, view, load_theme(session.view.theme)))
-        return surface
+        theme = load_theme(session.view.theme)
+        return [compose(shown, view, theme) for shown, view in session.stages]
 
 
-def _opened(source: object = "isostatic") -> Session:
+def _opened(window: Window, source: object = "isostatic") -> Session:
     session = Session.open(source)  # type: ignore[arg-type]
-    session.view.camera.viewport = Viewport(0, 0, *SIZE)
+    session.resize(window.width, window.height, window.ratio)
     session.view.fit(session.model)
     return session
 
 
-def _pressed(*keys: str, source: object = "isostatic", theme: str = "light") -> Session:
-    session = _opened(source)
+def _pressed(window: Window, *keys: str, source: object = "isostatic", theme: str = "light") -> Session:
+    session = _opened(window, source)
     session.view.theme = theme
     for key in keys:
         session.press(key)
     return session
 
 
-def _simulation_at_rest() -> Session:
-    session = _opened()
+def _simulation_at_rest(window: Window) -> Session:
+    session = _opened(window)
     session.settings.displacement_scale = 50.0
     session.press("i")
     session.press("space")
@@ -62,48 +87,40 @@ def _simulation_at_rest() -> Session:
     return session
 
 
-def _properties() -> Session:
-    session = _opened()
+def _properties(window: Window) -> Session:
+    session = _opened(window)
     session.click(*session.particles["B"].position)
     session.press("return")
     return session
 
 
-def _save() -> Session:
-    session = _pressed("s")
+def _save(window: Window) -> Session:
+    session = _pressed(window, "s")
     session.type("my bridge")
     return session
 
 
-def _load() -> Session:
+def _load(window: Window) -> Session:
     """Narrowed down to few examples, so that a new one need not change the picture."""
-    session = _pressed("d")
+    session = _pressed(window, "d")
     session.type("hyperstatic")
     for _ in session.scenes.active.stages(session)[0][0].tiles:  # type: ignore[union-attr]
         session.scenes.active.advance(session, 0.0)
     return session
 
 
-def _force_method() -> Session:
-    session = _pressed("k", "k", source="hyperstatic")
-    session.click(0.5, 1.0)
-    for _ in range(4):
-        session.press("k")
-    return session
-
-
-def _drawing_a_force() -> Session:
+def _drawing_a_force(window: Window) -> Session:
     """A selected rod, a tool in hand and what it is about to draw."""
-    session = _opened("hyperstatic")
+    session = _opened(window, "hyperstatic")
     session.click(0.75, 1.5)
     session.press("f", session.point(*session.particles["B"].position))
     session.point(0.4, 1.2)
     return session
 
 
-def _drawing_a_wall() -> Session:
+def _drawing_a_wall(window: Window) -> Session:
     """From the foot of the stairs, with the floor selected."""
-    session = _opened("staircase")
+    session = _opened(window, "staircase")
     session.select(session.table("walls")["floor"])
     session.point(2.0, 0.0)
     session.press("w")
@@ -111,18 +128,94 @@ def _drawing_a_wall() -> Session:
     return session
 
 
-SCENES: dict[str, Callable[[], Session]] = {
-    "empty": lambda: _pressed(source=EMPTY),
+def _force_method(*keys: str) -> Scene:
+    """The guide with this pressed; a click picks BD, away from where AC crosses it."""
+
+    def scene(window: Window) -> Session:
+        session = _pressed(window, "k", source="hyperstatic")
+        for key in keys:
+            if key == "click":
+                model, _ = session.focus
+                between = model.rods["BD"].between
+                x, y = (drawn_positions(model)[list(between)] * [[0.7], [0.3]]).sum(axis=0).tolist()
+                session.click(x, y)
+            else:
+                session.press(key)
+        return session
+
+    return scene
+
+
+def _mechanism_refused(window: Window) -> Session:
+    """An isostatic structure without one of its rods moves."""
+    session = _pressed(window, "k", "k")
+    session.click(0.5, 0.5)
+    return session
+
+
+def _panels(window: Window) -> Session:
+    """Theory, energies and a plot beside a selected rod that yields."""
+    session = _opened(window, "hyperstatic_yield")
+    session.select(session.rods["CD"])
+    for key in ("o", "m", "j", "i"):
+        session.press(key)
+    session.run(time=0.5)
+    return session
+
+
+def _all_properties(window: Window) -> Session:
+    return _pressed(window, "ctrl+a", "return", source="hyperstatic")
+
+
+def _notice(window: Window) -> Session:
+    """A long sentence above the status line."""
+    session = _pressed(window, "e", source="isostatic_collapse")
+    session.select(session.particles["B"])
+    return session
+
+
+PICKED = ("k", "click")
+SCENES: dict[str, Scene] = {
+    "empty": lambda window: _pressed(window, source=EMPTY),
     "pause": _pressed,
-    "pause-dark": lambda: _pressed("i", "e", source="hyperstatic", theme="dark"),
-    "pause-colour-blind": lambda: _pressed("i", "e", source="hyperstatic", theme="colour-blind"),
-    "pause-colour-blind-dark": lambda: _pressed("i", "e", source="hyperstatic", theme="colour-blind-dark"),
+    "pause-dark": lambda window: _pressed(window, "i", "e", source="hyperstatic", theme="dark"),
+    "pause-colour-blind": lambda window: _pressed(window, "i", "e", source="hyperstatic", theme="colour-blind"),
+    "pause-colour-blind-dark": lambda window: _pressed(
+        window, "i", "e", source="hyperstatic", theme="colour-blind-dark"
+    ),
     "drawing-a-force": _drawing_a_force,
     "drawing-a-wall": _drawing_a_wall,
     "simulation-at-rest": _simulation_at_rest,
+    "panels": _panels,
+    "notice": _notice,
     "properties": _properties,
+    "properties-of-all": _all_properties,
     "save": _save,
     "load": _load,
-    "force-method": _force_method,
-    "help": lambda: _pressed("f1"),
+    "force-method-1": _force_method(),
+    "force-method-2": _force_method("k"),
+    "force-method-2-refused": _mechanism_refused,
+    "force-method-3": _force_method(*PICKED),
+    "force-method-4": _force_method(*PICKED, "k", "i"),
+    "force-method-5": _force_method(*PICKED, "k", "k"),
+    "force-method-6": _force_method(*PICKED, "k", "k", "k"),
+    "force-method": _force_method(*PICKED, "k", "k", "k", "k"),
+    "help": lambda window: _pressed(window, "f1"),
+}
+ALONE_IN_LAYOUT = {
+    "notice",
+    "properties-of-all",
+    *(f"force-method-{part}" for part in ("1", "2", "3", "5", "6")),
+}
+IN_OTHER_SIZES = (
+    ("usual", "force-method-4"),
+    ("usual", "drawing-a-wall"),
+    ("large", "simulation-at-rest"),
+    ("large", "properties"),
+    ("large", "force-method"),
+)
+# What is kept as a picture, by the name of its file; layouts are tested in all scenes and sizes.
+GOLDEN: dict[str, tuple[str, Window]] = {
+    **{name: (name, WINDOWS["small"]) for name in SCENES if name not in ALONE_IN_LAYOUT},
+    **{f"{name}-{size}": (name, WINDOWS[size]) for size, name in IN_OTHER_SIZES},
 }

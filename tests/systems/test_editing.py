@@ -556,6 +556,16 @@ def test_dragging_a_running_particle_pulls_it_with_a_spring_whose_work_is_accoun
     assert session.view.preview is None
 
 
+def test_what_could_not_begin_to_move_can_be_taken_hold_of() -> None:
+    """A force that is too large to compute with leaves the run without a step size."""
+    particles = [{"name": "A", "position": [0, 0], "force": [1e300, 0]}, {"name": "B", "position": [1, 0]}]
+    session = Session.open({"format": "pinjoint model", "version": 1, "particles": particles})
+    session.press("space")
+    session.frame(1 / 60)
+    session.drag((1.0, 0.0), (1.2, 0.3))
+    assert session.particles["B"].position == (1.0, 0.0)
+
+
 def test_pulling_a_structure_bends_it_by_the_force_that_is_shown(triangle: Session) -> None:
     triangle.particles["B"].force = (0.0, 0.0)
     triangle.press("space")

@@ -137,7 +137,7 @@ def test_the_error_is_in_the_energy_panel_while_nothing_moves() -> None:
     session.view.energy = True
     (readout,) = own_readouts(session)
     assert readout.rows[-1] == (
-        "error of displacements, measured",
+        "displacement error",
         "1.1e-03 of the largest",
     )  # e^−ζωt (ωh)²/24 ωt
     session.press("space")
