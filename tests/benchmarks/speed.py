@@ -7,13 +7,11 @@ from __future__ import annotations
 
 import gc
 import math
-import os
 import subprocess
 import sys
 import time
 import tracemalloc
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,17 +19,15 @@ import numpy as np
 import pymunk  # here, so that a missing peer is told before anything is measured
 
 from components.model import Model
-from game.catalogue import DRIVERS, step_systems
-from game.cores import VARIABLE, cores
+from game.cores import cores
 from game.document import document
-from game.program.in_blocks import make_program
 from game.program.writer import MANY, VERY_MANY
-from game.schedule import Schedule
+from tests.benchmarks import skipping
 from tests.benchmarks.ceiling import BYTES_PER_PARTICLE, BYTES_PER_ROD, bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, truss
 from tests.benchmarks.plain import arrays_of, elastic_verlet, full_verlet
+from tests.benchmarks.timing import STEP, best_of_each, program_runner
 
-STEP = 1e-6  # s, stable in all these models
 KINDS: dict[str, dict[str, float]] = {
     "elastic": {"damping": 0.0},
     "elastic-plastic-damped": {"damping": 1.0, "tensile_strength": 1e6, "compressive_strength": 1e6},
@@ -48,24 +44,6 @@ def step_costs(*, quick: bool) -> list[Row]:
         rows.append(_step_cost(kind, truss(**rods)))
         rows += [_step_cost(kind, lattice(size, **rods)) for size in sizes]
     return rows
-
-
-FEATURES: dict[str, dict[str, float]] = {
-    "nothing but elasticity": {"damping": 0.0},
-    "dampers": {"damping": 1.0},
-    "strengths": {"damping": 0.0, "tensile_strength": 1e6, "compressive_strength": 1e6},
-    "dampers and strengths": KINDS["elastic-plastic-damped"],
-}
-
-
-def skipping() -> list[Row]:
-    """What a step costs with, and so what it saves without, dampers and strengths: the same 10 000 rods."""
-    runners = [_program_runner(lattice(10_000, **rods), 30) for rods in FEATURES.values()]
-    costs = [seconds / 30 / 10_000 * 1e9 for seconds in _best_of_each(*runners)]
-    return [
-        {"rods_have": features, "ns_per_rod": cost, "saved_by_skipping": 1.0 - cost / costs[-1]}
-        for features, cost in zip(FEATURES, costs, strict=True)
-    ]
 
 
 def scaling(steps: list[Row]) -> list[Row]:
@@ -107,9 +85,9 @@ def ceilings(steps: list[Row]) -> list[Row]:
 def _step_cost(kind: str, model: Model) -> Row:
     rods = model.rods.count
     steps = max(20, 300_000 // rods)
-    ours = _program_runner(model, steps)
+    ours = program_runner(model, steps)
     plain = _plain_runner(model, steps, full=kind != "elastic")
-    seconds, plain_seconds = _best_of_each(ours, plain)
+    seconds, plain_seconds = best_of_each(ours, plain)
     return {
         "kind": kind,
         "rods": rods,
@@ -119,30 +97,6 @@ def _step_cost(kind: str, model: Model) -> Row:
         "plain_ns_per_rod": plain_seconds / steps / rods * 1e9,
         "ratio_to_plain": seconds / plain_seconds,
     }
-
-
-def _program_runner(model: Model, steps: int, *, on: int = 1, form: str = "") -> Callable[[], None]:
-    """Takes so many steps, on so many cores."""
-    program = make_program(model, Schedule(step_systems()).step_plan(model), DRIVERS["velocity_verlet"], form)
-    model.writable("clock.step_size")[0] = STEP
-
-    def run() -> None:
-        left = steps
-        with _cores(on):
-            while left > 0:
-                left -= program.advance(left)[0]
-
-    return run
-
-
-@contextmanager
-def _cores(count: int) -> Iterator[None]:
-    before = os.environ.get(VARIABLE)
-    os.environ[VARIABLE] = str(count)
-    yield
-    del os.environ[VARIABLE]
-    if before is not None:
-        os.environ[VARIABLE] = before
 
 
 def sharing(*, quick: bool) -> list[Row]:
@@ -164,11 +118,11 @@ def _shared(kind: str, size: int, at_random: bool) -> Row:
     steps, everything = max(20, 2_000_000 // size), cores()
     runners = {
         "plain": _plain_runner(models[0], steps, full=kind != "elastic"),
-        "one_loop": _program_runner(models[0], steps, form=MANY),
-        "one_core": _program_runner(models[1], steps, form=VERY_MANY),
-        "all_cores": _program_runner(models[2], steps, on=everything, form=VERY_MANY),
+        "one_loop": program_runner(models[0], steps, form=MANY),
+        "one_core": program_runner(models[1], steps, form=VERY_MANY),
+        "all_cores": program_runner(models[2], steps, on=everything, form=VERY_MANY),
     }
-    best = _best_of_each(*runners.values(), rounds=15, clock=time.perf_counter)
+    best = best_of_each(*runners.values(), rounds=15, clock=time.perf_counter)
     rods = models[0].rods.count
     costs = {f"{name}_ns_per_rod": t / steps / rods * 1e9 for name, t in zip(runners, best, strict=True)}
     return {
@@ -184,24 +138,6 @@ def _shared(kind: str, size: int, at_random: bool) -> Row:
 def _plain_runner(model: Model, steps: int, *, full: bool) -> Callable[[], None]:
     kernel, arrays = (full_verlet if full else elastic_verlet), arrays_of(model, full=full)
     return lambda: kernel(steps, STEP, *arrays)
-
-
-def _best_of_each(
-    *runners: Callable[[], None], rounds: int = 7, clock: Callable[[], float] = time.process_time
-) -> list[float]:
-    """The shortest time of each, taken in turns so that a disturbance hits all alike; first runs left out.
-
-    Processor time of one core does not count what others do meanwhile; for several, time on the wall.
-    """
-    best = [np.inf] * len(runners)
-    for runner in runners:
-        runner()
-    for _ in range(rounds):
-        for index, runner in enumerate(runners):
-            started = clock()
-            runner()
-            best[index] = min(best[index], clock() - started)
-    return best
 
 
 def peers(*, quick: bool) -> list[Row]:
@@ -307,7 +243,7 @@ def report(*, quick: bool) -> dict[str, list[Row]]:
         "scaling": scaling(steps),
         "ceiling": ceilings(steps),
         "cores": sharing(quick=quick),
-        "skipping": skipping(),
+        "skipping": skipping.report(),
         "memory": memory(),
         "peers": peers(quick=quick),
         "start": [*start_up(), *bulk_creation()],

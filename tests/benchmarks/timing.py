@@ -1,0 +1,60 @@
+"""How benchmarks take times: the shortest of several, in turns, of programs that take so many steps."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+from components.model import Model
+from game.catalogue import DRIVERS, step_systems
+from game.cores import VARIABLE
+from game.program.in_blocks import make_program
+from game.schedule import Schedule
+
+STEP = 1e-6  # s, stable in all models of benchmarks
+
+
+def program_runner(model: Model, steps: int, *, on: int = 1, form: str = "") -> Callable[[], None]:
+    """Takes so many steps, on so many cores."""
+    program = make_program(model, Schedule(step_systems()).step_plan(model), DRIVERS["velocity_verlet"], form)
+    model.writable("clock.step_size")[0] = STEP
+
+    def run() -> None:
+        left = steps
+        with _cores(on):
+            while left > 0:
+                left -= program.advance(left)[0]
+
+    return run
+
+
+@contextmanager
+def _cores(count: int) -> Iterator[None]:
+    before = os.environ.get(VARIABLE)
+    os.environ[VARIABLE] = str(count)
+    yield
+    del os.environ[VARIABLE]
+    if before is not None:
+        os.environ[VARIABLE] = before
+
+
+def best_of_each(
+    *runners: Callable[[], None], rounds: int = 7, clock: Callable[[], float] = time.process_time
+) -> list[float]:
+    """The shortest time of each, taken in turns so that a disturbance hits all alike; first runs left out.
+
+    Processor time of one core does not count what others do meanwhile; for several, time on the wall.
+    """
+    best = [np.inf] * len(runners)
+    for runner in runners:
+        runner()
+    for _ in range(rounds):
+        for index, runner in enumerate(runners):
+            started = clock()
+            runner()
+            best[index] = min(best[index], clock() - started)
+    return best
