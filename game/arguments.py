@@ -43,14 +43,14 @@ def positive(text: str) -> float:
     return value
 
 
-def count(text: str) -> int:
-    """A whole number of at least 2."""
+def count(text: str, least: int = 2) -> int:
+    """A whole number of at least 2, or what is the least."""
     try:
         value = int(text)
     except ValueError:
-        value = 0
-    if value < 2:
-        raise argparse.ArgumentTypeError(f"{text} is not a whole number of at least 2")
+        value = least - 1
+    if value < least:
+        raise argparse.ArgumentTypeError(f"{text} is not a whole number of at least {least}")
     return value
 
 

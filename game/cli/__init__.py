@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from components.field import FieldError
 from game.arguments import BAD_INPUT, Parser, UsageError, write
 from game.cli import bench, curve, force_method, play, render, run, sweep, verify, window
-from game.cli.options import NOT_ANSWERED
+from game.cli.options import NOT_ANSWERED, use_cores_as_asked
 from game.document import ModelError
 from game.mods import ModError
 from game.mods.command import load_as_asked
@@ -29,7 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # standard output is for results
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        words = load_as_asked(words)
+        words = load_as_asked(use_cores_as_asked(words))
         command = words[0] if words and words[0] in COMMANDS else "open"
         status = COMMANDS[command](words[1:] if command in words[:1] else words)
         write("", None)  # what is still on its way there

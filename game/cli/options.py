@@ -3,14 +3,28 @@
 from __future__ import annotations
 
 import argparse
+import os
+from collections.abc import Sequence
+from functools import partial
 
 from components.settings import INTEGRATORS
-from game.arguments import UsageError, numbers, positive, times, writable
+from game.arguments import Parser, UsageError, count, numbers, positive, times, writable
+from game.cores import VARIABLE
 from game.overrides import apply_override
 from game.reports.report import Analysis
 from game.session import DEFAULT_LIMIT, Session
 
 ANSWERED, NOT_ANSWERED, NO_DISPLAY = 0, 1, 3  # exit statuses; BAD_INPUT is 2
+
+
+def use_cores_as_asked(words: Sequence[str]) -> list[str]:
+    """Let the option --cores N, which every command has, say how many cores to use; returns the other words."""
+    parser = Parser(prog="pinjoint", add_help=False, allow_abbrev=False)
+    parser.add_argument("--cores", type=partial(count, least=1), metavar="N")
+    options, others = parser.parse_known_args(list(words))
+    if options.cores is not None:
+        os.environ[VARIABLE] = str(options.cores)  # for this process and those that it starts
+    return others
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:

@@ -34,7 +34,8 @@ def command(words: Sequence[str]) -> int:
         prog="pinjoint",
         description="A laboratory for particles and pin-jointed structures.",
         epilog=f"commands: {', '.join(sorted(COMMANDS))} (each with --help). Every command takes --mods DIR, for mods"
-        " in a folder, and --no-mods, to leave yours out. Bundled models: " + ", ".join(models.bundled()),
+        " in a folder, --no-mods, to leave yours out, and --cores N, to use no more. Bundled models: "
+        + ", ".join(models.bundled()),
     )
     parser.add_argument("model", nargs="?", help="a model file, or the name of a bundled model")
     parser.add_argument(

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from game import Session, models
+from game.arguments import UsageError
+from game.cli.options import use_cores_as_asked
 from game.cores import VARIABLE, cores
 from game.program import in_blocks, layout, writer
 from game.program.layout import Layout
@@ -183,3 +185,11 @@ def test_a_forked_process_goes_on_alone(small_blocks: None) -> None:
             os._exit(code)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
     sys.stdout.flush()
+
+
+def test_the_command_line_says_how_many_cores(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, "2")
+    assert use_cores_as_asked(["run", "--cores", "1", "isostatic"]) == ["run", "isostatic"]
+    assert cores() == 1
+    with pytest.raises(UsageError, match="0 is not a whole number of at least 1"):
+        use_cores_as_asked(["run", "--cores=0"])
