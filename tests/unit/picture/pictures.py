@@ -1,0 +1,76 @@
+"""Models to draw, and what their pictures consist of."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from components.camera import Camera, Viewport
+from components.model import Model
+from components.particle import Particle
+from components.rod import spawn_rods
+from components.view import View
+from components.world import Derivation
+from systems.render.marks import Picture, Text
+from systems.render.picture import compose
+from systems.render.theme import load_theme
+from systems.render.typography import text_width
+
+LIGHT = load_theme("light")
+
+
+def triangle() -> Model:
+    """The thesis' isostatic triangle with its exact forces."""
+    model = Model()
+    fixed = [(False, True), (False, False), (True, True)]
+    model.create(Particle, 3, name=["A", "B", "C"], position=[(0, 0), (1, 1), (2, 0)], fixed=fixed)
+    spawn_rods(model, [(0, 1), (1, 2), (2, 0)], name=["AB", "BC", "CA"])
+    fill(model, "rods.axial_force", [-28.34277, -198.02746, 20.0679])
+    fill(model, "particles.applied_force", [(0, 0), (120, -160), (0, 0)])
+    fill(model, "particles.reaction", [(0, 20.01479), (0, 0), (-120, 139.98521)])
+    return model
+
+
+def fill(model: Model, column: str, values: object) -> None:
+    """Give a derived column values, whatever would otherwise compute it."""
+    rows = np.asarray(values)
+
+    def write(world: object) -> None:
+        model.writable(column)[...] = rows
+
+    model.derive(Derivation((column,), ("particles.position",), write))
+
+
+def view_of(model: Model, width: int = 600, height: int = 600, **options: object) -> View:
+    """A view that shows all of a model."""
+    view = View(camera=Camera(viewport=Viewport(0, 0, width, height)), **options)
+    view.camera.fit(np.asarray(model.particles.position), 90.0 * view.pixel_ratio)
+    return view
+
+
+def picture_of(model: Model, **options: object) -> Picture:
+    return compose(model, view_of(model, **options), LIGHT)
+
+
+def marks_of(picture: Picture, kind: type, colour: tuple[int, ...] | None = None) -> list:
+    marks = [mark for mark in picture.marks if isinstance(mark, kind)]
+    return [mark for mark in marks if colour is None or mark.colour[:3] == colour[:3]]
+
+
+def text_boxes(picture: Picture, unit: float = 1.0) -> list[tuple[str, float, float, float, float]]:
+    """Every text with the box (left, top, right, bottom) of its letters."""
+    boxes = []
+    for mark in marks_of(picture, Text):
+        width = text_width(mark.text, mark.size, mark.weight)
+        left = mark.x - {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * width
+        boxes.append((mark.text, left, mark.y - mark.size / 2, left + width, mark.y + mark.size / 2))
+    return boxes
+
+
+def overlapping(boxes: list[tuple[str, float, float, float, float]]) -> list[tuple[str, str]]:
+    return [
+        (a[0], b[0])
+        for a, b in itertools.combinations(boxes, 2)
+        if a[1] < b[3] and b[1] < a[3] and a[2] < b[4] and b[2] < a[4]
+    ]

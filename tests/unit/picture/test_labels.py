@@ -1,0 +1,107 @@
+"""Names and values, and where they find room."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from components.model import Model
+from components.particle import Particle
+from components.rod import spawn_rods
+from components.tags import Hovered, Selected
+from components.view import Status
+from systems.render.diagrams import written
+from systems.render.marks import Panel
+from systems.render.picture import compose
+from tests.unit.picture.pictures import (
+    LIGHT,
+    fill,
+    marks_of,
+    overlapping,
+    picture_of,
+    text_boxes,
+    view_of,
+)
+
+
+def random_model(seed: int, particles: int, rods: int) -> Model:
+    rng = np.random.default_rng(seed)
+    model = Model()
+    model.create(
+        Particle, particles, position=rng.uniform(0, 4, (particles, 2)), fixed=rng.random((particles, 2)) < 0.2
+    )
+    pairs = np.array(list(itertools.combinations(range(particles), 2)))
+    chosen = rng.choice(len(pairs), min(rods, len(pairs)), replace=False)
+    spawn_rods(model, pairs[chosen])
+    fill(model, "rods.axial_force", rng.normal(0, 100, len(chosen)))
+    fill(model, "particles.applied_force", rng.normal(0, 50, (particles, 2)))
+    return model
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    st.integers(0, 10_000),
+    st.integers(2, 30),
+    st.sampled_from([(600, 600, 1.0), (1280, 800, 1.0), (320, 240, 1.0), (1200, 1200, 2.0), (200, 500, 1.0)]),
+    st.booleans(),
+)
+def test_texts_never_overlap_and_stay_in_the_viewport(seed: int, n: int, size: tuple, problem: bool) -> None:
+    width, height, ratio = size
+    model = random_model(seed, n, 3 * n)
+    model.tag(model.rods[0], Selected)
+    status = Status(
+        1.2e-3, 1e-3, "running", "Esc stops", "It diverged: a time step of 1 s is too large." * problem
+    )
+    view = view_of(model, width, height, heading="Pause", all_diagrams=True, pixel_ratio=ratio, status=status)
+    picture = compose(model, view, LIGHT)
+    boxes = text_boxes(picture)
+    assert overlapping(boxes) == []
+    for text, left, top, right, bottom in boxes:
+        assert left >= -1, text
+        assert top >= -1, text
+        assert right <= width + 1, text
+        assert bottom <= height + 1, text
+
+
+def test_values_lie_clear_of_one_anothers_backing() -> None:
+    picture = picture_of(random_model(3, 25, 70), width=1000, height=800, all_diagrams=True)
+    pills = [m for m in marks_of(picture, Panel) if m.fill[3] == round(255 * 0.86)]
+    boxes = [("", p.left, p.top, p.left + p.width, p.top + p.height) for p in pills]
+    assert len(boxes) > 40
+    assert overlapping(boxes) == []
+
+
+def test_without_room_the_largest_and_the_selected_values_remain() -> None:
+    model = random_model(5, 24, 200)
+    forces = np.linspace(1.0, 200.0, 200)
+    fill(model, "rods.axial_force", forces)
+    fill(model, "particles.applied_force", np.zeros((24, 2)))
+    model.tag(model.rods[0], Selected)
+    texts = picture_of(model, width=500, height=500, all_diagrams=True).texts
+    shown = [force for force in forces if written(force) in texts]
+    assert 20 < len(shown) < 150
+    assert written(forces[-1]) in texts
+    assert written(forces[0]) in texts
+    assert np.mean(shown) > np.mean(forces)
+
+
+def test_very_short_rods_show_no_values_and_say_so() -> None:
+    model = Model()
+    count = 60
+    model.create(Particle, count, position=[(0.1 * i, 0.0) for i in range(count)])
+    spawn_rods(model, [(i, i + 1) for i in range(count - 1)])
+    fill(model, "rods.axial_force", np.arange(1.0, count))
+    texts = picture_of(model, all_diagrams=True).texts
+    assert any("zoom in" in text for text in texts)
+    assert written(59.0) not in texts
+
+
+def test_names_of_all_show_only_where_there_are_few() -> None:
+    model = random_model(1, 20, 30)
+    assert not [text for text in picture_of(model).texts if text.startswith(("particle", "rod"))]
+    model.tag(model.rods["rod 3"], Selected)
+    model.tag(model.particles["particle 2"], Hovered)
+    assert {"rod 3", "particle 2"} <= set(picture_of(model).texts)
