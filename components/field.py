@@ -193,8 +193,7 @@ class Field(Generic[T]):
 
     def _check_number(self, value: Any, where: str, title: str) -> Any:
         if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
-            what = "the row of an element, as its .row tells" if self.dtype == "reference" else "a number"
-            raise FieldError(f"{where}: {title} is {value!r}; it must be {what}.")
+            raise FieldError(f"{where}: {title} is {value!r}; it must be a number.")
         try:
             number: Any = float(value)
         except OverflowError:  # 10**400

@@ -145,10 +145,14 @@ def static_factor(history: History) -> float:
     return static(history) if callable(static) else static
 
 
+def load_ends(world: World) -> list[float]:
+    """The time (s) after which each load does not change any more; −∞ if it never does."""
+    return [HISTORIES[history["kind"]].ends(history) for history in world.tables["loads"].history]
+
+
 def loads_end(world: World) -> float:
     """The time (s) after which no load changes any more; −∞ without varying loads."""
-    ends = [HISTORIES[history["kind"]].ends(history) for history in world.tables["loads"].history]
-    return max(ends, default=-math.inf)
+    return max(load_ends(world), default=-math.inf)
 
 
 def load_breaks(world: World) -> list[float]:

@@ -37,6 +37,13 @@ class Particle(Handle):
     velocity: Field[Vector] = Field(
         "m/s", shape=(2,), role=Role.STATE, title="velocity", doc="Zero in a constrained direction."
     )
+    asleep: Field[bool] = Field(
+        dtype=bool,
+        default=False,
+        role=Role.STATE,
+        title="asleep",
+        doc="At rest with its island, which time passes by until something reaches it.",
+    )
     fixed: Field[tuple[bool, bool]] = Field(
         dtype=bool, shape=(2,), default=False, title="constrained", doc="Held by a support in x, in y."
     )

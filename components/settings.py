@@ -44,6 +44,12 @@ class Settings(Handle):
     plasticity: Field[bool] = Field(
         dtype=bool, default=True, title="plasticity", doc="Rods with a strength yield."
     )
+    sleeping: Field[bool] = Field(
+        dtype=bool,
+        default=True,
+        title="sleeping",
+        doc="Islands of rods at rest are left out of the steps until something reaches them.",
+    )
     displacement_scale: Field[float] = Field(
         default=1.0, minimum=0.0, title="displacement scale", doc="Displacements are drawn this much larger."
     )

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
 
 from components.extremes import incomputable
 from components.field import Column, Role, same
@@ -27,6 +31,7 @@ from game.program.in_blocks import make_program
 from game.program.program import Program
 from game.program.writer import REVIEW_INTERVAL, form_of
 from game.schedule import Schedule
+from game.sleep import Sleep
 from game.step_size import automatic_step, first_step, is_outgrown, step_limit
 from systems.base import Driver, StepSystem, StopReason
 from systems.collision.system import Collision, FreeFlight
@@ -97,6 +102,7 @@ class Simulation:
         self.warning = ""
         self.note = ""
         self.impacts = Impacts(model)
+        self._sleep = Sleep(model)
         self._encounters = Encounters(model, self.impacts, self._short_step, self._rebind)
         self.compute_seconds = 0.0
         self.compile_seconds = 0.0
@@ -175,6 +181,7 @@ class Simulation:
     def forget(self) -> None:
         """The state was replaced (undo, a saved run) by one that fits the document, accounted for."""
         self._armed = self._started
+        self._sleep.forget()
         self._program = None  # its plan may be another one: what is in contact is part of the state
         self._before_edit = None
         self._safe = None
@@ -241,6 +248,7 @@ class Simulation:
         if self.model.clock.paths is not None:
             self.model.writable("clock.paths")[0] = None
         self._driver = self._program = None
+        self._sleep.forget()
 
     def _arm(self) -> Program | Flight:
         """Get ready to run after edits: account for them, choose the step size, note a safe state."""
@@ -249,6 +257,7 @@ class Simulation:
             if not problem:
                 self._part_overlaps()
                 self._close_account()
+                self._review_sleep(edited=True)
                 self._choose_step(self._find_stable_step())
             self._armed = True
             self._armed_revision = self.model.revision
@@ -291,11 +300,21 @@ class Simulation:
         return self._programs[key]
 
     def _rebind(self) -> Program:
-        """The program of a plan that time has changed."""
+        """What takes the steps, now that an impact has changed the plan or woken something."""
         self._program = None
-        self._bind()
-        assert isinstance(self._program, Program)
-        return self._program
+        stepper = self._stepper
+        assert isinstance(stepper, Program)
+        return stepper
+
+    @property
+    def _stepper(self) -> Program | Flight:
+        """What takes the steps: the program, or while islands sleep one of the others."""
+        program = self.program
+        if not isinstance(program, Program):
+            return program
+        if self._sleep.disturb(program):
+            self._limit_step_anew()
+        return self._sleep.part(program)
 
     def _made(self, systems: list[StepSystem]) -> Program | Flight:
         if self.driver is FREE_FLIGHT:
@@ -338,7 +357,7 @@ class Simulation:
 
     def _find_stable_step(self) -> Spectrum:
         """Find out what the present state allows, and warn of a step that a person made too long."""
-        found = spectrum(self.model, self.model.rods.axial_force)
+        found = spectrum(self.model, self.model.rods.axial_force, self._rods_that_limit)
         self.stable_step = math.inf
         if found.frequency > 0.0 or found.decay > 0.0:
             self.stable_step = self.driver.stable_step(found.frequency, found.decay)
@@ -347,6 +366,18 @@ class Simulation:
         if self.stable_step == 0.0 or (size is not None and size > self.stable_step):
             self.warning = f"{self._remedy(size)} The run will probably diverge."
         return found
+
+    @property
+    def _rods_that_limit(self) -> NDArray[np.bool_] | None:
+        """Where the error is controlled those that are awake limit the step; None: all rods do."""
+        if not self._controls_error or not self.model.particles.asleep.any():
+            return None
+        awake = (self.model.particles.mobility > 0.0).any(axis=1) & ~self.model.particles.asleep
+        return np.asarray(awake[self.model.rods.between].any(axis=1))
+
+    @property
+    def _controls_error(self) -> bool:
+        return self.driver.estimates_error and self.model.settings.time_step is None
 
     def _remedy(self, size: float | None) -> str:
         """What to do about an unstable run."""
@@ -382,6 +413,12 @@ class Simulation:
     def _limit_step(self) -> None:
         """Where the error is controlled, stability and the eye limit the step."""
         self.model.writable("clock.step_limit")[0] = step_limit(self.stable_step, self._longest_shown())
+
+    def _limit_step_anew(self) -> None:
+        """Others are awake than before."""
+        if self._controls_error:
+            self._find_stable_step()
+            self._limit_step()
 
     def _review_step(self) -> None:
         """Change an automatic step size if the stable step changed much."""
@@ -428,19 +465,23 @@ class Simulation:
         started, clock = time.perf_counter(), self.model.clock
         first, done = clock.steps, 0
         while done < steps and not self.halted:
-            ahead = steps - done if self.watch is None else min(steps - done, self.watch())
+            ahead = min(steps - done, self._steps_to_review)
+            if self.watch is not None:
+                ahead = min(ahead, self.watch())
             taken, reason = self._take(ahead, until, landing)
             if taken == 0 and reason is StopReason.DONE:
                 break
             self._heed(reason)
             self._arm()
+            if not self.halted:
+                self._review_sleep()
             done = clock.steps - first
         self.compute_seconds += time.perf_counter() - started
         return done
 
     def _take(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         """Take up to `steps` steps, looking out for what meets on the way if anything can."""
-        program = self.program
+        program = self._stepper
         if not isinstance(program, Program):
             return program.advance(steps, until)
         if self._collides:
@@ -464,6 +505,20 @@ class Simulation:
                 self._heed(StopReason.REST)
             else:
                 self._review_step()
+
+    def _review_sleep(self, *, edited: bool = False) -> None:
+        """Let islands at rest sleep, after edits or if a review is due."""
+        program = self.program
+        if isinstance(program, Program) and (edited or self._sleep.is_due(program)):
+            others = self._sleep.review(program)
+            if others and not edited:
+                self._limit_step_anew()
+
+    @property
+    def _steps_to_review(self) -> int:
+        """After how many steps to look which islands are at rest."""
+        program = self.program
+        return self._sleep.steps_to_review(program) if isinstance(program, Program) else sys.maxsize
 
     def _stood_still_since(self, before: Snapshot | None) -> bool:
         """True if all that happened since was lost in rounding: far from where it was drawn, a creep may be."""
@@ -495,6 +550,7 @@ class Simulation:
         assert self._safe is not None
         size = self.model.clock.step_size
         self._safe.restore(self.model)
+        self._sleep.forget()
         self.begin_step_size(0.5 * size)
         self._retries += 1
         self.reason = StopReason.DONE
@@ -522,11 +578,11 @@ class Simulation:
         clock, reason = self.model.clock, StopReason.DONE
         if self.driver.controlled:
             while clock.time < target and reason in (StopReason.DONE, StopReason.REVIEW):
-                _, reason = self.program.advance(REVIEW_INTERVAL, target, target)
+                _, reason = self._stepper.advance(REVIEW_INTERVAL, target, target)
             return reason
         size = clock.step_size
         self.begin_step_size(target - clock.time)
-        _, reason = self.program.advance(1)
+        _, reason = self._stepper.advance(1)
         self.model.writable("clock.time")[0] = target
         self.begin_step_size(size)
         return reason

@@ -29,8 +29,9 @@ class Strikes:
         self._near = vicinity
 
     def happen(self, before: Snapshot, resting: Floats | None = None) -> bool:
-        """Impacts of all that touch now, after a step from a moment before; True if new contacts last.
+        """Impacts of all that touch now, after a step from a moment before.
 
+        True if what takes the steps may not be the same any more: new contacts last, or what slept was struck.
         resting: speeds below which pairs stay in contact, if not those that this step tells.
         """
         near, particles = self._near, self.model.particles
@@ -45,8 +46,10 @@ class Strikes:
         slow[kinds == LASTING] = math.inf
         for group in connected(self._apart(near.pairs[touching])):
             self._strike(touching[group], normal, rate, slow)
+        struck = near.pairs[touching]
         touching = touching[kinds[touching] == WATCHED]
-        return self._note_contacts(near.pairs[touching], normal[touching], slow[touching])
+        lasts = self._note_contacts(near.pairs[touching], normal[touching], slow[touching])
+        return lasts or bool(near.everywhere(particles.asleep)[struck].any())
 
     def _apart(self, pairs: Rows) -> Rows:
         """The pairs, every obstacle a different one in each: it passes nothing on from one to another."""

@@ -36,6 +36,11 @@ class ArrangedProgram(Program):
         self.moving = moving
         super().__init__(model, systems, driver, form)
 
+    def move(self, moving: NDArray[np.bool_]) -> None:
+        """Move these particles from now on."""
+        self.moving = moving
+        self.bind()
+
     def bind(self) -> None:
         """Take hold of the model's columns: arrange them anew."""
         whole = self._arrange()
@@ -51,6 +56,13 @@ class ArrangedProgram(Program):
         to_write = {path.replace(".", "_", 1) for path in written}
         self._columns = [array if name in to_write else read_only(array) for name, array in arranged.items()]
         self._held_revision = -1
+
+    @property
+    def left_out(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """Which particles and which rods it does not hold."""
+        particles, rods = (np.ones(t.count, dtype=bool) for t in (self.model.particles, self.model.rods))
+        particles[self.layout.particles] = rods[self.layout.rods] = False
+        return particles, rods
 
     def _arrange(self) -> Layout:
         """The layout of the whole model."""
@@ -97,6 +109,12 @@ class ArrangedProgram(Program):
             f"{prefix}_force": arranged[f"{prefix}_force"][order],
             f"{prefix}_first": arranged[f"{prefix}_first"][order],
         }
+
+    @property
+    def unbalanced(self) -> Column:
+        everywhere = np.zeros((self.model.particles.count, 2))
+        everywhere[self.layout.particles] = super().unbalanced
+        return everywhere
 
     # --- the state, as it is held and in the model's columns -----------------------------------------
 

@@ -82,6 +82,12 @@ class Bound:
         return self.each != "loads" and any(name in self.parameters for name in times)
 
     @property
+    def follows_state(self) -> bool:
+        """Whether it does the same as long as nothing moves and nothing is edited, loads apart."""
+        told = self.arrays or any(parameter.startswith("clock_") for parameter in self.parameters)
+        return self.each == "loads" or not (told or self.follows_time)
+
+    @property
     def replaces(self) -> bool:
         """Whether a law of rods is given the sum of the others, and its result replaces it."""
         return "axial_force" in self.parameters and "rate" not in self.parameters

@@ -54,8 +54,9 @@ def has_program(model: Model, systems: Sequence[StepSystem], driver: Driver) -> 
 class Program:
     """A compiled step program, bound to the columns of one model.
 
-    measures: kinetic, fᵀM⁻¹f, elastic, potential energy (J), residual, largest force, round-off (kN) of
-        the state last observed.
+    measures: kinetic, fᵀM⁻¹f, elastic, potential energy (J), residual, largest force, round-off (kN) and power
+        (W) of the state last observed; then those of what it does not move, which are in them.
+    follows_state: loads apart, what is at rest stays so, for forces follow from nothing but the state.
     module: what is compiled. tolerance: of each step; 0 where the error is not controlled.
     compile_seconds: what writing and compiling it took, or loading it from the cache.
     """
@@ -67,7 +68,8 @@ class Program:
         self.driver = driver
         self._writer = _writer(model, systems, driver, form)
         self.module = compile_module(self._writer.source(), self._writer.kernels)
-        self.measures = np.zeros(8)
+        self.measures = np.zeros(16)
+        self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self._state_revision = -1
         self.bind()
         self._compile()
@@ -147,6 +149,11 @@ class Program:
         self.tolerance = settings.tolerance if controls else 0.0
         self._state_revision = -1
 
+    @property
+    def unbalanced(self) -> Column:
+        """The sum of all forces on each particle but those of dampers and drag (kN), as last observed."""
+        return self._unbalanced
+
     def _rows(self, table: str) -> int:
         """How many of a table it holds."""
         return self.model.tables[table].count
@@ -176,10 +183,12 @@ class Program:
         )
         for path in _GIVEN:
             model.column(path)  # up to date
+        self._unbalanced = zeros(self._force)
         self._observed = (
             applied,
             reaction,
-            *(zeros(array) for array in (self._force, self._resisting, self._direction, self._power)),
+            self._unbalanced,
+            *(zeros(array) for array in (self._resisting, self._direction, self._power)),
             self.measures,
             *of_rods,
             *(self._storage(path) for path in _GIVEN),

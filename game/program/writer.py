@@ -33,6 +33,7 @@ _ALWAYS = (
 )
 
 
+ROUND_OFF = 2.220446049250313e-16  # of forces, relative to stiffness × displacement
 EVERY = "displacement.shape[0]"
 _IN_BLOCK = "{0}[block], {0}[block + 1]"
 
@@ -404,7 +405,7 @@ class Writer:
     # --- reading ----------------------------------------------------------------------------------
 
     def _measure(self) -> str:
-        """Energies, residual and scales of an accepted state, for judge()."""
+        """Energies, residual and scales of an accepted state, for judge(); those of what sleeps are in the last 8."""
         body = [
             "kinetic = 0.0",
             "power_norm = 0.0",
@@ -427,14 +428,14 @@ class Writer:
             "elastic = 0.0",
             "stiffest = 0.0",
             *self._stored().one_by_one(),
-            "measures[0] = 0.5 * kinetic",
-            "measures[1] = 1000.0 * power_norm",
-            "measures[2] = 500.0 * elastic",
-            "measures[3] = 1000.0 * potential",
-            "measures[4] = residual",
-            "measures[5] = largest",
-            "measures[6] = 2.220446049250313e-16 * stiffest * moved",
-            "measures[7] = 1000.0 * power",
+            "measures[0] = measures[8] + 0.5 * kinetic",
+            "measures[1] = measures[9] + 1000.0 * power_norm",
+            "measures[2] = measures[10] + 500.0 * elastic",
+            "measures[3] = measures[11] + 1000.0 * potential",
+            "measures[4] = max(measures[12], residual)",
+            "measures[5] = max(measures[13], largest)",
+            f"measures[6] = max(measures[14], {ROUND_OFF} * stiffest * moved)",
+            "measures[7] = measures[15] + 1000.0 * power",
         ]
         head = f"def measure(displacement, velocity, force, resisting, measures, {self._columns_text()}):"
         return "\n".join(["@compiled", head, *indented(body)])

@@ -43,7 +43,7 @@ class Batch:
         blocks = stack.blocks
         self.resting, self.alone = np.zeros(blocks, dtype=bool), np.zeros(blocks, dtype=bool)
         self.rested = np.zeros(blocks)
-        self.measures = np.zeros((blocks, 8))
+        self.measures = np.zeros((blocks, 16))
         self.fixed_step = stack.single("settings.time_step")
         self._columns = program.columns(stack, varied_arrays)
         self._breaks = load_breaks(stack.as_model())

@@ -22,12 +22,14 @@ from game.sweeps.stack import Stack
 from game.sweeps.variation import Random, Value
 from game.target import EVERY, Target, locate, settable
 from systems.physics.automatic import SMALL, stiffnesses, suited_to
+from systems.physics.islands import islands
 
 if TYPE_CHECKING:
     from game.sweeps.specimen import Specimen
 
 MOST_NUMBERS = 2_000_000  # in the largest array of a batch: of stiffness, rods × directions of particles
-_ALONE = ("particles.name", "particles.fixed", "rods.name", "loads.name")  # what makes another model of it
+# What makes another model of it, or lets its parts rest by themselves.
+_ALONE = ("particles.name", "particles.fixed", "rods.name", "loads.name", "settings.sleeping")
 _REPORTED = ("particles", "rods")
 
 
@@ -60,6 +62,9 @@ class Batches:
             and len(placed) <= 1  # two could meet on the way, which is refused
             and all(type(system).__module__.startswith("systems.") for system in self._specimen.step_systems)
             and all(self._is_number(target) for target in self._targets)
+            and not (
+                model.settings.sleeping and islands(model).max(initial=0) > 1
+            )  # each sleeps at its own time
         )
 
     @staticmethod

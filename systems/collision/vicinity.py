@@ -122,9 +122,10 @@ class Vicinity:
         if contacts_of(self.model) is not None:
             return 0.0
         gap, _ = self.gaps(self.pairs, displacement)
-        apart = gap[~self._node[self.pairs].all(axis=1) | (gap > 0.0)]
-        room = 0.5 * min(self._far, float(apart.min(initial=math.inf)))
-        fastest = self._fastest() if room > 0.0 else math.inf
+        awake = self._moves & ~self.everywhere(self.model.particles.asleep)
+        may_meet = awake[self.pairs].any(axis=1) & (~self._node[self.pairs].all(axis=1) | (gap > 0.0))
+        room = 0.5 * min(self._far, float(gap[may_meet].min(initial=math.inf)))
+        fastest = self._fastest(awake[: self._count]) if room > 0.0 else math.inf
         return room / fastest if fastest > 0.0 else math.inf
 
     def cover(self, start: Floats, swing: float) -> None:
@@ -141,11 +142,12 @@ class Vicinity:
         moved = displacement - self._listed
         return float(np.hypot(moved[:, 0], moved[:, 1]).max(initial=0.0))
 
-    def _fastest(self) -> float:
-        """A speed (m/s) that no particle exceeds before it has moved by `_far`: all energy in the lightest."""
+    def _fastest(self, awake: NDArray[np.bool_]) -> float:
+        """A speed (m/s) that none exceeds before it has moved by `_far`: all energy of what is awake in the lightest."""
         particles, rods = self.model.particles, self.model.rods
-        supply = 1000.0 * np.abs(particles.applied_force).sum() * self._far
+        supply = 1000.0 * np.abs(particles.applied_force[awake]).sum() * self._far
         kinetic = 0.5 * (particles.mass[:, None] * particles.velocity**2).sum()
-        stored = 500.0 * (rods.axial_force**2 * rods.rest_length / rods.stiffness).sum()
-        lightest = particles.mass[self._moves[: self._count]].min(initial=math.inf)
+        energy = 500.0 * rods.axial_force**2 * rods.rest_length / rods.stiffness
+        stored = energy[awake[rods.between].any(axis=1)].sum()
+        lightest = particles.mass[awake].min(initial=math.inf)
         return math.sqrt(2.0 * float(kinetic + stored + supply) / float(lightest))

@@ -25,7 +25,12 @@ from systems.forms.typing import YES_NO
 MIXED = "mixed"
 KIND = "kind"  # the part of a history that is its kind
 EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in full, others rounded
-_OF_RODS = ("diagram_scale", "plasticity")  # settings of all rods together; the others are of all particles
+_OF_RODS = (
+    "diagram_scale",
+    "plasticity",
+    "sleeping",
+)  # settings of all rods together; the others are of all particles
+_DECIDED = (Particle.asleep,)  # anew after every edit
 _NUMBERS = (float, int)
 _EDITABLE = (*_NUMBERS, bool, str)
 
@@ -81,6 +86,7 @@ def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
     kind = type(elements[0])
     fields = model.tables[kind.table].fields_in(Role.DOCUMENT, Role.STATE)
     wanted = [field for field in fields if field.dtype in _EDITABLE or field is Load.history]
+    wanted = [field for field in wanted if field not in _DECIDED]
     if len(elements) > 1:
         wanted = [field for field in wanted if field.name != "name"]
     rows = model.row_of_entity[[element.entity for element in elements]].astype(np.intp)

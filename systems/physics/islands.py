@@ -9,11 +9,11 @@ from components.model import Model
 
 Rows = NDArray[np.intp]
 
-HELD = -1  # the island of particles that nothing can move
+HELD = 0  # the island of particles that nothing can move
 
 
 def islands(model: Model) -> Rows:
-    """The island of each particle, shape (n,): 0, 1, … in the order of their first particles, or HELD.
+    """The island of each particle, shape (n,): 1, 2, … in the order of their first particles, or HELD.
 
     Particles are on one island if a chain of rods joins them; no chain goes through a particle that is held in
     both directions, for nothing that happens on one side of it is felt on the other.
@@ -22,7 +22,7 @@ def islands(model: Model) -> Rows:
     between = model.rods.between.astype(np.intp)
     root = _lowest_joined(len(moves), between[moves[between].all(axis=1)])
     found = np.full(len(moves), HELD, dtype=np.intp)
-    found[moves] = np.unique(root[moves], return_inverse=True)[1]
+    found[moves] = np.unique(root[moves], return_inverse=True)[1] + 1
     return found
 
 

@@ -113,26 +113,32 @@ def _ritz_bounds(diagonal: Array, off_diagonal: Array) -> Array:
     return bounds
 
 
-def spectrum(model: Model, axial_force: Array) -> Spectrum:
-    """The highest frequency in the present state under these axial forces (kN, shape (rods,))."""
-    frequency, decay = spectra(model, axial_force, np.array([model.environment.drag]))
+def spectrum(model: Model, axial_force: Array, rods: NDArray[np.bool_] | None = None) -> Spectrum:
+    """The highest frequency in the present state under these axial forces (kN, shape (rods,)).
+
+    rods: which of them count; none given: all.
+    """
+    frequency, decay = spectra(model, axial_force, np.array([model.environment.drag]), rods)
     return Spectrum(float(frequency[0]), float(decay[0]))
 
 
-def spectra(model: Model, axial_force: Array, drag: Array) -> tuple[Array, Array]:
+def spectra(
+    model: Model, axial_force: Array, drag: Array, counts: NDArray[np.bool_] | None = None
+) -> tuple[Array, Array]:
     """Frequency and decay, as in Spectrum, of each of the equal disjoint blocks that a model consists of.
 
-    drag: the environment's (1/s), one for each block.
+    drag: the environment's (1/s), one for each block. counts: which rods do; None: all.
     """
     rods, blocks = model.rods, len(drag)
     decay = 0.5 * drag
     if rods.count == 0 or not (model.particles.mobility > 0.0).any():
         return np.zeros(blocks), decay
-    across = np.maximum(axial_force, 0.0) / rods.rest_length
-    stiffness = RodOperator(model, rods.stiffness / rods.rest_length, across)
+    share = np.ones(rods.count) if counts is None else counts.astype(np.float64)
+    across = share * np.maximum(axial_force, 0.0) / rods.rest_length
+    stiffness = RodOperator(model, share * rods.stiffness / rods.rest_length, across)
     rows = stiffness.rows // blocks
     frequency = np.sqrt(largest_eigenvalues(stiffness, rows, stiffness.gershgorin(blocks)))
     if (rods.damping > 0.0).any():
-        dampers = RodOperator(model, rods.damping)
+        dampers = RodOperator(model, share * rods.damping)
         decay = decay + 0.5 * largest_eigenvalues(dampers, rows, dampers.gershgorin(blocks))
     return frequency, decay

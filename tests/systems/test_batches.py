@@ -132,10 +132,20 @@ def test_other_sweeps_are_single_runs(source: Any, vary: str, analysis: Analysis
     assert Worker(planned(source, [vary], analysis)).at_a_time == 1
 
 
-def test_structures_whose_particles_can_meet_are_single_runs() -> None:
+def beside(**chosen: Any) -> dict[str, Any]:
+    """The triangle and a particle by itself."""
     apart = {"name": "E", "position": [5, 5]}
-    source = TRIANGLE | {"particles": [*TRIANGLE["particles"], apart]}
-    plan = planned(source, ["settings.collisions=true,false"], TIMES)
+    return TRIANGLE | {"particles": [*TRIANGLE["particles"], apart], "settings": chosen}
+
+
+@pytest.mark.parametrize("sleeping", [True, False])
+def test_islands_that_may_sleep_are_single_runs(sleeping: bool) -> None:
+    plan = planned(beside(sleeping=sleeping, collisions=False), ["rods.AB.stiffness=1e5,2e5"], TIMES)
+    assert (Worker(plan).at_a_time == 1) is sleeping
+
+
+def test_structures_whose_particles_can_meet_are_single_runs() -> None:
+    plan = planned(beside(sleeping=False), ["settings.collisions=true,false"], TIMES)
     assert set(Worker(plan).together(range(2))) == {1}
 
 

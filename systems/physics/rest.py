@@ -1,0 +1,89 @@
+"""Rest: the rule by which a run ends, judge() of kernels.py, applied to each island of a model by itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.model import Model
+from systems.physics.islands import Rows
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Stillness:
+    """What tells how still the particles and rods of a model are, row by row.
+
+    residual: unbalanced force on particles where they are free (kN). kinetic: energy of particles (J). load, pull:
+    largest force on particles, and in rods (kN). elastic: energy of rods (J). round_off: of forces in rods (kN).
+    """
+
+    residual: Array
+    kinetic: Array
+    load: Array
+    pull: Array
+    elastic: Array
+    round_off: Array
+
+    @classmethod
+    def of(cls, model: Model, unbalanced: Array) -> Stillness:
+        """That of the state last observed, by the forces on the particles but those of dampers and drag (kN)."""
+        particles, rods = model.particles, model.rods
+        pull, flexibility = np.abs(rods.axial_force), rods.rest_length / rods.stiffness
+        moved = np.abs(particles.displacement).max(axis=1, initial=0.0)
+        return cls(
+            residual=(np.abs(unbalanced) * (particles.mobility > 0.0)).max(axis=1, initial=0.0),
+            kinetic=0.5 * particles.mass * (particles.velocity**2).sum(axis=1),
+            load=np.abs(particles.constant_force).max(axis=1, initial=0.0),
+            pull=pull,
+            elastic=500.0 * pull**2 * flexibility,
+            round_off=np.finfo(float).eps * moved[rods.between].max(axis=1, initial=0.0) / flexibility,
+        )
+
+    def at_rest(self, model: Model, of_particle: Rows, of_rod: Rows) -> Mask:
+        """Which islands are at rest, given those of the particles and rods."""
+        from systems.physics.kernels import (
+            REST_RESIDUAL,
+            SMALL_SHARE,
+        )  # numba is imported with the first program
+
+        count, clock = int(of_particle.max(initial=0)) + 1, model.clock
+        largest = _largest(count, (of_particle, self.load), (of_rod, self.pull))
+        round_off = _largest(count, (of_rod, self.round_off))
+        still_force = np.maximum(
+            REST_RESIDUAL * np.maximum(largest, SMALL_SHARE * clock.force_scale), 8.0 * round_off
+        )
+        elastic = np.bincount(of_rod, self.elastic, count)
+        still_energy = REST_RESIDUAL**2 * np.maximum(elastic, SMALL_SHARE**2 * clock.energy_scale)
+        residual = _largest(count, (of_particle, self.residual))
+        kinetic = np.bincount(of_particle, self.kinetic, count)
+        rest: Mask = (residual <= still_force) & (kinetic <= still_energy)
+        return rest
+
+    def measures(self, model: Model, particles: Mask, rods: Mask) -> Array:
+        """What a step program measures, of these particles and rods at rest, shape (8,)."""
+        at_rest, constant = model.particles.displacement[particles], model.particles.constant_force[particles]
+        return np.array(
+            [
+                0.0,
+                0.0,
+                self.elastic[rods].sum(),
+                1000.0 * (constant * at_rest).sum(),
+                self.residual[particles].max(initial=0.0),
+                max(self.load[particles].max(initial=0.0), self.pull[rods].max(initial=0.0)),
+                self.round_off[rods].max(initial=0.0),
+                0.0,
+            ]
+        )
+
+
+def _largest(count: int, *values: tuple[Rows, Array]) -> Array:
+    """The largest value on each island."""
+    found = np.zeros(count)
+    for island, of_island in values:
+        np.maximum.at(found, island, of_island)
+    return found
