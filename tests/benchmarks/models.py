@@ -35,6 +35,24 @@ def lattice(rods: int, *, at_random: bool = False, **columns: Any) -> Model:
     return _held_at_the_left(side, side, _with_diagonals(side), columns, at_random)
 
 
+def islands(count: int, rods: int, **columns: Any) -> Model:
+    """So many lattices of about so many rods each, of which only the first is pulled."""
+    one = lattice(rods)
+    particles, moved = one.particles, np.zeros((one.particles.count, 2))
+    moved[:, 0] = 2.0 * particles.position[:, 0].max()
+    several, ends = range(count), one.rods.between.astype(np.intp)
+    model = Model()
+    model.create(
+        Particle,
+        count * particles.count,
+        position=np.concatenate([particles.position + k * moved for k in several]),
+        fixed=np.tile(particles.fixed, (count, 1)),
+        force=np.concatenate([particles.force * (k == 0) for k in several]),
+    )
+    spawn_rods(model, np.concatenate([ends + k * particles.count for k in several]), **columns)
+    return model
+
+
 def mesh(rods: int, **columns: Any) -> Model:
     """Like a lattice, without diagonals, and wider than high: half as many particles as rods."""
     height = max(round((rods / 3.2) ** 0.5), 2)

@@ -10,7 +10,7 @@ from components.load import Load
 from components.model import Model
 from components.particle import Particle
 from game import Session
-from tests.benchmarks.models import lattice, mesh
+from tests.benchmarks.models import islands, lattice, mesh
 from tests.benchmarks.timing import best_of_each, program_runner
 
 RODS, STEPS = 10_000, 100
@@ -22,7 +22,7 @@ Row = dict[str, Any]
 
 def report() -> list[Row]:
     """What is left out, with what the work costs on one core with it and without."""
-    return [*_parts_of_steps(), _contacts(), _small_steps(), _pictures()]
+    return [*_parts_of_steps(), _contacts(), _islands(), _small_steps(), _pictures()]
 
 
 def _parts_of_steps() -> list[Row]:
@@ -59,6 +59,18 @@ def _contacts() -> Row:
     """A structure with a disc that flies by, among its particles or far from them."""
     near, far = (_flown_by(at) for at in ((5.5, 5.5), (-50.0, 5.5)))
     return _row("search for contacts", "a step", *(t / STEPS for t in best_of_each(near, far)))
+
+
+def _islands() -> Row:
+    """Ten lattices of which nine are at rest, kept awake or asleep."""
+    awake, asleep = (_one_of_ten_moves(sleeping) for sleeping in (False, True))
+    return _row("nine of ten islands, at rest", "a step", *(t / STEPS for t in best_of_each(awake, asleep)))
+
+
+def _one_of_ten_moves(sleeping: bool) -> Callable[[], None]:
+    model = islands(10, RODS // 10, damping=1.0, **STRENGTHS)
+    model.settings.collisions, model.settings.sleeping = False, sleeping
+    return _taking_steps(model)
 
 
 def _flown_by(position: tuple[float, float]) -> Callable[[], None]:
