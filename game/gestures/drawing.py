@@ -183,7 +183,7 @@ def drawing_of(kind: type[Handle], tool: str, key: str) -> type[DrawElement]:
 
 
 TOOL_HINTS = {
-    "place": "particles: click where they are to be     Esc done",
+    "place": "click where particles are to be     Esc done",
     "support": "supports: drag from a particle to its ground, or click for the next kind     Esc done",
     "rod": "rods: click two particles, or drag from one to another     L or Esc done",
     "force": "forces: drag an arrow from a particle     F or Esc done",

@@ -15,7 +15,11 @@ MOST_CHARACTERS = 200  # in one box
 _MEANS = {"0": "no", "1": "yes"}
 _DIGITS = r"-?(\d+\.?\d*|\.\d*)?"  # a number, or what can still become one
 _NUMBER_SO_FAR = re.compile(rf"{_DIGITS}|-?(\d+\.?\d*|\.\d+)[eE][+-]?\d*")
-_IN_NUMBERS = {",": ".", "−": "-"}  # of other keyboards, and of numbers copied from the screen
+_IN_NUMBERS = {
+    ",": ".",
+    "−": "-",
+    "/": "-",
+}  # of other keyboards, of numbers copied from the screen, and the thesis'
 
 
 # --- selecting ---------------------------------------------------------------------------------------

@@ -148,6 +148,7 @@ def test_a_mass_that_follows_from_the_rods_is_shown_and_said_to_be_automatic(ses
         ("1e5", "1e5"),
         ("2,5", "2.5"),
         ("--3", "-3"),
+        ("/3", "-3"),
         ("e", ""),
         ("5-", "5"),
     ],
