@@ -10,6 +10,7 @@ from components.obstacles import Obstacles
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
+FEW = 64  # discs, of which all pairs are looked at sooner than trees are imported, let alone built
 WIDER = 1.0 + 1e-9  # than it need be is the search by trees, whose round-off loses no pair then
 
 
@@ -33,6 +34,20 @@ def near_pairs(place: Floats, reach: Floats, obstacles: Obstacles | None = None)
     place: centres, shape (n, 2), m. reach: shape (n,), m. Discs are sought by size, so that a few large ones
     among many small ones do not make every small one look far. Obstacles count on after them.
     """
+    first, second = np.triu_indices(len(place), 1) if len(place) <= FEW else _sought(place, reach)
+    apart = place[second] - place[first]
+    near = np.hypot(apart[:, 0], apart[:, 1]) <= reach[first] + reach[second]
+    if obstacles is None or len(obstacles) == 0:
+        keys = np.sort((first * len(place) + second)[near])
+        return np.column_stack(np.divmod(keys, len(place)))
+    total = len(place) + len(obstacles)
+    at_them = _near_obstacles(place, reach, obstacles)
+    keys = np.concatenate([(first * total + second)[near], at_them[:, 0] * total + at_them[:, 1]])
+    return np.column_stack(np.divmod(np.sort(keys), total))
+
+
+def _sought(place: Floats, reach: Floats) -> Rows:
+    """Pairs that may be near each other, shape (2, k), the first the lower."""
     from scipy.spatial import cKDTree
 
     sizes = np.frexp(reach)[1]
@@ -47,16 +62,8 @@ def near_pairs(place: Floats, reach: Floats, obstacles: Obstacles | None = None)
             within = WIDER * (reach[rows].max() + reach[others].max())
             pairs = tree.sparse_distance_matrix(finer, within, output_type="coo_matrix")
             found.append(np.sort(np.column_stack([rows[pairs.row], others[pairs.col]]), axis=1))
-    first, second = np.concatenate(found).T
-    apart = place[second] - place[first]
-    near = np.hypot(apart[:, 0], apart[:, 1]) <= reach[first] + reach[second]
-    if obstacles is None or len(obstacles) == 0:
-        keys = np.sort((first * len(place) + second)[near])
-        return np.column_stack(np.divmod(keys, len(place)))
-    total = len(place) + len(obstacles)
-    at_them = _near_obstacles(place, reach, obstacles)
-    keys = np.concatenate([(first * total + second)[near], at_them[:, 0] * total + at_them[:, 1]])
-    return np.column_stack(np.divmod(np.sort(keys), total))
+    together: Rows = np.concatenate(found).T
+    return together
 
 
 def _near_obstacles(place: Floats, reach: Floats, obstacles: Obstacles) -> Rows:

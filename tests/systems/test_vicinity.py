@@ -9,7 +9,7 @@ import pytest
 
 from game import Session
 from systems.collision import vicinity
-from systems.near import near_pairs
+from systems.near import FEW, near_pairs
 from tests.benchmarks.models import lattice
 
 
@@ -31,15 +31,16 @@ def test_a_step_looks_up_nothing_and_an_edit_does(monkeypatch: pytest.MonkeyPatc
     assert looked
 
 
+@pytest.mark.parametrize("count", [20, FEW + 20])
 @pytest.mark.parametrize("sizes", [(0.05,), (0.05, 0.3), (0.001, 0.02, 0.02, 0.4)])
-def test_all_pairs_within_reach_are_found_once_and_in_order(sizes: tuple[float, ...]) -> None:
+def test_all_pairs_within_reach_are_found_once_and_in_order(sizes: tuple[float, ...], count: int) -> None:
     random = np.random.default_rng(len(sizes))
-    place, reach = random.uniform(0.0, 2.0, (60, 2)), random.choice(sizes, 60)
+    place, reach = random.uniform(0.0, 2.0, (count, 2)), random.choice(sizes, count)
     place[:2], reach[:2] = [(0.1, 0.1), (0.4, 0.5)], 0.25  # these just touch
     pairs = [
         (i, j)
-        for i in range(60)
-        for j in range(i + 1, 60)
+        for i in range(count)
+        for j in range(i + 1, count)
         if np.hypot(*(place[j] - place[i])) <= reach[i] + reach[j]
     ]
     assert (0, 1) in pairs
