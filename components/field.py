@@ -193,7 +193,8 @@ class Field(Generic[T]):
 
     def _check_number(self, value: Any, where: str, title: str) -> Any:
         if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
-            raise FieldError(f"{where}: {title} is {value!r}; it must be a number.")
+            what = "the row of an element, as its .row tells" if self.dtype == "reference" else "a number"
+            raise FieldError(f"{where}: {title} is {value!r}; it must be {what}.")
         try:
             number: Any = float(value)
         except OverflowError:  # 10**400

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from components.spelling import missing
 from components.table import Table, living
 
 if TYPE_CHECKING:
@@ -28,9 +29,26 @@ class Handle:
     single: ClassVar[bool] = False  # exactly one in every world
     points: ClassVar[tuple[str, ...]] = ()  # Fields that are places in the plane (m), which move with it
 
+    _world: weakref.ref[World]
+    entity: int
+
     def __init__(self, world: World, entity: int) -> None:
-        self._world = weakref.ref(world)
-        self.entity = entity
+        set_it = object.__setattr__  # of many at once, without a look at the names
+        set_it(self, "_world", weakref.ref(world))
+        set_it(self, "entity", entity)
+
+    if not TYPE_CHECKING:  # or any name would be right
+
+        def __getattr__(self, name: str) -> Any:
+            """Tell what was meant by a name that is not there."""
+            facts = [known for known in dir(type(self)) if not known.startswith("_")]
+            raise AttributeError(missing(f"facts of a {self.noun}", name, facts))
+
+        def __setattr__(self, name: str, value: Any) -> None:
+            """Set a Field; a misspelt one is refused, in kinds without __slots__ too."""
+            if not hasattr(type(self), name):
+                getattr(self, name)
+            super().__setattr__(name, value)
 
     @property
     def world(self) -> World:

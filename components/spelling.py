@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Collection
 
-_FEW = 20  # names are told rather than none
+_FEW = 30  # names are told rather than none
 
 
 def nearest(name: str, names: Collection[str], cutoff: float = 0.6) -> str | None:

@@ -64,6 +64,8 @@ def load(source: str | Path | Mapping[str, Any]) -> Model:
     """The model in a file, in the bundled model of that name, or in a document. Raises ModelError."""
     if isinstance(source, Mapping):
         return parse(source)
+    if not isinstance(source, str | os.PathLike):
+        raise ModelError(f"{source!r} is no model; give a file, a bundled model's name or a document.")
     try:
         raw = _found(source).read_bytes()
     except FileNotFoundError:

@@ -8,13 +8,14 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from game.collisions.encounter_kernels import has_encounters
 from game.collisions.encounters import load_encounters
-from game.collisions.flight import has_flight
+from game.collisions.flight_kernels import EVENTS, PILES, WINDOWS, has_parts
 from game.mods import MODS
-from game.prepare import ENCOUNTERS, FLIGHT, RASTER
+from game.prepare import ENCOUNTERS, FLIGHT, PILING, RASTER
 from game.program.cache import is_blank, load_compiler
 from game.program.program import has_program
 from game.program.writer import form_of
@@ -28,7 +29,11 @@ if TYPE_CHECKING:
     from systems.render.raster import Raster
 
 Job = tuple[str, ...]  # what `python -m game.prepare` is asked for
-AHEAD = {RASTER: has_raster, ENCOUNTERS: has_encounters, FLIGHT: has_flight}
+FREE: dict[str, Callable[[], bool]] = {  # two processes compile the two halves of what free particles need
+    FLIGHT: partial(has_parts, EVENTS),
+    PILING: partial(has_parts, WINDOWS, PILES),
+}
+AHEAD = {RASTER: has_raster, ENCOUNTERS: has_encounters, **FREE}
 
 
 class Preparation(System):
@@ -91,7 +96,8 @@ class Preparation(System):
         if simulation.ready:
             return self._waits_for_encounters(simulation)
         if simulation.integrator == FLIGHT:
-            return self._waits((FLIGHT,), has_flight)
+            waits = [self._waits((half,), is_compiled) for half, is_compiled in FREE.items()]
+            return max((waited for waited in waits if waited is not None), default=None)
         model, plan = simulation.model, simulation.schedule.step_plan(simulation.model)
         job = simulation.integrator, form_of(model, simulation.driver), *(system.name for system in plan)
         waited = self._waits(job, lambda: _is_compiled(simulation))
@@ -139,7 +145,7 @@ def _may_meet(simulation: Simulation) -> bool:
 def _is_compiled(simulation: Simulation) -> bool:
     """True if its program need only be loaded."""
     if simulation.integrator == FLIGHT:
-        return has_flight()
+        return all(is_compiled() for is_compiled in FREE.values())
     plan = simulation.schedule.step_plan(simulation.model)
     return has_program(simulation.model, plan, simulation.driver)
 

@@ -605,8 +605,11 @@ class Session:
     # --- frames --------------------------------------------------------------------------------------
 
     def frame(self, elapsed: float) -> Frame:
-        """One frame: input → actions → transition → fixed steps → events → picture."""
-        frame = Frame(self, elapsed)
+        """One frame, `elapsed` s after the last: input → actions → transition → fixed steps → events → picture.
+
+        Raises ValueError.
+        """
+        frame = Frame(self, _forward("elapsed", elapsed))
         self._phase(Phase.INPUT, frame)
         for key, pixel in frame.pressed if not self.performing else ():
             if not key.startswith(TEXT):
@@ -681,6 +684,8 @@ def _forward(name: str, value: float, *, whole: bool = False) -> float:
     if not number or isinstance(value, bool) or not math.isfinite(value):
         kind = "whole" if whole else "finite"
         raise ValueError(f"{name} is {value!r}; it must be a {kind} number.")
+    if value >= 2**63:
+        raise ValueError(f"{name} is {value}; it must be below 2^63.")
     if value < 0:
         raise ValueError(f"{name} is {value}; time only runs forward: undo or restart goes back.")
     return float(value)

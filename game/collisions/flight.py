@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
-from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,8 +14,8 @@ from components.model import Model
 from components.obstacles import obstacles
 from components.paths import Paths
 from game.collisions.encounter_kernels import kernels
+from game.collisions.flight_kernels import EVENTS, PILES, WINDOWS, engine, has_parts, load_part
 from game.collisions.impacts import Impacts
-from game.program.cache import compile_module, is_compiled, note_compiled
 from systems.base import StopReason
 from systems.collision.arrays import CROWD_COUNTS, CROWD_NUMBERS, MOVING
 
@@ -26,45 +24,6 @@ if TYPE_CHECKING:
 
 CROWD = len(CROWD_COUNTS) + len(CROWD_NUMBERS)
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
-
-_SOURCE = '''\
-"""The event queue of collisions. Generated; safe to delete."""
-
-from numba import njit
-
-entry = njit(error_model="numpy", _nrt=False, cache=True)
-
-
-@entry
-def advance(until, most_events, discs, grid, ties, queue, group, report, numbers, counts):
-    return fly(until, most_events, discs, grid, ties, queue, group, report, numbers, counts)
-'''
-
-
-def _kernels() -> dict[str, Callable[..., int]]:
-    from systems.collision.flight.kernels import advance
-
-    return {"fly": advance}
-
-
-def has_flight() -> bool:
-    """True if the engine need not be compiled any more, only loaded."""
-    return is_compiled(_SOURCE, _kernels())
-
-
-@cache
-def load_flight() -> type[Discs]:
-    """The engine with its kernel compiled once and for all, or loaded from the cache."""
-    from systems.collision.discs import Discs
-
-    module = compile_module(_SOURCE, _kernels())
-
-    class Compiled(Discs):
-        kernel = staticmethod(module.advance)
-
-    Compiled([[0.0, 0.0]], [[0.0, 0.0]], [1.0], [[1.0, 1.0]]).advance(0.0)
-    note_compiled(module)
-    return Compiled
 
 
 def part_overlaps(model: Model) -> str:
@@ -116,7 +75,10 @@ class Flight:
         self.model = model
         self.measures = np.zeros(8)
         self._impacts = impacts
-        self._make = load_flight()
+        for part in (EVENTS, WINDOWS):
+            load_part(part)
+        if self.model.particles.constant_force.any() or has_parts(PILES):
+            load_part(PILES)
         self.bind()
         self.compile_seconds = time.perf_counter() - started
 
@@ -140,7 +102,7 @@ class Flight:
         """The engine, in the present state of the model."""
         if not self._fresh:
             particles, clock = self.model.particles, self.model.clock
-            self._flying = self._make(
+            self._flying = engine()(
                 particles.position,
                 particles.velocity,
                 particles.radius,

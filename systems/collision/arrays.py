@@ -185,3 +185,4 @@ class Reason(IntEnum):
     GRID_FULL = 4  # enlarge the grid and go on
     GROUP_FULL = 5  # enlarge the room for contacts and lasting contacts and go on
     SETTLE = 6  # put the calm pile into its equilibrium and go on
+    GO_ON = 7  # go on with what is due now: a window, steps of a pile, or events

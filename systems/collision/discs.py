@@ -16,8 +16,9 @@ from components.obstacles import NO_OBSTACLES, Obstacles
 from components.paths import Paths
 from systems.collision import arrays
 from systems.collision.arrays import Floats, Grid, Group, Integers, Queue, Reason, Report, Ties
-from systems.collision.flight.kernels import advance
+from systems.collision.flight import kernels as flight
 from systems.collision.pile.kernels import STEP_SHARE
+from systems.collision.window import kernels as window
 from systems.near import nearest
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
@@ -46,10 +47,13 @@ class Impacts:
 class Discs:
     """Discs that fly, collide and rest on one another.
 
-    kernel: what advances them; a program puts one there that is compiled already.
+    fly, take_steps, open_window: the kernels that advance them; a program puts some there that are compiled
+    already.
     """
 
-    kernel: Callable[..., int] = staticmethod(advance)
+    fly: Callable[..., int] = staticmethod(flight.fly)
+    take_steps: Callable[..., int] = staticmethod(flight.take_steps)
+    open_window: Callable[..., int] = staticmethod(window.open_window)
 
     def __init__(
         self,
@@ -134,24 +138,31 @@ class Discs:
         last = int(self.counts[arrays.EVENTS]) + most_events
         taken = [self._take()]
         while True:
-            reason = Reason(
-                self.kernel(
-                    float(until),
-                    last - int(self.counts[arrays.EVENTS]),
-                    self.rows,
-                    self.grid,
-                    self.ties,
-                    self.queue,
-                    self.group,
-                    self.report,
-                    self.numbers,
-                    self.counts,
-                )
-            )
-            taken.append(self._take())
+            reason = self._go_on(float(until), last - int(self.counts[arrays.EVENTS]))
+            if self.counts[arrays.REPORTED]:
+                taken.append(self._take())
             if reason in (Reason.DONE, Reason.BUSY):
                 return reason, _concatenated(taken)
             self._make_room(reason)
+
+    def _go_on(self, until: float, most_events: int) -> Reason:
+        """Let a pile take its steps, or else all fly, in a window that is opened if there is none."""
+        rows, grid, ties, queue, group, report = (
+            self.rows,
+            self.grid,
+            self.ties,
+            self.queue,
+            self.group,
+            self.report,
+        )
+        numbers, counts = self.numbers, self.counts
+        if counts[arrays.STEPPING]:
+            return Reason(self.take_steps(until, most_events, rows, grid, ties, group, report, numbers, counts))
+        if counts[arrays.RENEW]:
+            reason = Reason(self.open_window(rows, grid, ties, queue, numbers, counts))
+            if reason is not Reason.DONE:
+                return reason
+        return Reason(self.fly(until, most_events, rows, grid, ties, queue, group, report, numbers, counts))
 
     def _make_room(self, reason: Reason) -> None:
         n = len(self.rows)

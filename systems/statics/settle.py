@@ -152,6 +152,8 @@ def _factors(given: Sequence[float] | float) -> list[float]:
         factors = np.atleast_1d(np.asarray(given, dtype=float))
     except (TypeError, ValueError):
         factors = np.empty(0)
+    if isinstance(given, str | bool):
+        factors = np.empty(0)
     if factors.ndim != 1 or len(factors) == 0 or not np.isfinite(factors).all():
         raise ValueError(f"Load factors are {given!r}; give at least one finite number, such as (1.0, 0.0).")
     found: list[float] = factors.tolist()

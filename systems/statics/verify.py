@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from components.model import Model
+from components.spelling import missing
 from systems.statics.equations import Array, Flags
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import rod_names
@@ -138,7 +139,13 @@ class Comparison:
         )
 
     def worst(self, way: str, *quantities: str) -> Row | None:
-        """The row with the largest error of the "simulation" or of "linear" theory (of some quantities, if given)."""
+        """The row with the largest error of the "simulation" or of "linear" theory (of some quantities, if given).
+
+        None if there is nothing to compare. Raises ValueError for what is neither.
+        """
+        for given, known in ((way, ("simulation", "linear")), *((name, QUANTITIES) for name in quantities)):
+            if given not in known:
+                raise ValueError(missing("comparisons", given, known))
         largest, row = -1.0, None
         for quantity in quantities or QUANTITIES:
             errors, concerned = self._errors[quantity].get(way), self._concerned(quantity)

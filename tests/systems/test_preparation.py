@@ -164,11 +164,28 @@ def test_what_is_compiled_is_loaded_before_a_key_needs_it(
 def test_free_particles_have_their_program_loaded_too(
     app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(preparation, "has_flight", lambda: True)
+    monkeypatch.setattr(preparation, "FREE", {"flight": lambda: True, "piles": lambda: True})
     app.session.adopt(models.load("collision_i"))
     compiler.status = 0
     frames(app, 3)
     assert app.session.simulation.ready
+
+
+def test_what_free_particles_need_is_compiled_by_two_processes_at_once(
+    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ready = {"flight": False, "piles": False}
+    monkeypatch.setattr(preparation, "FREE", {half: lambda half=half: ready[half] for half in ready})
+    app.session.adopt(models.load("collision_i"))
+    frames(app, 2)
+    assert {("flight",), ("piles",)} <= set(compiler.jobs)
+    ready["flight"] = True
+    app.session.press("space")
+    frames(app, 2)
+    assert app.session.model.clock.steps == 0  # for want of the other half
+    compiler.status = 0
+    frames(app, 3)
+    assert app.session.model.clock.steps > 0
 
 
 def test_stepping_waits_too(app: App, compiler: Compiler) -> None:

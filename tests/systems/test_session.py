@@ -142,3 +142,19 @@ def test_sessions_and_models_are_not_copied_by_halves(session: Session, copied: 
     for whole in (session, session.model):
         with pytest.raises(TypeError, match="cannot be copied or pickled; save"):
             copied(whole)
+
+
+def test_what_no_script_can_mean_is_refused() -> None:
+    session = Session.open("isostatic")
+    with pytest.raises(ValueError, match=r"steps is 1000000000000000000000; it must be below 2\^63"):
+        session.run(steps=10**21)
+    with pytest.raises(ValueError, match="elapsed is nan; it must be a finite number"):
+        session.frame(float("nan"))
+    with pytest.raises(ValueError, match="Load factors are '1'; give at least one finite number"):
+        session.settle("1")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="no 'simulated' among the comparisons; did you mean 'simulation'"):
+        session.compare().worst("simulated")
+    with pytest.raises(ValueError, match="5 is no model; give a file"):
+        Session.open(5)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="rod AB: ends x is 'A'; it must be the row of an element"):
+        session.rods["AB"].between = ("A", "C")  # type: ignore[assignment]

@@ -12,12 +12,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from components.field import Field, FieldError, Role, same
+from components.handle import Handle
 from components.load import Load
 from components.model import KINDS, Model
 from components.particle import Particle
 from components.rod import Rod, spawn_rods
 from components.settings import Settings
 from components.table import fields_of
+from components.world import World
 
 
 def number(**options: Any) -> Field[Any]:
@@ -103,7 +105,11 @@ def test_a_value_is_normalised(field: Field[Any], value: Any, expected: Any) -> 
         (number(dtype=str, choices=("a", "b")), "c", "rod AB: push is 'c'; choose one of a, b."),
         (number(dtype="reference"), -1, "rod AB: push is -1 kN; it must be at least 0 kN."),
         (number(dtype="reference"), 2**32, "it must be at most 4.29497e+09 kN."),
-        (number(dtype="reference"), "A", "rod AB: push is 'A'; it must be a number."),
+        (
+            number(dtype="reference"),
+            "A",
+            "rod AB: push is 'A'; it must be the row of an element, as its .row tells.",
+        ),
     ],
 )
 def test_a_refusal_names_element_value_and_remedy(field: Field[Any], value: Any, message: str) -> None:
@@ -337,8 +343,23 @@ def test_an_override_is_checked_and_a_computed_field_cannot_be_set() -> None:
 
 
 def test_a_misspelt_attribute_is_refused() -> None:
-    with pytest.raises(AttributeError):
+    said = "There is no 'froce' among the facts of a particle; did you mean 'force'"
+    with pytest.raises(AttributeError, match=said):
         triangle().particles["A"].froce = (1.0, 0.0)  # type: ignore[attr-defined]
+    with pytest.raises(AttributeError, match=said):
+        _ = triangle().particles["A"].froce  # type: ignore[attr-defined]
+
+
+def test_it_is_in_kinds_without_slots_too() -> None:
+    class Bumper(Handle):
+        table, noun = "bumpers", "bumper"
+        name: Field[str] = Field(title="name", default="", dtype=str, doc="Its name.")
+        size: Field[float] = Field("m", default=0.2, title="size", doc="How large it is.")
+
+    world = World([Bumper])
+    (bumper,) = world.create(Bumper, 1)
+    with pytest.raises(AttributeError, match="did you mean 'size'"):
+        bumper.sise = 0.3  # type: ignore[attr-defined]
 
 
 # --- every Field of the program --------------------------------------------------------------------------

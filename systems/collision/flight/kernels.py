@@ -7,6 +7,8 @@ in which their forces are renewed.
 
 import math
 
+import numpy as np
+
 from systems.collision.arrays import (
     AX,
     AY,
@@ -74,33 +76,26 @@ from systems.collision.gap.kernels import (
 )
 from systems.collision.grid.kernels import enclose, enter, layer_of, leave, level_of, neighbours, place_box
 from systems.collision.impact.kernels import respond
-from systems.collision.kernels import compiled, entry
+from systems.collision.kernels import compiled, inlined
 from systems.collision.pile.kernels import begin_steps, crowded, step
 from systems.collision.projection.kernels import compliance, opening_rate
 from systems.collision.queue.kernels import drop_first, is_void
-from systems.collision.window.kernels import expect, is_joined, open_window
+from systems.collision.window.kernels import expect, is_joined
 
 DONE, BUSY, REPORT_FULL = int(Reason.DONE), int(Reason.BUSY), int(Reason.REPORT_FULL)
+GO_ON = int(Reason.GO_ON)
 QUEUE_FULL, GROUP_FULL = int(Reason.QUEUE_FULL), int(Reason.GROUP_FULL)
 TINY = 1e-300  # m; distance of centres that coincide
 
 
-@entry
-def advance(until, most_events, discs, grid, ties, queue, group, report, numbers, counts):
-    """Let everything happen up to a time (s), at most `most_events` events. Returns a Reason.
+@inlined
+def fly(until, most_events, discs, grid, ties, queue, group, report, numbers, counts):
+    """Let the events of the present window happen up to a time (s), at most `most_events` of them. Returns a Reason.
 
     After DONE, every disc is on its path at `until`; after any other reason, call again when it is dealt with.
     """
     last = counts[EVENTS] + most_events
-    while True:
-        if counts[STEPPING]:
-            reason = _step(until, last, discs, grid, ties, group, report, numbers, counts)
-            if counts[STEPPING]:
-                return reason
-        if counts[RENEW]:
-            reason = open_window(discs, grid, ties, queue, numbers, counts)
-            if reason != DONE:
-                return reason
+    while counts[RENEW] == 0 and counts[STEPPING] == 0:
         while counts[QUEUED] > 0 and is_void(queue, 0, discs):
             drop_first(queue, counts[QUEUED])
             counts[QUEUED] -= 1
@@ -117,12 +112,13 @@ def advance(until, most_events, discs, grid, ties, queue, group, report, numbers
             reason = _happen(discs, grid, ties, queue, group, report, numbers, counts)
             if reason != DONE:
                 return reason
+    return GO_ON
 
 
-@compiled
+@inlined
 def _happen(discs, grid, ties, queue, group, report, numbers, counts):
     """The first event of the queue happens. Returns a Reason."""
-    i, j = queue.meetings[0, 0], queue.meetings[0, 1]
+    i, j = np.int64(queue.meetings[0, 0]), np.int64(queue.meetings[0, 1])
     count, touching = _gather(i, j, discs, grid, ties, group, numbers, counts)
     full = touching > group.links.shape[0] or 2 * touching > counts[SPARES]
     if full or counts[REPORTED] + touching > report.pairs.shape[0]:
@@ -152,9 +148,10 @@ def _happen(discs, grid, ties, queue, group, report, numbers, counts):
     return reason
 
 
-@compiled
-def _step(until, last, discs, grid, ties, group, report, numbers, counts):
-    """Let a pile take its steps, until it is at rest or dissolved. Returns a Reason."""
+@inlined
+def take_steps(until, most_steps, discs, grid, ties, group, report, numbers, counts):
+    """Let a pile take its steps, at most `most_steps`, until it is at rest or dissolved. Returns a Reason."""
+    last = counts[EVENTS] + most_steps
     while counts[STEPPING]:
         if numbers[STEP_END] > until:
             numbers[NOW] = max(numbers[NOW], until)
@@ -166,7 +163,7 @@ def _step(until, last, discs, grid, ties, group, report, numbers, counts):
         if reason != DONE:
             return reason
         counts[EVENTS] += 1
-    return DONE
+    return GO_ON
 
 
 # --- who takes part -----------------------------------------------------------------------------------------

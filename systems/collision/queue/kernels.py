@@ -1,5 +1,7 @@
 """A binary heap of meetings, earliest first; equal times in the order of the discs' numbers."""
 
+import numpy as np
+
 from systems.collision.arrays import CHANGES, MOST_CHANGES
 from systems.collision.kernels import compiled
 
@@ -25,6 +27,13 @@ def _place(queue, k, time, i, j, changes_i, changes_j):
 
 
 @compiled
+def _meeting(queue, k):
+    """What is at k, in numbers that need no code of their own for being short in the queue."""
+    i, j = np.int64(queue.meetings[k, 0]), np.int64(queue.meetings[k, 1])
+    return queue.times[k], i, j, np.int64(queue.meetings[k, 2]), np.int64(queue.meetings[k, 3])
+
+
+@compiled
 def _move(queue, source, target):
     queue.times[target] = queue.times[source]
     for c in range(4):
@@ -47,15 +56,14 @@ def push(queue, size, time, i, j, changes_i, changes_j):
 @compiled
 def _sink(queue, size, k):
     """Let the meeting at k sink to where it belongs."""
-    time, i, j = queue.times[k], queue.meetings[k, 0], queue.meetings[k, 1]
-    changes_i, changes_j = queue.meetings[k, 2], queue.meetings[k, 3]
+    time, i, j, changes_i, changes_j = _meeting(queue, k)
     while 2 * k + 1 < size:
         child = 2 * k + 1
         right = child + 1
-        if right < size and _before(
-            queue.times[right], queue.meetings[right, 0], queue.meetings[right, 1], child, queue
-        ):
-            child = right
+        if right < size:
+            other, a, b, _, _ = _meeting(queue, right)
+            if _before(other, a, b, child, queue):
+                child = right
         if _before(time, i, j, child, queue):
             break
         _move(queue, child, k)
@@ -80,8 +88,8 @@ def changes(i, discs):
 @compiled
 def is_void(queue, k, discs):
     """True if a disc of the meeting has changed its path since."""
-    i, j = queue.meetings[k, 0], queue.meetings[k, 1]
-    return queue.meetings[k, 2] != changes(i, discs) or queue.meetings[k, 3] != changes(j, discs)
+    _, i, j, changes_i, changes_j = _meeting(queue, k)
+    return changes_i != changes(i, discs) or changes_j != changes(j, discs)
 
 
 @compiled
