@@ -158,13 +158,13 @@ class Field(Generic[T]):
         """A checked Python value as it is kept in the column."""
         return math.nan if value is None and self.dtype is float else value
 
-    def loaded(self, value: Any) -> Any:
+    def loaded(self, column: Column, row: int) -> Any:
         """A column's entry as a plain Python value."""
         if self._has_objects:
-            return value
+            return column[row]
         if self.shape:
-            return tuple(value.tolist())
-        plain = value.item()
+            return tuple(column[row].tolist())
+        plain = column.item(row)
         return None if self.nullable and plain != plain else plain
 
     # --- checking --------------------------------------------------------------------------------

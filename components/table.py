@@ -121,14 +121,14 @@ class Table(Generic[H]):
         return self.handles[key]
 
     def __getattr__(self, name: str) -> Column:
-        if name in Table.__slots__ or name.startswith("_"):
+        if name in _OWN or name.startswith("_"):
             raise AttributeError(name)
         if name not in self.fields:
             raise AttributeError(missing(f"columns of {self.name}", name, self.fields))
         return self.column(name)
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if name in Table.__slots__ and name != "name":
+        if name in _OWN and name != "name":
             object.__setattr__(self, name, value)
         elif name in self.fields:
             self.world.assign(self.handles, name, value)
@@ -199,7 +199,9 @@ class Table(Generic[H]):
 
     def mark(self, names: Iterable[str], role: Role) -> None:
         """Mark columns, all with this role, as changed now."""
-        self._versions.update(dict.fromkeys(names, self.world.next_revision(role)))
+        versions, revision = self._versions, self.world.next_revision(role)
+        for name in names:  # quicker than an update
+            versions[name] = revision
 
     def free_names(self, count: int, besides: Iterable[str] = ()) -> list[str]:
         """The `count` names of the form "rod n" with the smallest n that neither are used nor among `besides`."""
@@ -297,6 +299,9 @@ class Table(Generic[H]):
         self.entity = _grown(self.entity, np.empty(capacity, dtype=np.int64), self.count)
         for name, field in self.fields.items():
             self._columns[name] = _grown(self._columns[name], field.allocate(capacity), self.count)
+
+
+_OWN = frozenset(Table.__slots__)
 
 
 def _read_only(view: Column) -> Column:

@@ -152,7 +152,7 @@ class World:
             self.refresh(f"{handle.table}.{field.name}")
         row = self.row_of_entity.item(handle.entity)
         column = self.tables[handle.table]._columns[field.name]
-        return field.loaded(column[row if row >= 0 else self.row(handle)])
+        return field.loaded(column, row if row >= 0 else self.row(handle))
 
     def write(self, handle: Handle, field: Field[Any], value: Any) -> None:
         """Execute the command that gives one Field of one entity a value. Raises FieldError."""

@@ -243,7 +243,7 @@ def _column(model: Model, section: _Section, field: Field[Any]) -> Column:
         return field.allocate(len(section.elements))
     if field.references is not None:
         return _rows_by_name(model, section, field)
-    default = field.loaded(field.allocate(1)[0])
+    default = field.loaded(field.allocate(1), 0)
     values = [element.get(field.key, default) for element in section.elements]
 
     def where(row: int) -> str:
@@ -487,7 +487,7 @@ def _refuse_non_finite(model: Model, handles: Sequence[Handle], field: Field[Any
         return
     finite = np.isfinite(column) | (np.isnan(column) if field.nullable else False)
     for row in np.argwhere(~finite)[:1, 0].tolist():
-        element, value = handles[row], field.loaded(column[row])
+        element, value = handles[row], field.loaded(column, row)
         raise ModelError(
             f"{model.describe(element)}: {field.title} is {value}, which no file can hold;"
             " rewind or undo to a state before it."

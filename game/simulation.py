@@ -469,13 +469,13 @@ class Simulation:
             if self.watch is not None:
                 ahead = min(ahead, self.watch())
             taken, reason = self._take(ahead, until, landing)
-            if taken == 0 and reason is StopReason.DONE:
-                break
             self._heed(reason)
             self._arm()
             if not self.halted:
                 self._review_sleep()
             done = clock.steps - first
+            if taken < max(ahead, 1) and reason is StopReason.DONE:
+                break  # the next step would end later than allowed
         self.compute_seconds += time.perf_counter() - started
         return done
 

@@ -55,6 +55,7 @@ class ArrangedProgram(Program):
         arranged |= self._of_systems(arranged)
         to_write = {path.replace(".", "_", 1) for path in written}
         self._columns = [array if name in to_write else read_only(array) for name, array in arranged.items()]
+        self._bind_arguments()
         self._held_revision = -1
 
     @property

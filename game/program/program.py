@@ -18,6 +18,7 @@ from game.program.cache import compile_module, is_compiled, note_compiled
 from game.program.controlled import MARKS, ControlledWriter
 from game.program.writer import VERY_MANY, Writer, form_of
 from systems.base import ACCOUNTS, Driver, StepSystem, StopReason
+from systems.physics.drivers import SEARCH
 
 ACCOUNT = (
     *ACCOUNTS,
@@ -138,11 +139,12 @@ class Program:
         self._state = (self._displacement, self._velocity, self._force, self._resisting, self._direction)
         self._power, self._gained = np.zeros(len(ACCOUNTS)), np.zeros(len(ACCOUNTS))
         self.changes_end = math.inf if self.lasting else loads_end(model)
-        self._breaks = [*load_breaks(model), math.inf]
+        self._breaks = np.array([*load_breaks(model), math.inf])
         self._work = np.zeros((self.driver.particle_rows, particles, 2))
         self._rod_work = np.zeros((self.driver.rod_rows, rods))
         self._marks = np.zeros((rods, self.marks))
         self._stage_power = np.zeros(len(ACCOUNTS))
+        self._bind_arguments()
         self._bind_observed()
         settings = model.settings
         controls = self.driver.estimates_error and settings.time_step is None
@@ -171,9 +173,16 @@ class Program:
         clock = self.model.tables["clock"]
         self._account, self._control = clock.together(ACCOUNT), clock.together(CONTROL)
         self._origin = clock.together(_ORIGIN)
-        self._counts = [clock.storage(name) for name in _COUNTS]
-        self._controller = np.zeros(len(CONTROL) + 2)
-        self._search = np.zeros(7)
+        self._counts = clock.together(_COUNTS)
+        self._search = np.zeros(SEARCH)
+
+    def _bind_arguments(self) -> None:
+        """What advance() takes from the end of loads on."""
+        own = [*self._state, self._predicted, self._power, self._gained]
+        if self.driver.controlled:
+            own = [self._control, self._search, *self._state, self._work, self._rod_work, self._marks]
+            own += [self._power, self._gained, self._stage_power]
+        self._arguments = (*own, self._account, self.measures, *self._columns)
 
     def _bind_observed(self) -> None:
         """What observe() takes from the end of the state on."""
@@ -209,7 +218,7 @@ class Program:
             if steps == 0:
                 return 0, StopReason.DONE
         origin = float(self._origin[0])
-        total, since = (int(count[0]) for count in self._counts)
+        total, since = self._counts.tolist()
         taken, reason = self.module.advance(
             steps,
             self._is_fresh,
@@ -217,28 +226,21 @@ class Program:
             total - since,
             origin,
             size,
-            self._coming_breaks(math.inf),
+            self._breaks,
             self.changes_end,
-            *self._state,
-            self._predicted,
-            self._power,
-            self._gained,
-            self._account,
-            self.measures,
-            *self._columns,
+            *self._arguments,
         )
         if taken:
-            self._counts[0][0] = total + taken
+            self._counts[0] = total + taken
             self._control[0] = origin + (total - since + taken) * size
             self._mark_changes()
         self._state_revision = self.model.newest(Role.STATE)
         return taken, _REASONS[reason]
 
     def _advance_controlled(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
-        control = self._controller
-        control[: len(CONTROL)] = self._control
+        before = self._control.item(0)
         origin, limit = self._origin.tolist()
-        total, since = (int(count[0]) for count in self._counts)
+        total, since = self._counts.tolist()
         taken, reason = self.module.advance(
             steps,
             self._is_fresh,
@@ -247,31 +249,18 @@ class Program:
             origin,
             self.tolerance,
             limit or math.inf,
-            self._coming_breaks(landing),
+            self._breaks,
             float(until),
+            float(landing),
             self.changes_end,
-            control,
-            self._search,
-            *self._state,
-            self._work,
-            self._rod_work,
-            self._marks,
-            self._power,
-            self._gained,
-            self._stage_power,
-            self._account,
-            self.measures,
-            *self._columns,
+            *self._arguments,
         )
-        time = float(control[0])
-        if time > self._control[0]:
-            if time == landing and not self.tolerance:
-                taken += 1  # the piece that it takes to land
-            self._control[...] = control[: len(CONTROL)]
-            self._counts[0][0] = total + taken
+        time = self._control.item(0)
+        if time > before:
+            self._counts[0] = total + taken
             if self.tolerance or time == landing:
                 self._origin[0] = time
-                self._counts[1][0] = total + taken
+                self._counts[1] = total + taken
             self._mark_changes()
         self._state_revision = self.model.newest(Role.STATE)
         return taken, _REASONS[reason]
@@ -280,10 +269,6 @@ class Program:
     def _is_fresh(self) -> bool:
         """True if the forces are still those of the present state."""
         return self._state_revision == self.model.newest(Role.STATE)
-
-    def _coming_breaks(self, landing: float) -> Column:
-        """Times that no step passes, ascending, the last one infinite."""
-        return np.array(sorted([*self._breaks, landing]) if landing < math.inf else self._breaks)
 
     def _mark_changes(self) -> None:
         for table, names, role in self._changes:

@@ -349,16 +349,19 @@ class Writer:
     # --- steps ------------------------------------------------------------------------------------
 
     def _integrate(self) -> str:
-        """The driver's own function, or steps as it says that they begin and end for each particle."""
+        """The driver's own function, or steps as it says that they begin and end for each particle.
+
+        Inlined where it is called, once, the columns stay in registers.
+        """
         if self.driver.kernel:
-            return self._pasted(f"{self.driver.kernel}=integrate", "compiled")
+            return self._pasted(f"{self.driver.kernel}=integrate", "inlined")
         step = ["time = origin + (first + step) * dt", *self._move(), *self._enter_loads(), *self._complete()]
         head = (
             "def integrate(steps, first, origin, dt, displacement, velocity, force, resisting, direction,"
             f" predicted, power, gained, account, {self._columns_text()}):"
         )
         lines = ["for step in range(1, steps + 1):", *indented(step), *self._finish()]
-        return "\n".join(["@compiled", head, *indented(lines)])
+        return "\n".join(["@inlined", head, *indented(lines)])
 
     def _move(self) -> list[str]:
         """To the next displacement; its forces."""

@@ -97,7 +97,7 @@ def _elements(model: Model, name: str, given: Mapping[str, Column]) -> dict[str,
         column = given[key] if key in given else table.column(field.name)
         absent = np.isnan(column) if field.nullable else False
         for row in np.argwhere(~(np.isfinite(column) | absent))[:1, 0].tolist():
-            element, value = model.describe(table[row]), field.loaded(column[row])
+            element, value = model.describe(table[row]), field.loaded(column, row)
             raise ResultError(f"{element}: {field.title} is {value}, not finite; report a state before it.")
         values = column.tolist()
         columns.append([None if v != v else v for v in values] if field.nullable else values)

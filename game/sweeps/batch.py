@@ -46,7 +46,7 @@ class Batch:
         self.measures = np.zeros((blocks, 16))
         self.fixed_step = stack.single("settings.time_step")
         self._columns = program.columns(stack, varied_arrays)
-        self._breaks = load_breaks(stack.as_model())
+        self._breaks = np.array([*load_breaks(stack.as_model()), math.inf])
         self._loads_end = loads_end(stack.as_model())
         self._begin()
 
@@ -114,9 +114,9 @@ class Batch:
 
     # --- calling the program -------------------------------------------------------------------------
 
-    def _clocks(self, names: Sequence[str], more: int = 0) -> Column:
-        """Values of the clocks side by side, shape (blocks, names + more)."""
-        found = np.zeros((self.stack.blocks, len(names) + more))
+    def _clocks(self, names: Sequence[str]) -> Column:
+        """Values of the clocks side by side, shape (blocks, names)."""
+        found = np.zeros((self.stack.blocks, len(names)))
         for place, name in enumerate(names):
             found[:, place] = self.clock(name)
         return found
@@ -163,7 +163,7 @@ class Batch:
         if until < math.inf and not self.driver.controlled:
             left = ((until - time) / size * (1.0 + 1e-12)).astype(np.int64)
             wanted = np.clip(left, 0, steps)
-        account, control = self._clocks(ACCOUNT), self._clocks(CONTROL, more=2)
+        account, control = self._clocks(ACCOUNT), self._clocks(CONTROL)
         limit = self.clock("step_limit")
         taken, reason = self._call(
             "advance",
@@ -175,8 +175,9 @@ class Batch:
             origin=self.clock("origin"),
             tolerance=np.where(self._controls_error, self.stack.single("settings.tolerance"), 0.0),
             limit=np.where(limit > 0.0, limit, math.inf),
-            breaks=np.sort(np.append(self._breaks, [landing, math.inf])),
+            breaks=self._breaks,
             until=float(until),
+            landing=float(landing),
             loads_end=self._loads_end,
             control=control,
             account=account,
@@ -185,7 +186,6 @@ class Batch:
         if self.driver.controlled:
             moved[blocks] = control[blocks, 0] > time[blocks]
             landed = moved & (control[:, 0] == landing)
-            taken[landed & ~self._controls_error] += 1
             self._put_clocks(CONTROL, control, np.flatnonzero(moved))
             anew = np.flatnonzero(landed | (moved & self._controls_error))
             self.clock("origin")[anew] = control[anew, 0]

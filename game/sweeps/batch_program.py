@@ -15,8 +15,9 @@ from game.program.cache import compile_module, note_compiled
 from game.program.program import Program
 from game.sweeps.stack import Stack
 from systems.base import ACCOUNTS
+from systems.physics.drivers import SEARCH
 
-_SHARED = ("fresh", "breaks", "until", "loads_end")  # one for all blocks, besides what is written anew for each
+_SHARED = ("fresh", "breaks", "until", "landing", "loads_end")  # one for all blocks, besides what is written anew for each
 _RETURNS = {"advance": "taken[k], reason[k] = "}
 _PIECES = 4  # for each thread, so that none waits long for another
 
@@ -55,7 +56,7 @@ class BatchProgram:
                 "work": (driver.particle_rows, particles, 2),
                 "rod_work": (driver.rod_rows, rods),
                 "marks": (rods, program.marks),
-                "search": (7,),
+                "search": (SEARCH,),
             }
         )
 

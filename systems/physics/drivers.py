@@ -24,8 +24,9 @@ _CONTROLLED = (
     ),
 )
 
-_CONTROL = ("TIME", "STEP", "ERROR", "LARGEST_X", "LARGEST_V", "TRIAL_X", "TRIAL_V")
-_SEARCH = ("NEAR", "FAR", "NEAR_GAP", "FAR_GAP", "MOVED", "ENDED", "LENGTH")
+_CONTROL = ("TIME", "STEP", "ERROR", "LARGEST_X", "LARGEST_V")
+_SEARCH = ("NEAR", "FAR", "NEAR_GAP", "FAR_GAP", "MOVED", "ENDED", "LENGTH", "TRIAL_X", "TRIAL_V")
+SEARCH = len(_SEARCH)
 _PLACES = {name: place for names in (_CONTROL, _SEARCH) for place, name in enumerate(names)}
 
 

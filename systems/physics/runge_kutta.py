@@ -15,6 +15,7 @@ and the tableau's constants (see tableaus.py), EVENTS (some rod has branches) an
 `work` has rows of shape (particles, 2): the accelerations of the stages, the trial displacement and
 velocity, then what the stages need; `marks` one row per rod. `control` is the state of the controller: time
 (s), step to try next (s), last error (1 is the tolerance), largest ‖displacement‖ (m) and ‖velocity‖ (m/s).
+`search` is that of the search for one step: see narrow(), and the largest norms if it is accepted.
 """
 
 # ruff: noqa: F821
@@ -74,7 +75,7 @@ def accelerate(force, resisting, acceleration, *columns):
         acceleration[i, 1] = fy * particles_mobility[i, 1]
 
 
-def combine(dt, tolerance, displacement, velocity, work, control):
+def combine(dt, tolerance, displacement, velocity, work, control, search):
     """The result of a step into the trial rows, and its error: 1 is the tolerance, 0 without control.
 
     The norms are Euclidean over all particles, of displacement and velocity each relative to the largest so
@@ -115,10 +116,10 @@ def combine(dt, tolerance, displacement, velocity, work, control):
                     q += RESULT_X[2, j] * work[j, i, d]
                 also_x += q * q
                 also_v += p * p
-    control[TRIAL_X] = max(control[LARGEST_X], math.sqrt(size_x))
-    control[TRIAL_V] = max(control[LARGEST_V], math.sqrt(size_v))
-    allowed_x = tolerance * control[TRIAL_X] + ROUND_OFF_X * control[TRIAL_X]
-    allowed_v = tolerance * control[TRIAL_V] + ROUND_OFF_V * control[TRIAL_X] / dt
+    search[TRIAL_X] = max(control[LARGEST_X], math.sqrt(size_x))
+    search[TRIAL_V] = max(control[LARGEST_V], math.sqrt(size_v))
+    allowed_x = tolerance * search[TRIAL_X] + ROUND_OFF_X * search[TRIAL_X]
+    allowed_v = tolerance * search[TRIAL_V] + ROUND_OFF_V * search[TRIAL_X] / dt
     if ESTIMATES == 0 or tolerance == 0.0:
         return 0.0 * (size_x + size_v)  # not a number if something overflowed
     if not (allowed_x > 0.0 and allowed_v > 0.0):
@@ -227,7 +228,7 @@ def attempt(
             stage_power,
             *columns,
         )
-        error = combine(h, tolerance, displacement, velocity, work, control)
+        error = combine(h, tolerance, displacement, velocity, work, control, search)
         if not solved or not error < math.inf:
             error = BEYOND
         elif EVENTS and search[ENDED] == 0.0:
@@ -253,6 +254,7 @@ def controlled(
     limit,
     breaks,
     until,
+    landing,
     control,
     search,
     displacement,
@@ -272,7 +274,8 @@ def controlled(
     """Take up to `steps` steps that end by `until` (s); returns (steps taken, whether it can go on).
 
     tolerance: relative, of one step; 0: all steps are control[STEP] long. breaks: times that no step passes,
-    ascending, the last one infinite. A fixed step that is interrupted goes on to its end in pieces.
+    ascending, the last one infinite; nor does one pass `landing` (s), where all steps begin anew. A fixed step
+    that is interrupted goes on to its end in pieces.
     """
     time = control[TIME]
     taken = 0
@@ -286,7 +289,10 @@ def controlled(
             reach = goal + 0.01 * step
         while breaks[coming] <= time:
             coming += 1
-        end = breaks[coming] if reach >= breaks[coming] else goal
+        stop = breaks[coming]
+        if time < landing < stop:
+            stop = landing
+        end = stop if reach >= stop else goal
         if end > until:
             break
         h, ahead, error, rejected = attempt(
@@ -324,12 +330,12 @@ def controlled(
             remember(time, h, displacement, account, *columns)
         evaluate(time, h, displacement, velocity, force, resisting, direction, power, *columns)
         accelerate(force, resisting, work[0], *columns)
-        control[LARGEST_X] = control[TRIAL_X]
-        control[LARGEST_V] = control[TRIAL_V]
+        control[LARGEST_X] = search[TRIAL_X]
+        control[LARGEST_V] = search[TRIAL_V]
         if tolerance > 0.0:
             taken += 1
             follow(control, h, limit, error, rejected)
-        elif time >= goal:
+        elif time >= goal or time == landing:
             taken += 1
     control[TIME] = time
     return taken, True
@@ -361,6 +367,7 @@ def advance(
     limit,
     breaks,
     until,
+    landing,
     loads_end,
     control,
     search,
@@ -402,6 +409,7 @@ def advance(
             limit,
             breaks,
             until,
+            landing,
             control,
             search,
             displacement,

@@ -81,7 +81,7 @@ class Refused(Exception):
 
 def defaults(table: str) -> Element:
     fields = [field for field in fields_of(KINDS[table]) if field.role is not Role.DERIVED]
-    found = {field.name: field.loaded(field.allocate(1)[0]) for field in fields}
+    found = {field.name: field.loaded(field.allocate(1), 0) for field in fields}
     return found | ({"history": dict(CONSTANT)} if table == "loads" else {})
 
 

@@ -256,7 +256,7 @@ def test_a_column_takes_what_its_values_are_allowed_one_by_one(field: Field[Any]
         assert str(caught.value) == refusal
     else:
         column = field.check_column(values, len(values), rod_in_row)
-        assert [field.loaded(entry) for entry in column] == expected
+        assert [field.loaded(column, row) for row in range(len(column))] == expected
         assert column.dtype == field.storage
 
 
@@ -269,7 +269,7 @@ def test_a_column_starts_as_the_default(field: Field[Any]) -> None:
     assert column.shape == (3, *field.shape)
     assert column.dtype == field.storage
     default = (field.default,) * 2 if field.shape and np.ndim(field.default) == 0 else field.default
-    assert [field.loaded(entry) for entry in column] == [default] * 3
+    assert [field.loaded(column, row) for row in range(len(column))] == [default] * 3
     assert field.allocate(0).shape == (0, *field.shape)
 
 
@@ -396,5 +396,5 @@ def test_overrides_and_references_are_declared_on_both_sides(kind: type[Any]) ->
 @pytest.mark.parametrize("field", ALL_FIELDS)
 def test_every_default_is_allowed(field: Field[Any]) -> None:
     if field.role is not Role.DERIVED:
-        default = field.loaded(field.allocate(1)[0])
+        default = field.loaded(field.allocate(1), 0)
         assert field.check(default, "its default") == default
