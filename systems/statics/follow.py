@@ -263,7 +263,7 @@ class Path:
         change = structure.gather(found.displacement - point.displacement)
         kink = self._kink(point, tangent, found, dt)
         if kink < 1.0:
-            return kink
+            return max(kink, HALF)  # much sooner than the tangent tells: what was found is on another branch
         following = self.tangent(found, change, tangent)
         if self._reversed(tangent, found, following, increment):
             return HALF
