@@ -17,7 +17,13 @@ from game.sweeps.stack import Stack
 from systems.base import ACCOUNTS
 from systems.physics.drivers import SEARCH
 
-_SHARED = ("fresh", "breaks", "until", "landing", "loads_end")  # one for all blocks, besides what is written anew for each
+_SHARED = (
+    "fresh",
+    "breaks",
+    "until",
+    "landing",
+    "loads_end",
+)  # one for all blocks, besides what is written anew for each
 _RETURNS = {"advance": "taken[k], reason[k] = "}
 _PIECES = 4  # for each thread, so that none waits long for another
 

@@ -1,0 +1,49 @@
+"""What runs by default, `automatic` with its error controlled, against transients to nearly full precision."""
+
+from typing import Any
+
+import numpy as np
+from hypothesis import assume, given, settings
+
+from game import Session
+from systems.physics.spectrum import spectrum
+from tests.reference.elements import Document
+from tests.reference.transients import follow
+from tests.verification.test_against_reference import SHORTEST, decimals, trusses
+
+WITHIN = 1e-6  # of the largest displacement of the run
+TIGHTLY = 1e-10  # the same, where a tolerance of 1e-12 is asked for
+
+
+@settings(max_examples=6)
+@given(trusses(full=True, damped=True), decimals(2.0, 40.0))
+def test_random_trusses_by_default_and_by_a_tight_tolerance(document: Document, turns: float) -> None:
+    """Yielding, damped, dragged, supported and loaded ever differently, for some radians of the fastest motion."""
+    document = document | {"settings": {"collisions": False}}
+    duration = turns / _fastest(document)
+    expected, largest = follow(document, duration)
+    assume(_shortest(document, expected) > SHORTEST)
+    assert _error(document, duration, expected) <= WITHIN * largest
+    assert _error(document, duration, expected, tolerance=1e-12) <= TIGHTLY * largest
+
+
+def _fastest(document: Document) -> float:
+    """The highest rate (1/s) of anything in a model as it starts."""
+    session = Session.open(document)
+    found = spectrum(session.model, session.rods.axial_force)
+    return max(found.frequency, 2.0 * found.decay, 1.0)
+
+
+def _shortest(document: Document, displacement: np.ndarray) -> float:
+    """The length (m) of the shortest rod when displaced so."""
+    row = {each["name"]: number for number, each in enumerate(document["particles"])}
+    places = np.array([each["position"] for each in document["particles"]]) + displacement
+    ends = np.array([[row[name] for name in rod["between"]] for rod in document["rods"]])
+    return float(np.hypot(*(places[ends[:, 1]] - places[ends[:, 0]]).T).min())
+
+
+def _error(document: Document, duration: float, expected: np.ndarray, **choices: Any) -> float:
+    """The largest of any particle's errors (m)."""
+    session = Session.open(document | {"settings": document["settings"] | choices})
+    assert session.run(time=duration) in ("time reached", "at rest")
+    return float(np.hypot(*(session.particles.displacement - expected).T).max())
