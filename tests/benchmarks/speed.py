@@ -19,6 +19,7 @@ import numpy as np
 import pymunk  # here, so that a missing peer is told before anything is measured
 
 from components.model import Model
+from game import Session
 from game.cores import cores
 from game.document import document
 from game.program.writer import MANY, VERY_MANY
@@ -212,6 +213,28 @@ def _fresh(code: str) -> float:
     return float(best)
 
 
+def besides_steps() -> list[Row]:
+    """µs that a run of a triangle costs besides its steps: what it takes for one, less what a step takes."""
+    choices = {"time_step": STEP, "collisions": False}
+    session = Session.open(document(truss(damping=0.0)) | {"settings": choices})
+    simulation = session.simulation
+    runs: dict[str, Callable[[int], object]] = {
+        "Session.run, with its entry for undo": lambda steps: session.run(steps=steps),
+        "the engine alone": simulation.advance,
+    }
+    rows = []
+    for title, run in runs.items():
+        one, many = (min(_seconds(run, steps) for _ in range(200)) for steps in (1, 1001))
+        rows.append({"run": title, "us_besides_steps": 1e6 * (one - (many - one) / 1000)})
+    return rows
+
+
+def _seconds(run: Callable[[int], object], steps: int) -> float:
+    started = time.perf_counter()
+    run(steps)
+    return time.perf_counter() - started
+
+
 def memory() -> list[Row]:
     """Bytes per element: of its columns, and of its entity, handle and name beside them."""
     tracemalloc.start()
@@ -244,6 +267,7 @@ def report(*, quick: bool) -> dict[str, list[Row]]:
         "ceiling": ceilings(steps),
         "cores": sharing(quick=quick),
         "skipping": skipping.report(),
+        "besides_steps": besides_steps(),
         "memory": memory(),
         "peers": peers(quick=quick),
         "start": [*start_up(), *bulk_creation()],
