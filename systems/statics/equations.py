@@ -54,6 +54,15 @@ class Response:
         """Rods whose force does not change when their length does a little."""
         return self.flowing | self.slack
 
+    @property
+    def reach(self) -> Array:
+        """What motions are measured by (m): the length, of slack cables that at which they tighten.
+
+        A slack cable may shrink to a point and turn over without anything changing.
+        """
+        tightens: Array = np.where(self.slack, self.length - self.elongation, 0.0)
+        return np.maximum(self.length, tightens)
+
 
 @dataclass(frozen=True)
 class Branches:
@@ -171,12 +180,12 @@ class Structure:
         difference: Array = field[self.ends[:, 1]] - field[self.ends[:, 0]]
         return difference
 
-    def move(self, vector: Array, length: Array) -> float:
-        """The largest change of a rod, in length or direction, relative to its length."""
+    def move(self, vector: Array, reach: Array) -> float:
+        """The largest change of a rod, in length or direction, relative to its reach."""
         change = np.hypot(*self.relative(self.spread(vector)).T)
         moved = change > 0.0
         with np.errstate(divide="ignore"):  # the ends may be at the same place, as yet
-            return float((change[moved] / length[moved]).max(initial=0.0))
+            return float((change[moved] / reach[moved]).max(initial=0.0))
 
     def elongation_rate(self, vector: Array, response: Response) -> Array:
         """Rate of elongation of every rod when the unknowns change at this rate."""

@@ -233,7 +233,7 @@ class Path:
 
         An increment ends where a rod begins to yield, slackens or tightens; one that fails is halved.
         """
-        far = LARGEST_MOVE / max(self.structure.move(tangent.rate, point.response.length), 1e-300)
+        far = LARGEST_MOVE / max(self.structure.move(tangent.rate, point.response.reach), 1e-300)
         nearest = min(self._until_event(point, tangent), 0.99 * far * self.stretch(tangent))
         trial, failed = min(increment, nearest), False
         smallest = SMALLEST * self.stretch(tangent)
@@ -300,7 +300,7 @@ class Path:
             before, share, soft = size, 1.0, response.soft
             displacement, t = displacement + step, t + dt
             change = structure.gather(displacement - start.displacement)
-            if not structure.move(change, start.response.length) <= 2.0 * LARGEST_MOVE:
+            if not structure.move(change, start.response.reach) <= 2.0 * LARGEST_MOVE:
                 return None
         return None
 
@@ -327,18 +327,18 @@ class Path:
         change: Array,
     ) -> bool:
         """True if the increment went where the tangent pointed and the tangent did not turn much."""
-        structure, length = self.structure, point.response.length
-        size = structure.move(change, length)
+        structure, reach = self.structure, point.response.reach
+        size = structure.move(change, reach)
         if size > LARGEST_MOVE:
             return False
-        if structure.move(change - predicted, length) > MISS * size + 64.0 * ROUND_OFF:
+        if structure.move(change - predicted, reach) > MISS * size + 64.0 * ROUND_OFF:
             return False
         if not np.array_equal(following.soft, tangent.soft):
             return True
         before = tangent.sense / self.stretch(tangent) * tangent.rate
         after = following.sense / self.stretch(following) * following.rate
-        largest = max(structure.move(before, length), structure.move(after, length))
-        return structure.move(after - before, length) <= TURN * largest
+        largest = max(structure.move(before, reach), structure.move(after, reach))
+        return structure.move(after - before, reach) <= TURN * largest
 
     # --- yielding, slackening, tightening ------------------------------------------------------------
 

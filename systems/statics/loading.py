@@ -180,7 +180,7 @@ class Loading:
             self._relax(min(1.0, critical.t + BEYOND), mode, beyond if plastic else None)
             self._note_jump(beyond, critical, mode)
         change = path.structure.gather(self.point.displacement - critical.displacement)
-        if path.structure.move(change, critical.response.length) < STALLED:
+        if path.structure.move(change, critical.response.reach) < STALLED:
             self.stalls += 1
         if self.stalls > MOST_STALLS:
             self._leap()

@@ -102,7 +102,7 @@ class _Search:
         path.reference = float(np.linalg.norm(tangent.rate))
         found, increment, side = [(point, tangent)], FIRST, self.beyond(point)
         while side != 0.0 and len(found) < points:
-            largest = detail / path.structure.move(tangent.rate, point.response.length) * path.stretch(tangent)
+            largest = detail / path.structure.move(tangent.rate, point.response.reach) * path.stretch(tangent)
             step = path.advance(point, tangent, min(largest, increment * largest))
             if step is None:
                 return found, False

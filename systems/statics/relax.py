@@ -52,7 +52,7 @@ def relax(path: Path, start: Point, nudge: Array | None = None) -> Relaxed:
             continue
         if penalty == 0.0:
             penalty = (
-                max(structure.move(residual / structure.weight, point.response.length), 1e-9) / LARGEST_MOVE
+                max(structure.move(residual / structure.weight, point.response.reach), 1e-9) / LARGEST_MOVE
             )
         crept = _creep(path, point, residual, penalty)
         if crept is None:
@@ -77,18 +77,18 @@ def _way_down(path: Path, point: Point) -> Array:
 
 def _moved(path: Path, point: Point, direction: Array, size: float) -> Point:
     structure = path.structure
-    share = size / structure.move(direction, point.response.length)
+    share = size / structure.move(direction, point.response.reach)
     displacement = point.displacement + structure.spread(share * direction)
     return path.after(point, displacement, point.t)
 
 
 def _creep(path: Path, point: Point, residual: Array, penalty: float) -> tuple[Point, float] | None:
     """One implicit Euler step of length 1/penalty, and the penalty for the next; shorter if it fails."""
-    structure, length = path.structure, point.response.length
+    structure, reach = path.structure, point.response.reach
     while penalty < LARGEST_PENALTY:
         displacement = implicit_step(path, point, residual, penalty)
         if displacement is not None:
-            move = structure.move(structure.gather(displacement - point.displacement), length)
+            move = structure.move(structure.gather(displacement - point.displacement), reach)
             if move <= LARGEST_MOVE:
                 shorter = 4.0 if move < 0.25 * LARGEST_MOVE else 1.0 if move > 0.5 * LARGEST_MOVE else 2.0
                 return path.after(point, displacement, point.t), penalty / shorter
@@ -120,6 +120,6 @@ def implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> 
         step = factor.solve(pull)
         before, share, soft = size, 1.0, response.soft
         moved = moved + step
-        if not structure.move(moved, point.response.length) <= 4.0 * LARGEST_MOVE:
+        if not structure.move(moved, point.response.reach) <= 4.0 * LARGEST_MOVE:
             return None
     return None

@@ -54,6 +54,17 @@ def test_a_braced_square_bears_like_the_truss_without_its_slack_diagonal() -> No
     assert state.elastic_energy == pytest.approx(alone.elastic_energy, rel=1e-10)
 
 
+@pytest.mark.parametrize("sideways", [True, False])
+def test_a_slack_cable_may_pass_its_support_and_hold_from_the_other_side(sideways: bool) -> None:
+    """Pushed exactly towards it: on the way the cable shrinks to a point and turns over."""
+    pushed = particle("B", 2, 0, fixed=[False, sideways], force=[-10.0, 0.0])
+    cable = rod("A", "B", tension_only=True, stiffness=1000.0)
+    state = settle(models.load(model([particle("A", 0, 0, **HELD), pushed], [cable]))).final
+    assert state.status == "equilibrium"
+    assert state.axial_force == pytest.approx([10.0], rel=1e-9)
+    assert state.displacement[1] == pytest.approx([-4.0 - 2.0 * 10.0 / 1000.0, 0.0], rel=1e-9, abs=1e-9)
+
+
 def test_reversing_the_push_swaps_the_diagonals() -> None:
     there, back = settle(models.load(braced()), (1.0, -1.0)).states
     assert (there.axial_force[3] > 0.0, there.axial_force[4]) == (True, 0.0)

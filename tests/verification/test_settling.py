@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 from typing import Any
@@ -16,6 +17,7 @@ from components.model import Model
 from game import Session, models
 from game.cli import main
 from systems.statics.events import Event
+from systems.statics.follow import Path
 from systems.statics.settle import Settlement, StaticState, settle
 from tests.reference import closed_forms, statics
 from tests.reference import models as trusses
@@ -220,6 +222,18 @@ def test_collapse_load_and_motion_against_the_theorems_of_plasticity(seed: int) 
     assert (rates[flows] * np.sign(force[flows]) > -1e-6).all()
     power = limit * float((model.particles.force * motion).sum())
     assert power == pytest.approx(float(np.abs(rates * force).sum()), rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", [8, 65])
+def test_increments_that_land_on_another_branch_do_not_make_the_next_ones_tiny(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """These took 851 and 445 while the forces on that branch told where an increment should have ended."""
+    count = itertools.count()
+    attempt = Path.attempt
+    monkeypatch.setattr(Path, "attempt", lambda *given: (next(count), attempt(*given))[1])
+    settle(models.load(plastic_truss(seed)), [0.5, 1.0, 1.5, 0.0])
+    assert next(count) < 300
 
 
 JUST_BEFORE = 1 - 1e-12  # of a load
