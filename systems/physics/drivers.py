@@ -16,6 +16,7 @@ _IMPLICIT = "systems.physics.implicit"
 _FIXED_STEPS = "systems.physics.fixed_steps"
 
 _CHECKS = (f"{_FIXED_STEPS}:is_check_due", f"{_FIXED_STEPS}:steps_to_check")
+_PLAIN = (*_CHECKS, f"{_FIXED_STEPS}:push")
 _CONTROLLED = (
     *_CHECKS,
     *(
@@ -45,7 +46,7 @@ class VelocityVerlet(Integrator):
     """
 
     name = "physics.velocity_verlet"
-    parts = _CHECKS
+    parts = _PLAIN
     begins = f"{_FIXED_STEPS}:verlet_begins"
     ends = f"{_FIXED_STEPS}:verlet_ends"
     order: ClassVar[int] = 2
@@ -65,7 +66,7 @@ class SemiImplicitEuler(Integrator):
 
     name = "physics.semi_implicit_euler"
     guard = 2.0
-    parts = _CHECKS
+    parts = _PLAIN
     begins = f"{_FIXED_STEPS}:euler_begins"
     ends = f"{_FIXED_STEPS}:euler_ends"
     order: ClassVar[int] = 1
@@ -83,7 +84,7 @@ class ThesisTaylor(Integrator):
     """
 
     name = "physics.taylor2"
-    parts = _CHECKS
+    parts = _PLAIN
     begins = f"{_FIXED_STEPS}:taylor2_begins"
     ends = f"{_FIXED_STEPS}:taylor2_ends"
     order: ClassVar[int] = 1

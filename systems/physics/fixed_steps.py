@@ -103,6 +103,14 @@ def euler_ends(i, dt, displacement, velocity, force, resisting, predicted, *colu
     """Nothing is left to do."""
 
 
+def push(dt, velocity, force, resisting, predicted, *columns):
+    """The velocities to which the present forces lead in a step."""
+    for i in range(velocity.shape[0]):
+        for d in range(2):
+            total = force[i, d] + resisting[i, d] if RATES else force[i, d]
+            predicted[i, d] = velocity[i, d] + dt * total * particles_mobility[i, d]
+
+
 def is_check_due(total, age):
     """Whether a state is checked: at every multiple of CHECK_INTERVAL, before it at powers of 2."""
     return total % CHECK_INTERVAL == 0 or (age < CHECK_INTERVAL and age & (age - 1) == 0)
@@ -196,7 +204,8 @@ def advance(
             measure(displacement, velocity, force, resisting, measures, *columns)
             ahead = 0.0
             if LOADS:
-                ahead = 1000.0 * dt * abs(load_power(time, velocity, *columns))
+                push(dt, velocity, force, resisting, predicted, *columns)
+                ahead = 1000.0 * dt * abs(load_power(time, predicted, *columns))
             reason = judge(measures, account, dt, SHADOW, ahead, time >= loads_end)
             if reason != 0:
                 return taken, reason

@@ -123,6 +123,18 @@ def test_the_work_of_a_load_that_jumps_within_the_first_step(integrator: str, sh
     assert session.energy.work == pytest.approx(1000.0 * session.loads[0].force[0] * moved, rel=1e-9)
 
 
+@pytest.mark.parametrize("integrator", ["velocity_verlet", "semi_implicit_euler", "taylor2"])
+def test_a_load_may_grow_from_nothing_while_everything_is_at_rest(integrator: str) -> None:
+    """After the first step of Euler and Taylor the load acts, but has moved nothing yet: no alarm."""
+    document = oscillators()
+    document["settings"] = {"integrator": integrator, "time_step": 3.1e-5}
+    document["particles"], document["rods"] = document["particles"][6:8], document["rods"][3:4]
+    growing = {"kind": "ramp", "start": 0.0, "duration": 0.01}
+    document["loads"] = [document["loads"][3] | {"history": growing}]
+    session = Session.open(document)
+    assert session.run(steps=100) == "time reached", session.message
+
+
 def test_the_steady_response_to_a_sine(session: Session) -> None:
     """Amplitude 1/√((1 − r²)² + (2ξr)²), phase atan(2ξr / (1 − r²)) behind the load."""
     r = 2.0 * math.pi * FREQUENCY / OMEGA
