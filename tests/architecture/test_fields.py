@@ -94,7 +94,7 @@ def rows(kind: type[Handle]) -> Iterator[str]:
 def default(field: Field[Any]) -> str:
     if field.role is Role.DERIVED or field.references or field.name in ("name", "position"):
         return ""
-    value = field.loaded(field.allocate(1)[0])
+    value = field.loaded(field.allocate(1), 0)
     if value is None:
         return field.absent
     return (
