@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
 from game import Session
 from systems.physics.spectrum import spectrum
@@ -47,3 +48,25 @@ def _error(document: Document, duration: float, expected: np.ndarray, **choices:
     session = Session.open(document | {"settings": document["settings"] | choices})
     assert session.run(time=duration) in ("time reached", "at rest")
     return float(np.hypot(*(session.particles.displacement - expected).T).max())
+
+
+@settings(max_examples=6)
+@given(trusses(full=True, damped=True), decimals(5.0, 40.0), st.sampled_from([0.4, 0.1]))
+def test_the_shown_error_of_verlet_is_within_a_factor_3_of_the_true_one(
+    document: Document, turns: float, share: float
+) -> None:
+    """Where some ten steps or more lead to the end; after fewer, as long as is stable, it was up to 5 times."""
+    document = document | {"settings": {"collisions": False, "integrator": "velocity_verlet"}}
+    duration = turns / _fastest(document)
+    expected, largest = follow(document, duration)
+    assume(_shortest(document, expected) > SHORTEST)
+    session = Session.open(document)
+    session.simulation.advance(0)
+    step = share * session.simulation.stable_step
+    session = Session.open(document | {"settings": document["settings"] | {"time_step": step}})
+    session.run(time=duration)
+    true = float(np.hypot(*(session.particles.displacement - expected).T).max())
+    assume(true > 1e-11 * largest)
+    found = session.desk.assessment.error()
+    assert found is not None
+    assert 1 / 3 < found.displacement / true < 3.0
