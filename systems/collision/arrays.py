@@ -129,6 +129,30 @@ ACTIVE, STATE, CHOSEN = 0, 1, 2  # rows of marks: contacts of a projection; how 
 DIRECT = 48  # contacts up to which a projection is solved directly; more: by sweeps
 
 
+class Pile(NamedTuple):
+    """Discs that take steps, the pairs of them that are near, and the contacts of the present step; see pile/kernels.py.
+
+    motion: of each disc, shape (4, n, 2); travel: likewise, shape (4, n). pairs: two discs each, ascending, shape
+    (p, 2); forces: in them in the step before, N, shape (p,). chosen: which pairs are contacts; order: the same, in
+    the order in which sweeps go through the contacts; shape (p,) both. ends: the two discs of a contact, one twice
+    where the other is held, shape (p, 2). contacts: shape (p, PILE_CONTACT_WIDTH). scale: root of their compliances,
+    1/√kg, shape (p,).
+    """
+
+    motion: Floats
+    travel: Floats
+    pairs: Integers
+    forces: Floats
+    chosen: Integers
+    order: Integers
+    ends: NDArray[np.uint32]
+    contacts: Floats
+    scale: Floats
+
+
+PILE_CONTACT_WIDTH = 8
+
+
 class Report(NamedTuple):
     """Impacts that nobody has fetched yet.
 
@@ -170,7 +194,8 @@ CALM = 10  # steps one after the other in which nothing in the pile moved fast
 WORK = 11  # contacts in the events of late
 DISCS = 12  # how many there are
 PATIENCE = 13  # calm steps after which a pile seeks its equilibrium
-COUNTS = 14
+LISTED = 14  # pairs in the list of a pile; −1: they must be listed anew
+COUNTS = 15
 CROWD_COUNTS = (STEPPING, CALM, WORK, PATIENCE)  # what a pile goes on from
 CROWD_NUMBERS = (STEP_END, WORK_SINCE, LOSS)
 

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from components.obstacles import NO_OBSTACLES, Obstacles
 from components.paths import Paths
 from systems.collision import arrays
-from systems.collision.arrays import Floats, Grid, Group, Integers, Queue, Reason, Report, Ties
+from systems.collision.arrays import Floats, Grid, Group, Integers, Pile, Queue, Reason, Report, Ties
 from systems.collision.flight import kernels as flight
 from systems.collision.pile.kernels import STEP_SHARE
 from systems.collision.window import kernels as window
@@ -23,6 +23,7 @@ from systems.near import nearest
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
 REPORT = 4096  # impacts reported at a time
+MORE_PATIENCE = 64  # calm steps from one search for the equilibrium of a pile to the next
 REST_HEIGHT = 1e-9  # of the radius; larger: bouncing ends sooner
 
 
@@ -106,7 +107,7 @@ class Discs:
         self.numbers[arrays.RESTITUTION] = self.rows[:, arrays.BOUNCE].min(initial=restitution)
         self.numbers[arrays.REST_HEIGHT] = rest_height
         self.counts = np.zeros(arrays.COUNTS, dtype=np.int64)
-        self.counts[arrays.RENEW] = 1
+        self.counts[arrays.RENEW], self.counts[arrays.LISTED] = 1, arrays.NONE
         self.counts[arrays.DISCS] = self.count
         self.numbers[arrays.SMALLEST] = self.rows[: self.count, arrays.RADIUS].min(initial=np.inf)
         self.numbers[arrays.STEP_LENGTH] = STEP_SHARE * self._fall_time()
@@ -115,6 +116,7 @@ class Discs:
         self.queue = _queue(2 * n + 64)
         self.grid = _grid(n, 2)
         self.group = room_for(n, 4 * n + 64)
+        self.pile = _pile(n, len(self.group.links))
         self.report = _report(max(REPORT, len(self.group.links)))
         self.ties = _ties(n, joined, 2 * len(self.group.links), self.counts)
 
@@ -157,7 +159,9 @@ class Discs:
         )
         numbers, counts = self.numbers, self.counts
         if counts[arrays.STEPPING]:
-            return Reason(self.take_steps(until, most_events, rows, grid, ties, group, report, numbers, counts))
+            return Reason(
+                self.take_steps(until, most_events, rows, grid, ties, self.pile, report, numbers, counts)
+            )
         if counts[arrays.RENEW]:
             reason = Reason(self.open_window(rows, grid, ties, queue, numbers, counts))
             if reason is not Reason.DONE:
@@ -171,24 +175,38 @@ class Discs:
             self.queue = _queue(2 * len(self.queue.times))
         elif reason is Reason.GRID_FULL:
             self.grid = _grid(n, int(self.counts[arrays.LAYERS]) + 1)
+            self.counts[arrays.LISTED] = arrays.NONE
         elif reason is Reason.GROUP_FULL:
             size = 2 * len(self.group.links)
-            self.group = room_for(n, size)
+            self.group, self.pile = room_for(n, size), _pile(n, size)
+            self.counts[arrays.LISTED] = arrays.NONE
             self.report = _report(max(REPORT, size))
             self.ties = _more_lasting(self.ties, 2 * size, self.counts)
         elif reason is Reason.SETTLE:
             self._settle()
 
     def _settle(self) -> None:
-        """Put the calm pile into its equilibrium; if it is not found, the pile goes on from where the search got."""
-        from systems.collision.repose import Pile
+        """Put the calm pile into its equilibrium if that is near; if not, it goes on for a while."""
+        from systems.collision.repose import Resting
 
         weight, pull = self._columns(arrays.WX), self._columns(arrays.GX)
         place = self._columns(arrays.OX) + self._columns(arrays.UX)
         radius = self.rows[: self.count, arrays.RADIUS]
-        speed = np.hypot(*self._columns(arrays.VX).T) / radius
-        motion = float(speed.max() * self.numbers[arrays.STEP_LENGTH])
-        end = Pile(place, radius, weight, pull, self._may_collide, self._obstacles, motion).repose()
+        owners, entries = self._lasting_entries()
+        pushing = np.sort(np.column_stack([owners, self.ties.lasting[entries, arrays.OTHER]]), axis=1)
+        end = Resting(
+            place,
+            radius,
+            weight,
+            pull,
+            self._may_collide,
+            self._obstacles,
+            pushing,
+            self.ties.forces[entries],
+        ).repose()
+        if end is None:
+            self.counts[arrays.PATIENCE] = self.counts[arrays.CALM] + MORE_PATIENCE
+            return
         lying, free = self.rows[end.discs], weight[end.discs] > 0.0
         moving = lying[:, arrays.VX : arrays.VX + 2] ** 2 / 2.0
         fallen = lying[:, arrays.GX : arrays.GX + 2] * end.displacement[end.discs]
@@ -196,9 +214,6 @@ class Discs:
         self._columns(arrays.UX)[...] += end.displacement
         self.rows[end.discs, arrays.VX : arrays.AY + 1] = 0.0
         self.numbers[arrays.STEP_END] = self.now
-        if not end.found:
-            self.counts[arrays.PATIENCE] += self.counts[arrays.CALM]
-            return
         self.ties = _more_lasting(_without_lasting(self.ties, self.counts), len(self.ties.lasting), self.counts)
         both = np.concatenate([end.pairs, end.pairs[:, ::-1]])
         own = self.rows[both[:, 0], arrays.WX : arrays.WY + 1].any(axis=1)
@@ -237,7 +252,7 @@ class Discs:
         counted = len(arrays.CROWD_COUNTS)
         self.counts[list(arrays.CROWD_COUNTS)] = paths.crowd[:counted]
         self.numbers[list(arrays.CROWD_NUMBERS)] = paths.crowd[counted:]
-        self.counts[arrays.RENEW] = 1
+        self.counts[arrays.RENEW], self.counts[arrays.LISTED] = 1, arrays.NONE
         self._note_lasting(paths.contacts, paths.forces)
 
     def _note_lasting(self, pairs: Integers, forces: Floats) -> None:
@@ -365,6 +380,21 @@ def room_for(n: int, contacts: int) -> Group:
         noise=np.zeros(1),
         marks=np.zeros((3, contacts), dtype=np.int64),
         matrix=np.zeros((arrays.DIRECT + 1, arrays.DIRECT)),
+    )
+
+
+def _pile(n: int, pairs: int) -> Pile:
+    """Room for so many pairs."""
+    return Pile(
+        motion=np.zeros((4, n, 2)),
+        travel=np.zeros((4, n)),
+        pairs=np.zeros((pairs, 2), dtype=np.int64),
+        forces=np.zeros(pairs),
+        chosen=np.zeros(pairs, dtype=np.int64),
+        order=np.zeros(pairs, dtype=np.int64),
+        ends=np.zeros((pairs, 2), dtype=np.uint32),
+        contacts=np.zeros((pairs, arrays.PILE_CONTACT_WIDTH)),
+        scale=np.zeros(pairs),
     )
 
 

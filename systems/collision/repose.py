@@ -1,5 +1,8 @@
 """Repose: the equilibrium near by in which a pile ends that hardly moves any more.
 
+What is sought is where the motion ends, not a short cut to it: an equilibrium counts only where no disc is farther
+from it than a fortieth of its radius; from farther away, the pile goes on moving.
+
 It is a least of the potential energy −f·x under gaps ≥ 0. Since discs are convex, a stable one has as many contacts
 as freedoms, and these alone determine it. It is found by the interior-point method: gaps s and forces λ follow
     f + Nᵀ λ = 0,   s = gap(x),   λ s = μ,   μ → 0
@@ -20,35 +23,29 @@ from scipy.sparse.linalg import splu
 from components.obstacles import Obstacles
 from systems.near import Floats, Rows, near_pairs, nearest
 
-AROUND = 0.25  # of its radius around each disc, in which its neighbours are listed
-STRIDE = 0.1  # of its radius, by which a disc moves in an iteration at most
-FARTHEST = 2.0  # radii by which a disc moves in all at most
+AROUND = 0.1  # of its radius around each disc, in which its neighbours are listed, and iterates are sought
+FARTHEST = 0.025  # of its radius: an equilibrium to which a disc would go farther is not near
 FREE_STRIDE = 1.0  # radii by which inertia lets a disc go in an iteration that nothing holds
-LEAST_BARRIER, FIRST_BARRIER = (
-    1e-6,
-    1e-2,
-)  # μ at first, in weight × radius of the lighter and the smaller of a pair
-FIRST_GAP = 1e-2  # of the radius of the smaller disc of a pair, at first at least, times μ
-BARRIER_SHARE = 1e-2  # μ at least, of the radii by which discs still move, until they move
-NEARLY = 1e-2  # of their radii or less
-QUICK, SLOW = 0.2, 0.8  # what is left of μ after an iteration that got far, and after others
+FIRST_BARRIER = 1e-5  # μ at first, in weight × radius of the lighter and the smaller of a pair
+QUICK, SLOW = 0.03, 0.8  # what is left of μ after an iteration that got far, and after others
 FAR = 0.5  # of the way that Newton's method wanted
 TO_EDGE = 0.995  # of the way to where a gap or a force vanishes
 STILL, BALANCED = 1e-10, 5e-10  # radii that discs move at the end, and what is unbalanced of the largest weight
 CLOSED = 1e-13  # μ at the end
-MOST_ITERATIONS, MOST_OF_ALL = 150, 300  # until discs nearly rest, and until they do
+SOON = 10  # iterations after which discs move little, or no equilibrium is near
+LITTLE = 1e-2  # radii
+MOST_ITERATIONS = 60  # 10 to 30 are usual
 SYMMETRIC = {"SymmetricMode": True}
 
 
 @dataclass(frozen=True)
 class Repose:
-    """The equilibrium of a pile, or how far it got on the way there.
+    """The equilibrium of a pile.
 
-    found: if it is the equilibrium. discs: that lie in the pile, shape (k,). displacement: of all to there, shape
-    (n, 2), m. pairs: that push each other, shape (c, 2). forces: how strongly, shape (c,), N.
+    discs: that lie in the pile, shape (k,). displacement: of all to there, shape (n, 2), m. pairs: that push each
+    other, shape (c, 2). forces: how strongly, shape (c,), N.
     """
 
-    found: bool
     discs: Rows
     displacement: Floats
     pairs: Rows
@@ -65,13 +62,13 @@ class _Gaps:
     scale: Floats
 
 
-class Pile:
+class Resting:
     """Discs that lie on one another, on what is held and on obstacles.
 
     place: centres, shape (n, 2), m. radius: shape (n,), m. inverse_mass: of each direction, shape (n, 2), 1/kg,
     0 where it is held. pull: acceleration without contacts, shape (n, 2), m/s². may_collide: tells which of the
-    pairs it is given do, in which obstacles count on after the discs. motion: how many radii discs still move in a
-    step at most: the less, the nearer is the equilibrium.
+    pairs it is given do, in which obstacles count on after the discs. pushing: pairs of which
+    it is known that they push, the lower number first, shape (c, 2); forces: how strongly, shape (c,), N.
     """
 
     def __init__(
@@ -82,16 +79,18 @@ class Pile:
         pull: Floats,
         may_collide: Callable[[Rows], NDArray[np.bool_]],
         obstacles: Obstacles,
-        motion: float,
+        pushing: Rows,
+        forces: Floats,
     ) -> None:
         self._start, self._place, self._radius = place, place.copy(), radius
         self._may_collide, self._obstacles = may_collide, obstacles
         count = len(place)
         self._moves: NDArray[np.bool_] = np.zeros(count + len(obstacles), dtype=bool)
-        self._moves[:count] = (inverse_mass > 0.0).any(axis=1)
-        near = np.zeros_like(self._moves)
-        near[self._near()] = True
-        self._moves &= near  # what flies alone does not lie in the pile
+        self._moves[pushing] = True  # what nothing pushes flies, and does not lie in the pile
+        self._moves[:count] &= (inverse_mass > 0.0).any(axis=1)
+        self._moves[count:] = False
+        self._flies = np.zeros_like(self._moves)
+        self._flies[:count] = (inverse_mass > 0.0).any(axis=1) & ~self._moves[:count]
         self._free = (inverse_mass > 0.0) & self._moves[:count, None]
         self._unknown = np.full((len(self._moves), 2), -1)
         self._unknown[:count][self._free] = np.arange(self._free.sum())
@@ -103,70 +102,61 @@ class Pile:
         self._size = np.append(radius, everywhere)
         inertia = (self._weight[:count] / (FREE_STRIDE * radius))[:, None]
         self._inertia = np.broadcast_to(inertia, place.shape)[self._free]
-        self._barrier = min(max(motion, LEAST_BARRIER), FIRST_BARRIER)
-        self._gaps = self._listed(None, self._barrier)
+        self._gaps = self._listed(pushing, forces)
 
     def _near(self) -> Rows:
         pairs = near_pairs(self._place, (1.0 + AROUND) * self._radius, self._obstacles)
         return pairs[self._moves[pairs].any(axis=1) & self._may_collide(pairs)]
 
-    def repose(self) -> Repose:
-        """The equilibrium; or, if it is not found soon and near, places of less energy on the way there."""
-        found = len(self._force) > 0 and self._iterate()
-        if not found and not self._force @ (self._place - self._start)[self._free] > 0.0:
-            self._place = self._start
+    def repose(self) -> Repose | None:
+        """The equilibrium, if it is near and rests on nothing that flies by."""
+        if len(self._force) == 0 or not self._iterate():
+            return None
         pairs, slack, force = self._gaps.pairs, self._gaps.slack, self._gaps.force
         weight, size = self._weight[pairs].min(axis=1), self._size[pairs].min(axis=1)
         pushing = force / weight > slack / size
+        if self._flies[pairs[pushing]].any():
+            return None
         displacement = self._place - self._start
-        return Repose(found, np.flatnonzero(self._moves), displacement, pairs[pushing], force[pushing])
+        return Repose(np.flatnonzero(self._moves), displacement, pairs[pushing], force[pushing])
 
     def _iterate(self) -> bool:
-        """Newton's method as far as it leads; True if to the equilibrium."""
-        barrier, listed = self._barrier, self._place
-        for turn in range(MOST_OF_ALL):
+        """Newton's method as far as it leads; True if to an equilibrium near by."""
+        barrier, gaps = FIRST_BARRIER, self._gaps
+        for turn in range(MOST_ITERATIONS):
             try:
                 motion, opening, change, left = self._newton(barrier)
             except RuntimeError:  # singular
                 return False
-            stride, gaps = self._farthest(motion), self._gaps
-            forward = min(_share(gaps.slack, opening), STRIDE / stride if stride > 0.0 else 1.0)
-            stronger = _share(gaps.force, change)
-            place = self._place + forward * motion
-            late = turn >= MOST_ITERATIONS and stride > NEARLY
-            if late or not self._farthest(place - self._start) <= FARTHEST:
+            forward, stronger = _share(gaps.slack, opening), _share(gaps.force, change)
+            self._place = self._place + forward * motion
+            astray = turn >= SOON and self._farthest(motion) > LITTLE
+            if astray or not self._farthest(self._place - self._start) <= AROUND:
                 return False
-            self._place = place
             gaps.slack += forward * opening
             gaps.force += stronger * change
             present = float((gaps.force * gaps.slack / gaps.scale).mean())
-            if stride <= STILL and left <= BALANCED and present <= CLOSED:
-                return True
+            if self._farthest(motion) <= STILL and left <= BALANCED and present <= CLOSED:
+                return self._farthest(self._place - self._start) <= FARTHEST
             barrier = max((QUICK if min(forward, stronger) > FAR else SLOW) * present, 0.1 * CLOSED)
-            if stride > NEARLY:
-                barrier = max(barrier, BARRIER_SHARE * min(stride, 1.0))
-            if self._farthest(place - listed) > 0.5 * AROUND:
-                self._gaps, listed = self._listed(gaps, barrier), place
         return False
 
     def _farthest(self, motion: Floats) -> float:
         """The longest of displacements, in the radius of its disc."""
         return float((np.abs(motion).max(axis=1) / self._radius).max())
 
-    def _listed(self, known: _Gaps | None, barrier: float) -> _Gaps:
-        """The pairs that are near now, with the gaps and forces of those that are known."""
+    def _listed(self, pushing: Rows, forces: Floats) -> _Gaps:
+        """The pairs that are near, with the forces of those that push, and such gaps that λ s = μ where they are small."""
         pairs = self._near()
         size = self._size[pairs].min(axis=1)
         scale = self._weight[pairs].min(axis=1) * size
+        known, count = np.zeros(len(pairs)), len(self._moves)
+        _, here, there = np.intersect1d(pairs @ [count, 1], pushing @ [count, 1], return_indices=True)
+        known[here] = forces[there]
+        force = np.maximum(known, np.sqrt(FIRST_BARRIER) * scale / size)
         gap, _ = self._gap(pairs)
-        slack = np.maximum(gap, FIRST_GAP * barrier * size)
-        force = barrier * scale / slack
-        if known is not None:
-            count = len(self._moves)
-            keys, old = pairs @ [count, 1], known.pairs @ [count, 1]
-            _, here, there = np.intersect1d(keys, old, assume_unique=True, return_indices=True)
-            slack[here], force[here] = known.slack[there], known.force[there]
-        return _Gaps(pairs, slack, force, scale)
+        slack = np.maximum(gap, FIRST_BARRIER * scale / force)
+        return _Gaps(pairs, slack, np.where(known > 0.0, force, FIRST_BARRIER * scale / slack), scale)
 
     def _gap(self, pairs: Rows) -> tuple[Floats, Floats]:
         """Gaps, and unit vectors from the first of each pair to what is nearest of the second."""

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from systems.collision.arrays import Reason
 from systems.collision.discs import Discs
 from systems.collision.overlaps import part
+from systems.collision.pile.kernels import begin_steps
 from tests.reference.scenes_of_discs import (
     GRAVITY,
     Scene,
@@ -70,6 +71,41 @@ def test_a_pile_at_rest_is_in_equilibrium(count: int, columns: int) -> None:
     assert forces[count:].sum(axis=0) == pytest.approx([0, -GRAVITY * mass.sum()], rel=1e-9, abs=1e-6)
     fallen = GRAVITY * mass @ discs.state_at(6.0)[0][:count, 1]
     assert discs.lost_at(6.0) == pytest.approx(-fallen, rel=1e-6)
+
+
+def test_a_pile_comes_to_rest_without_a_jump() -> None:
+    """In 2 ms no disc goes farther than its speed takes it, but for the last fortieth of a radius to where it lies."""
+    scene, interval = stacked(120, 10), 2e-3
+    discs = Discs(**scene, acceleration=DOWN, restitution=0.3)
+    before, speed = discs.state_at(0.0)[0], 0.0
+    for k in range(1, 3000):
+        discs.advance(k * interval, MOST_EVENTS)
+        after, velocity = discs.state_at(k * interval)
+        fastest = np.hypot(*velocity.T).max()
+        moved = np.hypot(*(after - before).T).max()
+        assert moved <= interval * (max(speed, fastest) + 2.0 * GRAVITY * interval) * 2.0 + 0.04 * RADIUS
+        before, speed = after, fastest
+        if discs.at_rest:
+            break
+    assert discs.at_rest
+
+
+def test_discs_that_fly_apart_in_a_step_have_been_pushed() -> None:
+    """Two rows of a crowd meet head-on: each pair bounces once, and parts at e times the speed."""
+    rows, speed, restitution = 30, 3.0, 0.3
+    y = 3.2 * RADIUS * np.arange(rows)
+    x = np.repeat([0.0, 2.2 * RADIUS], rows)
+    scene = {
+        "position": np.column_stack([x, np.tile(y, 2)]),
+        "velocity": np.repeat([[speed, 0.0], [-speed, 0.0]], rows, axis=0),
+        "radius": np.full(2 * rows, RADIUS),
+        "inverse_mass": np.ones((2 * rows, 2)),
+    }
+    discs = Discs(**scene, acceleration=DOWN, restitution=restitution)
+    begin_steps.py_func(discs.numbers, discs.counts)
+    _, impacts = discs.advance(0.1)
+    assert len(impacts.time) == rows
+    assert discs.state_at(0.1)[1][:, 0] == pytest.approx(-restitution * scene["velocity"][:, 0])
 
 
 def test_what_spills_over_falls_and_the_rest_lies_still() -> None:

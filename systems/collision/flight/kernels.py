@@ -74,10 +74,19 @@ from systems.collision.gap.kernels import (
     rest_speed,
     touch_speed,
 )
-from systems.collision.grid.kernels import enclose, enter, layer_of, leave, level_of, neighbours, place_box
+from systems.collision.grid.kernels import (
+    enclose,
+    enter,
+    layer_of,
+    leave,
+    level_of,
+    neighbours,
+    place_box,
+    sort,
+)
 from systems.collision.impact.kernels import respond
 from systems.collision.kernels import compiled, inlined
-from systems.collision.pile.kernels import begin_steps, crowded, step
+from systems.collision.pile.kernels import begin_steps, crowded, note_pushes, step
 from systems.collision.projection.kernels import compliance, opening_rate
 from systems.collision.queue.kernels import drop_first, is_void
 from systems.collision.window.kernels import expect, is_joined
@@ -149,21 +158,24 @@ def _happen(discs, grid, ties, queue, group, report, numbers, counts):
 
 
 @inlined
-def take_steps(until, most_steps, discs, grid, ties, group, report, numbers, counts):
+def take_steps(until, most_steps, discs, grid, ties, pile, report, numbers, counts):
     """Let a pile take its steps, at most `most_steps`, until it is at rest or dissolved. Returns a Reason."""
-    last = counts[EVENTS] + most_steps
-    while counts[STEPPING]:
+    last, reason = counts[EVENTS] + most_steps, GO_ON
+    while counts[STEPPING] and reason == GO_ON:
         if numbers[STEP_END] > until:
             numbers[NOW] = max(numbers[NOW], until)
-            return DONE
-        if counts[EVENTS] >= last:
-            return BUSY
-        numbers[NOW] = numbers[STEP_END]
-        reason = step(discs, grid, ties, group, report, numbers, counts)
-        if reason != DONE:
-            return reason
-        counts[EVENTS] += 1
-    return GO_ON
+            reason = DONE
+        elif counts[EVENTS] >= last:
+            reason = BUSY
+        else:
+            numbers[NOW] = numbers[STEP_END]
+            reason = step(discs, grid, ties, pile, report, numbers, counts)
+            if reason == DONE:
+                counts[EVENTS] += 1
+                reason = GO_ON
+    if counts[STEPPING]:
+        note_pushes(discs, ties, pile, counts)
+    return reason
 
 
 # --- who takes part -----------------------------------------------------------------------------------------
@@ -231,7 +243,7 @@ def _gather(i, j, discs, grid, ties, group, numbers, counts):
             count, touching = _gather_lasting(m, count, touching, discs, ties, group, now)
             left, bottom, right, top = place_box(a, discs, now)
             near = neighbours(a, left, bottom, right, top, grid, counts[LAYERS], numbers[CELL])
-            _sort(grid.found, near)
+            sort(grid.found, near)
             for k in range(near):
                 b = grid.found[k]
                 met = i != j and m < 2 and group.place[b] == 1 - m
@@ -242,17 +254,6 @@ def _gather(i, j, discs, grid, ties, group, numbers, counts):
                     touching = _link(a, b, 0.0, touching, discs, group, now)
         m += 1
     return count, touching
-
-
-@compiled
-def _sort(found, count):
-    """Bring a few numbers into ascending order: a grid made anew may find them in another one."""
-    for k in range(1, count):
-        value = found[k]
-        while k > 0 and found[k - 1] > value:
-            found[k] = found[k - 1]
-            k -= 1
-        found[k] = value
 
 
 @compiled

@@ -197,3 +197,14 @@ def _look_into(cx, cy, kind, inverse, i, left, bottom, right, top, count, grid):
                 count += 1
         entry = grid.after[entry]
     return count
+
+
+@compiled
+def sort(found, count):
+    """Bring a few numbers into ascending order: a grid made anew may find them in another one."""
+    for k in range(1, count):
+        value = found[k]
+        while k > 0 and found[k - 1] > value:
+            found[k] = found[k - 1]
+            k -= 1
+        found[k] = value
