@@ -310,7 +310,7 @@ class Simulation:
     def _stepper(self) -> Program | Flight:
         """What takes the steps: the program, or while islands sleep one of the others."""
         program = self.program
-        if not isinstance(program, Program):
+        if not isinstance(program, Program) or not self._sleep.any_asleep:
             return program
         if self._sleep.disturb(program):
             self._limit_step_anew()
@@ -370,7 +370,7 @@ class Simulation:
     @property
     def _rods_that_limit(self) -> NDArray[np.bool_] | None:
         """Where the error is controlled those that are awake limit the step; None: all rods do."""
-        if not self._controls_error or not self.model.particles.asleep.any():
+        if not self._controls_error or not self._sleep.any_asleep:
             return None
         awake = (self.model.particles.mobility > 0.0).any(axis=1) & ~self.model.particles.asleep
         return np.asarray(awake[self.model.rods.between].any(axis=1))

@@ -31,6 +31,7 @@ class Sleep:
         self.model = model
         self._asked: tuple[Program, int] | None = None
         self._versions: tuple[int, int] | None = None
+        self._looked_at = -1  # the version of who is asleep that any_asleep is about
         self._parts: dict[Program, ArrangedProgram] = {}
         self._bound: ArrangedProgram | None = None  # to the model as it is
         self._left_out: Mask = np.zeros(0, dtype=bool)  # asleep when it was bound
@@ -46,6 +47,14 @@ class Sleep:
                 self._look_up()
                 self._answer = self._count > 1
         return self._answer
+
+    @property
+    def any_asleep(self) -> bool:
+        """True if any particle is asleep."""
+        version = self.model.particles.version("asleep")
+        if version != self._looked_at:
+            self._looked_at, self._any_asleep = version, bool(self.model.particles.asleep.any())
+        return self._any_asleep
 
     def steps_to_review(self, program: Program) -> int:
         """After how many steps a run is to be reviewed again."""
@@ -76,11 +85,9 @@ class Sleep:
 
     def disturb(self, program: Program) -> bool:
         """Wake the islands that something has struck, all if none may sleep any more; True if any woke."""
-        particles = self.model.particles
-        if not particles.asleep.any():
-            return False
         if not self.may_happen(program):
             return self._wake()
+        particles = self.model.particles
         struck = np.asarray(particles.asleep & particles.velocity.any(axis=1))
         return bool(struck.any()) and self._wake(struck)
 
@@ -124,9 +131,9 @@ class Sleep:
 
     def part(self, program: Program) -> Program:
         """What takes the steps of a program: itself, or while some sleep one of those that are awake."""
-        asleep = self.model.particles.asleep
-        if not asleep.any():
+        if not self.any_asleep:
             return program
+        asleep = self.model.particles.asleep
         part = self._parts.get(program)
         if self._bound is not part or part is None or not np.array_equal(self._left_out, asleep):
             part = self._bound = self._part_without(asleep, program)
