@@ -13,6 +13,8 @@ from systems.physics.islands import Rows
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+_BEYOND = np.errstate(over="ignore", invalid="ignore")  # what is no finite number is not at rest
+
 
 @dataclass(frozen=True)
 class Stillness:
@@ -30,6 +32,7 @@ class Stillness:
     round_off: Array
 
     @classmethod
+    @_BEYOND
     def of(cls, model: Model, unbalanced: Array) -> Stillness:
         """That of the state last observed, by the forces on the particles but those of dampers and drag (kN)."""
         particles, rods = model.particles, model.rods
@@ -44,6 +47,7 @@ class Stillness:
             round_off=np.finfo(float).eps * moved[rods.between].max(axis=1, initial=0.0) / flexibility,
         )
 
+    @_BEYOND
     def at_rest(self, model: Model, of_particle: Rows, of_rod: Rows) -> Mask:
         """Which islands are at rest, given those of the particles and rods."""
         from systems.physics.kernels import (

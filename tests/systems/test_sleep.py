@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 
 from game import Session, models, sleep
 from systems.edit.pull import Hand
+from systems.physics.islands import islands
+from systems.physics.rest import Stillness
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import model, particle, rod
@@ -183,6 +185,19 @@ def test_an_edit_wakes_whom_it_disturbs_and_nobody_else() -> None:
     session.environment.acceleration = (0.0, -9.81)
     session.run(steps=1)
     assert asleep(session) == set()
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("beyond", [np.nan, np.inf, 1e200])
+def test_what_is_beyond_all_numbers_stays_awake_without_a_warning(beyond: float) -> None:
+    """Forces and speeds of a model that is about to be found diverged: of one island; the other rests."""
+    session = Session.open(together(vee("wild", 0.0, 20.0), vee("idle", 10.0, 20.0, force=(0.0, 0.0))))
+    state, of_particle = session.model, islands(session.model)
+    unbalanced = np.zeros((session.particles.count, 2))
+    unbalanced[:3] = state.writable("particles.velocity")[:3] = beyond
+    stillness = Stillness.of(state, unbalanced)
+    rests = stillness.at_rest(state, of_particle, of_particle[state.rods.between].max(axis=1))
+    assert rests[1:].tolist() == [False, True]
 
 
 def test_switched_off_nobody_sleeps_any_more() -> None:
