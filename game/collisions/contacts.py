@@ -16,7 +16,7 @@ from systems.collision.system import Support, contacts_of, support_forces
 from systems.collision.vicinity import Vicinity
 from systems.near import Floats, Rows
 
-HELD = 1e-10  # of the smaller radius, within which particles in contact are kept
+HELD = 1e-13  # of the smaller radius, within which particles in contact are kept
 MOST_TRIES = 60  # of the forces in a step
 
 
@@ -27,28 +27,39 @@ class Contacts:
         self.model = model
         self._near = vicinity
 
-    def step(self, program: Program, before: Snapshot, take: Callable[[], StopReason]) -> StopReason:
-        """One step from a moment before, taken by `take`.
+    def step(
+        self,
+        program: Program,
+        before: Snapshot,
+        take: Callable[[float | None], StopReason],
+        until: float | None,
+    ) -> StopReason:
+        """One step from a moment before, taken by `take`: a whole one, or up to a time (s).
 
         Forces F ≥ 0, constant during the step, are sought by Broyden's method, which begins with the compliance
-        h²/2 Nᵀ M⁻¹ N; contacts whose force is 0 may open.
+        h²/2 Nᵀ M⁻¹ N; contacts whose force is 0 may open. All tries end at the same time: where the error is
+        controlled, other forces would choose another step, and gaps would jump with them.
         """
         contacts = contacts_of(self.model)
         if contacts is None:
             _push(program, self.model, 0.0)
-            return take()
+            return take(until)
         pairs, forces = contacts.contacts, contacts.forces
         start = before.columns["particles.displacement"]
         _, normal = self._near.gaps(pairs, start)
         held = HELD * self._near.size[pairs].min(axis=1)
         inverse: Floats | None = None
         tried: tuple[Floats, Floats] | None = None
-        for _ in range(MOST_TRIES):
+        for turn in range(MOST_TRIES):
+            if turn > 0:
+                before.restore(self.model)
             _push(program, self.model, support_forces(normal, pairs, forces, self.model.particles.count))
-            reason = take()
+            reason = take(until)
             h = self.model.clock.time - before.columns["clock.time"][0]
             if h == 0.0 or reason is StopReason.DIVERGED:
                 return reason
+            if program.driver.controlled:
+                until = self.model.clock.time
             gap, _ = self._near.gaps(pairs, self.model.particles.displacement)
             if not (np.where(forces > 0.0, np.abs(gap), -gap) > held).any():
                 break
@@ -60,7 +71,6 @@ class Contacts:
             forces = np.maximum(forces - inverse @ gap, 0.0)
             if np.array_equal(forces, tried[0]):
                 break
-            before.restore(self.model)
         lasts = (forces > 0.0) | (gap <= held)
         paths = Paths(NO_MOTION, pairs[lasts], forces[lasts], NO_CROWD)
         self.model.writable("clock.paths")[0] = paths

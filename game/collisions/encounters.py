@@ -70,12 +70,13 @@ class Encounters:
         return clock.steps - first, StopReason.DONE
 
     def land(self, program: Program, target: float) -> StopReason:
-        """Take the last, short step to a time (s), in parts if there are impacts."""
+        """Take the last, short step to a time (s), in parts if there are impacts, or if steps are shorter."""
         self._near.look_up()
         self._near.clear_time()
-        reason = StopReason.DONE
-        while self.model.clock.time < target and reason in (StopReason.DONE, StopReason.REVIEW):
-            _, reason, program = self._watched_step(program, target, landing=True)
+        clock, reason = self.model.clock, StopReason.DONE
+        while clock.time < target and reason in (StopReason.DONE, StopReason.REVIEW):
+            end = min(target, clock.time + clock.step_size)
+            _, reason, program = self._watched_step(program, end, landing=True)
         return reason
 
     def _watched_step(
@@ -86,10 +87,10 @@ class Encounters:
         start, steps = clock.time, clock.steps
 
         def take(target: float | None) -> StopReason:
-            def once() -> StopReason:
-                return program.advance(1, until)[1] if target is None else self._land(target)
+            def once(end: float | None) -> StopReason:
+                return program.advance(1, until)[1] if end is None else self._land(end)
 
-            return self._contacts.step(program, before, once)
+            return self._contacts.step(program, before, once, target)
 
         reason = take(until if landing else None)
         while not self._is_nearly_parabolic(before):

@@ -89,9 +89,33 @@ def test_what_nothing_supports_falls_and_is_named() -> None:
     assert event.motion[1] == pytest.approx([0.0, -1.0])
 
 
-def test_the_ball_on_the_truss_rolls_off_its_node() -> None:
-    """The node moves aside under it, since the truss is held on the left only; running ends alike."""
+def test_the_ball_on_the_truss_comes_to_rest_where_it_settles() -> None:
+    """Also where each step is as long as its error allows, which the forces in contact must not change."""
+    session = Session.open("ball_on_truss")
+    assert session.run(until="rest") == "at rest"
     found = settle(models.load("ball_on_truss"))
+    assert found.status == "equilibrium"
+    assert session.particles.displacement == pytest.approx(found.final.displacement, abs=1e-8)
+    assert session.rods.axial_force == pytest.approx(found.final.axial_force, abs=1e-6)
+    assert session.particles["A"].reaction[1] + session.particles["D"].reaction[1] == pytest.approx(
+        G * session.particles.mass.sum() / 1000
+    )
+
+
+def test_the_ball_on_the_truss_moves_alike_in_one_run_and_in_many() -> None:
+    """To within the height below which bounces end in contact."""
+    whole, parts = Session.open("ball_on_truss"), Session.open("ball_on_truss")
+    whole.run(time=1.0)
+    for _ in range(10):
+        parts.run(time=0.1)
+    assert whole.particles["ball"].velocity == pytest.approx(parts.particles["ball"].velocity, abs=1e-4)
+
+
+def test_a_ball_without_a_guide_rolls_off_its_node() -> None:
+    """The node moves aside under it, since the truss is held on the left only."""
+    guided = models.load("ball_on_truss")
+    guided.particles["ball"].fixed = (False, False)
+    found = settle(guided)
     assert found.status == "mechanism"
     assert "Nothing stops ball" in found.message
 
