@@ -192,15 +192,22 @@ def _influence_lines(found: Found) -> Iterator[str]:
         yield ""
 
 
+def _degrees(found: Found) -> str:
+    """How much the rods and supports determine."""
+    degrees, count = found["indeterminacy"], len(found["mechanisms"])
+    each = f"internal {degrees['internal']}, external {degrees['external']}"
+    static = degrees["static"]
+    determinacy = f"indeterminate to degree {static} ({each})" if static else "determinate"
+    mechanisms = f"{degrees['mechanisms'] or 'no'} mechanism{'s' if count != 1 else ''}"
+    cables = ", all cables counted as taut" if found["cables"] else ""
+    return f"statically {determinacy}, {mechanisms}{cables}"
+
+
 def _verify_lines(found: Found) -> Iterator[str]:
     yield f"{found['model']}: {found['status']}"
     yield from filter(None, [found["message"]])
-    degrees, count = found["indeterminacy"], len(found["mechanisms"])
-    yield (
-        f"statically indeterminate to degree {degrees['static']} (internal {degrees['internal']},"
-        f" external {degrees['external']}), {degrees['mechanisms'] or 'no'} mechanism{'s' if count != 1 else ''}"
-        + (", all cables counted as taut" if found["cables"] else "")
-    )
+    if found["rods"]:
+        yield _degrees(found)
     for mechanism in found["mechanisms"][:SHOWN]:
         yield f"mechanism: {mechanism['description']}"
     for when, frequencies in found["frequencies"].items():

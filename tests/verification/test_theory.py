@@ -331,6 +331,21 @@ def test_verify_prints_tables(capsys: pytest.CaptureFixture[str], words: tuple[s
     assert "nothing" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("collision_i", []),
+        ("isostatic", ["statically determinate, no mechanisms"]),
+        ("hyperstatic", ["statically indeterminate to degree 1 (internal 1, external 0), no mechanisms"]),
+    ],
+)
+def test_verify_tells_the_degree_where_there_are_rods(
+    capsys: pytest.CaptureFixture[str], name: str, said: list[str]
+) -> None:
+    main(["verify", name, "--theory-only"])
+    assert [line for line in capsys.readouterr().out.splitlines() if line.startswith("statically")] == said
+
+
 def test_verifying_leaves_no_trace_in_theory(capsys: pytest.CaptureFixture[str]) -> None:
     model = models.load("hyperstatic_yield")
     before = models.document(model)
