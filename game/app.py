@@ -163,8 +163,13 @@ class App:
             self.autosave.close(self.session.desks)
         if self.preparation is not None:
             self.preparation.close()
-        pygame.display.quit()
+        self.close()
         return failures
+
+    def close(self) -> None:
+        """Close the window. Left to quit(), it would close once more when it is collected: perhaps the next one's."""
+        self.window.destroy()
+        pygame.display.quit()
 
     def welcome(self) -> None:
         """Begin with a choice of models."""

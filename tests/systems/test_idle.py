@@ -9,7 +9,6 @@ from typing import Any
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
-import pygame
 import pytest
 
 import systems.edit.hover
@@ -26,7 +25,7 @@ def app(monkeypatch: pytest.MonkeyPatch) -> Iterator[App]:
     window = App(models.load("isostatic"))
     frames(window, 3)
     yield window
-    pygame.display.quit()
+    window.close()
 
 
 def frames(app: App, count: int) -> int:

@@ -25,7 +25,7 @@ def app() -> Iterator[App]:
     window = App(Model(), ModelFile(None, "anything"))
     window.frame(0.0)
     yield window
-    pygame.display.quit()
+    window.close()
 
 
 def opened(app: App, script: Script) -> Performance:

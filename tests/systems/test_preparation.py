@@ -62,7 +62,7 @@ def app(monkeypatch: pytest.MonkeyPatch, compiler: Compiler) -> Iterator[App]:
     window.preparation._compiler.join()  # type: ignore[union-attr]
     frames(window, 1)
     yield window
-    pygame.display.quit()
+    window.close()
 
 
 def frames(app: App, count: int) -> None:
