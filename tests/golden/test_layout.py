@@ -8,8 +8,9 @@ from itertools import combinations
 import pytest
 
 from systems.render.marks import Panel, Picture, Text
-from systems.render.typography import capital_height, text_width
+from systems.render.typography import capital_height
 from tests.golden.scenes import SCENES, WINDOWS, Window, pictures
+from tests.reference.boxes import Box, overlap, text_box
 
 SIZES = {
     **WINDOWS,
@@ -19,7 +20,6 @@ SIZES = {
     "dense": Window(1600, 1200, 2.0),
     "large type": Window(1600, 1200, 1.5),
 }
-Box = tuple[float, float, float, float]
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -49,21 +49,11 @@ def texts(shown: list[Picture]) -> Iterator[tuple[str, Box]]:
     marks = [mark for picture in shown for mark in picture.marks]
     for place, mark in enumerate(marks):
         if isinstance(mark, Text) and mark.text.strip():
-            box = extent(mark)
+            box = text_box(mark, capital_height(mark.size))
             above = [box_of(panel) for panel in marks[place:] if isinstance(panel, Panel)]
             if not any(overlap(box, panel) for panel in above):
                 yield mark.text, box
 
 
-def extent(text: Text) -> Box:
-    width, height = text_width(text.text, text.size, text.weight), capital_height(text.size)
-    left = text.x - {"left": 0.0, "centre": 0.5, "right": 1.0}[text.anchor] * width
-    return left, text.y - height / 2, left + width, text.y + height / 2
-
-
 def box_of(panel: Panel) -> Box:
     return panel.left, panel.top, panel.left + panel.width, panel.top + panel.height
-
-
-def overlap(one: Box, other: Box) -> bool:
-    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]

@@ -19,7 +19,7 @@ from systems.render.form_layout import FormLayout
 from systems.render.marks import Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
-from systems.render.typography import text_width
+from tests.reference.boxes import overlapping, text_boxes
 from tests.reference.models import model, particle, triangle
 
 SIZES = [(320, 240), (400, 800), (640, 480), (1000, 720), (1366, 768), (3840, 2160)]
@@ -501,24 +501,6 @@ def test_what_was_typed_in_a_window_can_be_played_again(tmp_path: Path) -> None:
 # --- where it is -------------------------------------------------------------------------------------
 
 
-def rectangles(texts: list[Text]) -> list[tuple[str, float, float, float, float]]:
-    """Every text with the rectangle (left, top, right, bottom) of its letters."""
-    found = []
-    for mark in texts:
-        width = text_width(mark.text, mark.size, mark.weight)
-        left = mark.x - {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * width
-        found.append((mark.text, left, mark.y - mark.size / 2, left + width, mark.y + mark.size / 2))
-    return found
-
-
-def overlapping(boxes: list[tuple[str, float, float, float, float]]) -> list[tuple[str, str]]:
-    return [
-        (a[0], b[0])
-        for a, b in itertools.combinations(boxes, 2)
-        if a[1] < b[3] and b[1] < a[3] and a[2] < b[4] and b[2] < a[4]
-    ]
-
-
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("names", [("B",), ("AB",), (), ("A", "B", "AB", "BC")])
 def test_nothing_overlaps_and_everything_can_be_scrolled_to(
@@ -535,7 +517,7 @@ def test_nothing_overlaps_and_everything_can_be_scrolled_to(
         session.update_view()
         world, view = scene.stages(session)[-1]
         picture = compose(world, view, load_theme())
-        texts = rectangles([mark for mark in picture.marks if isinstance(mark, Text)])
+        texts = text_boxes(mark for mark in picture.marks if isinstance(mark, Text))
         assert overlapping(texts) == []
         v = picture.viewport
         for text, left, top, right, bottom in texts:

@@ -24,8 +24,9 @@ from game.scripts.script import lessons
 from systems.render.marks import Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
+from tests.reference.boxes import overlapping, text_boxes
 from tests.reference.models import triangle
-from tests.systems.test_properties import SIZES, overlapping, rectangles
+from tests.systems.test_properties import SIZES
 
 
 @pytest.fixture(autouse=True)
@@ -455,7 +456,7 @@ def test_nothing_overlaps_and_everything_can_be_scrolled_to(
         session.update_view()
         ((form, view),) = scene.stages(session)
         picture = compose(form, view, load_theme())
-        texts = rectangles([mark for mark in picture.marks if isinstance(mark, Text)])
+        texts = text_boxes(mark for mark in picture.marks if isinstance(mark, Text))
         assert overlapping(texts) == []
         for text, left, top, right, bottom in texts:
             assert 0 <= left <= right <= size[0], text

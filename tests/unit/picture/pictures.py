@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 
 from components.camera import Camera, Viewport
@@ -12,10 +10,9 @@ from components.particle import Particle
 from components.rod import spawn_rods
 from components.view import View
 from components.world import Derivation
-from systems.render.marks import Picture, Text
+from systems.render.marks import Picture
 from systems.render.picture import compose
 from systems.render.theme import load_theme
-from systems.render.typography import text_width
 
 LIGHT = load_theme("light")
 
@@ -56,21 +53,3 @@ def picture_of(model: Model, **options: object) -> Picture:
 def marks_of(picture: Picture, kind: type, colour: tuple[int, ...] | None = None) -> list:
     marks = [mark for mark in picture.marks if isinstance(mark, kind)]
     return [mark for mark in marks if colour is None or mark.colour[:3] == colour[:3]]
-
-
-def text_boxes(picture: Picture, unit: float = 1.0) -> list[tuple[str, float, float, float, float]]:
-    """Every text with the box (left, top, right, bottom) of its letters."""
-    boxes = []
-    for mark in marks_of(picture, Text):
-        width = text_width(mark.text, mark.size, mark.weight)
-        left = mark.x - {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * width
-        boxes.append((mark.text, left, mark.y - mark.size / 2, left + width, mark.y + mark.size / 2))
-    return boxes
-
-
-def overlapping(boxes: list[tuple[str, float, float, float, float]]) -> list[tuple[str, str]]:
-    return [
-        (a[0], b[0])
-        for a, b in itertools.combinations(boxes, 2)
-        if a[1] < b[3] and b[1] < a[3] and a[2] < b[4] and b[2] < a[4]
-    ]

@@ -14,17 +14,10 @@ from components.rod import spawn_rods
 from components.tags import Hovered, Selected
 from components.view import Status
 from systems.render.diagrams import written
-from systems.render.marks import Panel
+from systems.render.marks import Panel, Text
 from systems.render.picture import compose
-from tests.unit.picture.pictures import (
-    LIGHT,
-    fill,
-    marks_of,
-    overlapping,
-    picture_of,
-    text_boxes,
-    view_of,
-)
+from tests.reference.boxes import overlapping, text_boxes
+from tests.unit.picture.pictures import LIGHT, fill, marks_of, picture_of, view_of
 
 
 def random_model(seed: int, particles: int, rods: int) -> Model:
@@ -57,7 +50,7 @@ def test_texts_never_overlap_and_stay_in_the_viewport(seed: int, n: int, size: t
     )
     view = view_of(model, width, height, heading="Pause", all_diagrams=True, pixel_ratio=ratio, status=status)
     picture = compose(model, view, LIGHT)
-    boxes = text_boxes(picture)
+    boxes = text_boxes(marks_of(picture, Text))
     assert overlapping(boxes) == []
     for text, left, top, right, bottom in boxes:
         assert left >= -1, text
