@@ -152,7 +152,7 @@ def _thesis(problem: Problem) -> Run:
         started = time.perf_counter()
         simulation.run(step, round(problem.time / step))
         seconds = time.perf_counter() - started
-        return seconds, np.array(list(simulation.result(step)["displacement"].values()))
+        return seconds, np.array(list(simulation.result()["displacement"].values()))
 
     return run
 

@@ -142,7 +142,7 @@ def _plain_runner(model: Model, steps: int, *, full: bool) -> Callable[[], None]
 
 
 def peers(*, quick: bool) -> list[Row]:
-    """The same triangle by the thesis' scheme, and lattices of springs by pymunk, per rod and step."""
+    """The same triangle by the thesis' program, and lattices of springs by pymunk, per rod and step."""
     from tests.reference.thesis import Simulation as Thesis
 
     steps = 300 if quick else 2_000
@@ -151,7 +151,11 @@ def peers(*, quick: bool) -> list[Row]:
     thesis.run(STEP, steps)
     seconds = time.perf_counter() - started
     rows = [
-        {"peer": "thesis' scheme, one object per element", "rods": 3, "ns_per_rod": seconds / steps / 3 * 1e9}
+        {
+            "peer": "thesis' program, one object per element",
+            "rods": 3,
+            "ns_per_rod": seconds / steps / 3 * 1e9,
+        }
     ]
     for size in (1_000,) if quick else (1_000, 10_000):
         rows.append(_pymunk_springs(size))
