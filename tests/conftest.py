@@ -22,13 +22,13 @@ settings.load_profile("pinjoint")
 def fresh_process() -> Callable[..., str]:
     """Run Python code in a process of its own; returns what it printed. `environment` adds variables."""
 
-    def run(code: str, environment: Mapping[str, str] | None = None) -> str:
+    def run(code: str, environment: Mapping[str, str] | None = None, timeout: float = 300.0) -> str:
         finished = subprocess.run(
             [sys.executable, "-c", code],
             env=os.environ | {"PYTHONPATH": str(ROOT)} | dict(environment or {}),
             capture_output=True,
             text=True,
-            timeout=120,
+            timeout=timeout,
         )
         assert finished.returncode == 0, finished.stderr
         return finished.stdout

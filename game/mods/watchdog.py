@@ -45,7 +45,7 @@ class _Watchdog:
         with self._changed:
             fired, self._deadline = self._deadline is None, None
             if fired:
-                _raise_in(self._thread, None)
+                _take_back()
 
     def _run(self) -> None:
         with self._changed:
@@ -63,11 +63,27 @@ class _Watchdog:
 _watchdog = _Watchdog()
 
 
-def _raise_in(thread: int, exception: type[Exception] | None) -> None:
-    """Let an exception be raised in a thread before its next Python instruction; None: not any more."""
-    ctypes.pythonapi.PyThreadState_SetAsyncExc(
-        ctypes.c_ulong(thread), ctypes.py_object(exception) if exception else None
-    )
+def _raise_in(thread: int, exception: type[Exception]) -> None:
+    """Let an exception be raised in a thread before its next Python instruction."""
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(exception))
+
+
+class _Nothing(Exception):
+    """What comes instead of an exception that is taken back."""
+
+
+def _take_back() -> None:
+    """Let no exception be due in this thread any more, whether the one asked for has come or not.
+
+    The interpreter forgets that one was due only when one comes. If it is told that none is, it goes on looking
+    for it: slower from then on, and for ever where a debugger traces it.
+    """
+    try:
+        _raise_in(threading.get_ident(), _Nothing)
+        while True:
+            pass
+    except _Nothing:
+        pass
 
 
 @contextmanager
