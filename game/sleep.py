@@ -18,7 +18,7 @@ from components.model import Model
 from game.program.arranged import ArrangedProgram
 from game.program.in_blocks import make_program
 from game.program.program import Program
-from systems.physics.islands import HELD, Rows, islands
+from systems.islands import HELD, Rows, islands
 from systems.physics.rest import Array, Mask, Stillness
 
 INTERVAL = 1024  # steps between reviews; fewer: asleep sooner, but a review costs as much as some ten steps

@@ -21,8 +21,8 @@ from game.sweeps.plan import Plan, Record
 from game.sweeps.stack import Stack
 from game.sweeps.variation import Random, Value
 from game.target import EVERY, Target, locate, settable
+from systems.islands import islands
 from systems.physics.automatic import SMALL, stiffnesses, suited_to
-from systems.physics.islands import islands
 
 if TYPE_CHECKING:
     from game.sweeps.specimen import Specimen

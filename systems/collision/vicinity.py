@@ -12,9 +12,10 @@ from components.field import Role
 from components.model import Model
 from components.obstacles import obstacles
 from systems.collision.system import contacts_of
+from systems.islands import islands
 from systems.near import Floats, Rows, near_pairs, nearest
 
-FAR = 0.5  # of the largest radius; particles that are farther apart are watched less closely
+FAR = 0.5  # of its radius, within which of a particle others are listed at least
 OVERLAP = 1e-9  # of the reach of two nodes; more at the start of a step is from before they ever parted
 WATCHED, LEFT_ALONE, LASTING = 0, 1, 2  # kinds of pairs
 
@@ -54,8 +55,10 @@ class Vicinity:
         self.restitution = np.concatenate([alike, others.restitution])
         self.span = self.everywhere(np.zeros((self._count, 2)))
         self.span[self._count :] = others.span
-        self._far = self._widest(FAR * float(particles.radius.max(initial=0.0)))
-        self._margin = -1.0
+        self._island = islands(self.model)
+        self._least: Floats = FAR * particles.radius
+        self._margin: Floats = np.full(self._count, -1.0)  # nothing is listed yet
+        self._listed: Floats = np.zeros((self._count, 2))
 
     def everywhere(self, values: NDArray[Any]) -> NDArray[Any]:
         """What particles have, with zeros for the obstacles, which do not move."""
@@ -63,17 +66,8 @@ class Vicinity:
             return values
         return np.concatenate([values, np.zeros((len(self.obstacles), *values.shape[1:]), values.dtype)])
 
-    def _widest(self, least: float) -> float:
-        """About half the least gap (m) between those that may meet in the original geometry, or the least."""
-        far = least
-        self._list(far, np.zeros((self._count, 2)))
-        while len(self.pairs) == 0 and far < 1e6 * least:
-            far *= 2.0
-            self._list(far, np.zeros((self._count, 2)))
-        return max(0.5 * far, least)
-
-    def _list(self, margin: float, displacement: Floats) -> None:
-        """List the pairs that can meet before any particle has moved by the margin (m) from there."""
+    def _list(self, margin: Floats, displacement: Floats) -> None:
+        """List the pairs that can meet before any particle has moved by its margin (m) from there."""
         place, radius = self.position[: self._count] + displacement, self.radius[: self._count]
         near = near_pairs(place, radius + margin, self.obstacles)
         may = np.logical_or(self._moves[near[:, 0]], self._moves[near[:, 1]])
@@ -111,43 +105,89 @@ class Vicinity:
             kinds[np.isin(self.pairs[:, 0] * count + self.pairs[:, 1], lasting)] = LASTING
         return kinds
 
-    def clear_time(self) -> float:
+    def clear_time(self, enough: float = math.inf) -> float:
         """For how long (s) nothing can meet, whatever forces do; 0 while anything is in contact.
 
-        It follows from the present state alone: wide gaps count as no wider than `_far`.
+        A longer time than `enough` (s) is not sought. What others than ours bring, and forces that vary with time,
+        are taken to stay as they are: see `outran`.
         """
-        displacement = self.model.particles.displacement
-        if self._margin < 0.0 or self._travel(displacement) > self._margin - 0.5 * self._far:
-            self._list(self._far, displacement)
         if contacts_of(self.model) is not None:
             return 0.0
-        gap, _ = self.gaps(self.pairs, displacement)
-        awake = self._moves & ~self.everywhere(self.model.particles.asleep)
-        may_meet = awake[self.pairs].any(axis=1) & (~self._node[self.pairs].all(axis=1) | (gap > 0.0))
-        room = 0.5 * min(self._far, float(gap[may_meet].min(initial=math.inf)))
-        fastest = self._fastest(awake[: self._count]) if room > 0.0 else math.inf
-        return room / fastest if fastest > 0.0 else math.inf
+        displacement = self.model.particles.displacement
+        self._since, self._speed, self._pull = self.model.clock.time, *self._vigour()
+        covered = self._covered(displacement)
+        if covered < 0.0:
+            self._list(self._least, displacement)
+            covered = self._covered(displacement)
+        while covered < min(enough, 0.5 * (apart := self._time_apart(displacement))):
+            self._list(np.maximum(self._least, self._travel(2.0 * covered)), displacement)
+            covered = self._covered(displacement)
+        return min(covered, apart)
 
     def cover(self, start: Floats, swing: float) -> None:
         """List all pairs that can be near each other in a step from `start` to the present displacement.
 
         swing: by how much (m) paths may leave the straight line.
         """
-        if self._travel(self.model.particles.displacement) + swing > self._margin:
-            moved = self.model.particles.displacement - start
-            span = float(np.hypot(moved[:, 0], moved[:, 1]).max(initial=0.0)) + swing
-            self._list(max(2.0 * span, self._far), start)
+        displacement = self.model.particles.displacement
+        if (lengths(displacement - self._listed) + swing > self._margin).any():
+            span = float(lengths(displacement - start).max(initial=0.0)) + swing
+            self._list(np.maximum(self._least, 2.0 * span), start)
 
-    def _travel(self, displacement: Floats) -> float:
-        moved = displacement - self._listed
-        return float(np.hypot(moved[:, 0], moved[:, 1]).max(initial=0.0))
+    @property
+    def outran(self) -> bool:
+        """True if since `clear_time` was asked anything gained more speed than that reckoned with."""
+        speed, _ = self._vigour()
+        passed = self.model.clock.time - self._since
+        return bool((speed > (self._speed + passed * self._pull) * (1.0 + 1e-6)).any())
 
-    def _fastest(self, awake: NDArray[np.bool_]) -> float:
-        """A speed (m/s) that none exceeds before it has moved by `_far`: all energy of what is awake in the lightest."""
-        particles, rods = self.model.particles, self.model.rods
-        supply = 1000.0 * np.abs(particles.applied_force[awake]).sum() * self._far
-        kinetic = 0.5 * (particles.mass[:, None] * particles.velocity**2).sum()
-        energy = 500.0 * rods.axial_force**2 * rods.rest_length / rods.stiffness
-        stored = energy[awake[rods.between].any(axis=1)].sum()
-        lightest = particles.mass[awake].min(initial=math.inf)
-        return math.sqrt(2.0 * float(kinetic + stored + supply) / float(lightest))
+    def _time_apart(self, displacement: Floats) -> float:
+        """For how long (s) none of the listed pairs can meet, or part if they are nodes that overlap."""
+        gap, _ = self.gaps(self.pairs, displacement)
+        room = np.where(self.kinds(displacement) == LEFT_ALONE, -gap, np.maximum(gap, 0.0))
+        first, second = (
+            self.everywhere(values)[self.pairs].sum(axis=1) for values in (self._speed, self._pull)
+        )
+        return _soonest(room, first, second)
+
+    def _covered(self, displacement: Floats) -> float:
+        """For how long (s) the list holds; negative if it does not hold any more."""
+        room = self._margin - lengths(displacement - self._listed)
+        return _soonest(room, self._speed, self._pull) if (room >= 0.0).all() else -math.inf
+
+    def _travel(self, time: float) -> Floats:
+        """How far (m) particles can get in a time (s)."""
+        return time * (self._speed + 0.5 * time * self._pull)
+
+    def _vigour(self) -> tuple[Floats, Floats]:
+        """Speeds (m/s) that particles cannot exceed now, and by how much these can grow in time (m/s²).
+
+        On an island with the kinetic and elastic energy E, forces F do no more work than
+            dE/dt ≤ F · v ≤ √(Σ F²/m) √(2E),   so that   √m v ≤ √(2E) ≤ √(2E₀) + t √(Σ F²/m).
+        """
+        particles, rods, count = self.model.particles, self.model.rods, int(self._island.max(initial=0)) + 1
+        awake = self._moves[: self._count] & ~particles.asleep
+        stored = 1000.0 * rods.axial_force**2 * rods.rest_length / rods.stiffness
+        of_rods = self._island[rods.between].max(axis=1, initial=0)
+        with np.errstate(over="ignore", invalid="ignore"):
+            pull = particles.mass * ((particles.mobility * particles.applied_force) ** 2).sum(axis=1)
+            twice = np.bincount(self._island, particles.mass * (particles.velocity**2).sum(axis=1), count)
+            twice += np.bincount(of_rods, stored, count)
+            squares = (
+                np.array([twice, np.bincount(self._island, pull, count)])[:, self._island] / particles.mass
+            )
+        speed, growth = np.where(awake, np.sqrt(squares), 0.0)
+        return speed, growth
+
+
+def lengths(vectors: Floats) -> Floats:
+    """Of vectors, shape (n, 2)."""
+    found: Floats = np.hypot(vectors[:, 0], vectors[:, 1])
+    return found
+
+
+def _soonest(room: Floats, speed: Floats, pull: Floats) -> float:
+    """The least time (s) in which any gets that far (m): speed t + pull t²/2 = room."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        time = 2.0 * room / (speed + np.sqrt(speed**2 + 2.0 * pull * room))
+    return float(np.where(np.isnan(time), math.inf, time).min(initial=math.inf))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.model import Model
-from systems.physics.islands import Rows
+from systems.islands import Rows
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -76,9 +76,9 @@ def broken_order(path: str, layer: str, top: str, name: str) -> str | None:
         return f"{layer} must not import {top}"
     if layer == top == "systems":
         own, other, *rest = path.split("/")[1], name.split(".")[1], *name.split(".")[2:]
-        shared = other in ("base", "kernels", "near") or rest[:1] == ["kernels"]
+        shared = other in ("base", "islands", "kernels", "near") or rest[:1] == ["kernels"]
         if own.removesuffix(".py") != other and not shared:
-            return "systems meet in columns and events; they import only base, near and kernels of each other"
+            return "systems meet in columns and events; they import only base, islands, near and kernels of each other"
     return None
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from game import Session, models, sleep
 from systems.edit.pull import Hand
-from systems.physics.islands import islands
+from systems.islands import islands
 from systems.physics.rest import Stillness
 from tests.reference import bits
 from tests.reference.elements import Model

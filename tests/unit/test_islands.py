@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from game import models
-from systems.physics.islands import HELD, islands
+from systems.islands import HELD, islands
 from tests.reference.models import model, particle, rod
 
 
