@@ -39,6 +39,7 @@ def add_component(mod: str, component: type[Component]) -> list[str]:
                 f"{component.__name__}.{field.name}: a mod's Field holds values that a person or time made;"
                 " references and derived columns cannot be added."
             )
+        field.check_default(component.__name__)
     for field, name in zip(fields, names, strict=True):
         key = field.key
         field.name, field.component = name, f"{mod}.{component.__name__}"

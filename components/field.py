@@ -169,6 +169,13 @@ class Field(Generic[T]):
 
     # --- checking --------------------------------------------------------------------------------
 
+    def check_default(self, owner: str) -> None:
+        """Raise FieldError if an element that is given no value could not be saved and read again."""
+        try:
+            self.check_column(self.allocate(1), 1, lambda row: f"{owner}.{self.name}, its default")
+        except FieldError as error:
+            raise FieldError(f"{error} With nullable=True, None can be its default.") from None
+
     def check(self, value: Any, where: str) -> Any:
         """Return `value` normalised, or raise FieldError naming `where` (such as "rod AB")."""
         if value is None and self.nullable:

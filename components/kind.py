@@ -39,6 +39,7 @@ def add_kind(mod: str, kind: type[Handle]) -> str:
     for field in fields.values():
         if field.role is Role.DERIVED:
             raise ValueError(f"{kind.__name__}.{field.name}: derived columns cannot be added by a mod.")
+        field.check_default(kind.__name__)
     for point in kind.points:
         if point not in fields or fields[point].shape != (2,) or fields[point].role is not Role.DOCUMENT:
             raise ValueError(f"{kind.__name__}: its point '{point}' is no Field of shape (2,) of the document.")

@@ -221,6 +221,10 @@ def test_a_shape_that_fails_switches_the_mod_off(write_mod: Write, shape: str, s
         (('"foot", "top"', '"foot", "tip"'), "its point 'tip' is no Field"),
         (("    name:", "    label:"), "needs a Field 'name'"),
         (("Role.STATE", "Role.DERIVED"), "derived columns cannot be added"),
+        (
+            ("    name:", "    wide: Field[float] = Field(title='width', doc='', above=0.0)\n    name:"),
+            r"Gate\.wide, its default: width is 0; it must be greater than 0\. With nullable=True",
+        ),
         (("class Gate(Handle):", "class Gate(Handle):\n    single = True"), "a component of Settings"),
     ],
 )
