@@ -107,6 +107,7 @@ class Field(Generic[T]):
         self.dtype = dtype
         self.shape = shape
         self.role = role
+        self.derived = role is Role.DERIVED  # asked so often that a look at the enumeration would be felt
         self.shown = shown if shown is not None else (unit, 1.0)
         self.minimum = minimum
         self.maximum = maximum
@@ -120,6 +121,7 @@ class Field(Generic[T]):
         self.checker = checker
         self.storage: np.dtype[Any] = np.dtype(_STORAGE[dtype])  # the numpy type of the column
         self._has_objects = self.storage.hasobject
+        self.plain = not (shape or nullable or self._has_objects)  # one number, and always one
         self._key = key
 
     def __set_name__(self, owner: type, name: str) -> None:

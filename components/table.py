@@ -145,7 +145,7 @@ class Table(Generic[H]):
 
     def current(self, name: str) -> Column:
         """The column's storage, over its whole capacity, derived columns up to date."""
-        if self.fields[name].role is Role.DERIVED:
+        if self.fields[name].derived:
             self.world.refresh(f"{self.name}.{name}")
         return self._columns[name]
 

@@ -148,11 +148,13 @@ class World:
 
     def read(self, handle: Handle, field: Field[Any]) -> Any:
         """The value of one Field of one entity."""
-        if field.role is Role.DERIVED:
+        if field.derived:
             self.refresh(f"{handle.table}.{field.name}")
         row = self.row_of_entity.item(handle.entity)
         column = self.tables[handle.table]._columns[field.name]
-        return field.loaded(column, row if row >= 0 else self.row(handle))
+        if row < 0:
+            row = self.row(handle)  # raises
+        return column.item(row) if field.plain else field.loaded(column, row)
 
     def write(self, handle: Handle, field: Field[Any], value: Any) -> None:
         """Execute the command that gives one Field of one entity a value. Raises FieldError."""
@@ -186,7 +188,7 @@ class World:
         if name not in table.fields:
             raise FieldError(missing(f"Fields of {table.name}", name, table.fields))
         field = table.fields[name]
-        if field.role is not Role.DERIVED:
+        if not field.derived:
             return field
         if field.overridden_by is None:
             raise FieldError(f"{where}: {field.title} is computed and cannot be set.")

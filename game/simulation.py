@@ -47,6 +47,8 @@ FREE_FLIGHT = FreeFlight()
 # What the clock is given when a run begins.
 CHOSEN = ("step_size", "guard_energy", "initial_energy", "potential_reference")
 
+ENDS = (StopReason.REST, StopReason.DIVERGED)  # of a run
+
 MOVING = ("particles.displacement", "particles.velocity", "rods.plastic_strain")
 
 OBSERVED = (
@@ -454,7 +456,7 @@ class Simulation:
     @property
     def halted(self) -> bool:
         """True if the run ended by itself, at rest or diverged, and nothing was edited since."""
-        return self._armed and self.reason in (StopReason.REST, StopReason.DIVERGED)
+        return self._armed and self.reason in ENDS
 
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> int:
         """Take up to `steps` steps, none of which ends after `until` (s); returns how many.
@@ -471,9 +473,10 @@ class Simulation:
             taken, reason = self._take(ahead, until, landing)
             self._heed(reason)
             self._arm()
-            if not self.halted:
+            now = clock.steps
+            if self._sleep.is_due(now) and not self.halted:
                 self._review_sleep()
-            done = clock.steps - first
+            done = now - first
             if taken < max(ahead, 1) and reason is StopReason.DONE:
                 break  # the next step would end later than allowed
         self.compute_seconds += time.perf_counter() - started
@@ -491,6 +494,8 @@ class Simulation:
     def _heed(self, reason: StopReason) -> None:
         """Do what a program that returned for this reason asks for."""
         self.reason = reason
+        if reason is StopReason.DONE:
+            return
         if reason is StopReason.REST:
             self.message = at_rest_since(self.model.clock.time)
         elif reason is StopReason.UNRESOLVED:
@@ -507,9 +512,9 @@ class Simulation:
                 self._review_step()
 
     def _review_sleep(self, *, edited: bool = False) -> None:
-        """Let islands at rest sleep, after edits or if a review is due."""
+        """Let islands at rest sleep, after edits or where a run is reviewed."""
         program = self.program
-        if isinstance(program, Program) and (edited or self._sleep.is_due(program)):
+        if isinstance(program, Program) and (edited or self._sleep.may_happen(program)):
             others = self._sleep.review(program)
             if others and not edited:
                 self._limit_step_anew()

@@ -53,16 +53,18 @@ class Sleep:
         """True if any particle is asleep."""
         version = self.model.particles.version("asleep")
         if version != self._looked_at:
-            self._looked_at, self._any_asleep = version, bool(self.model.particles.asleep.any())
+            asleep = self.model.particles.storage("asleep")
+            self._looked_at, self._any_asleep = version, bool(np.count_nonzero(asleep))
         return self._any_asleep
 
     def steps_to_review(self, program: Program) -> int:
         """After how many steps a run is to be reviewed again."""
         return INTERVAL - self.model.clock.steps % INTERVAL if self.may_happen(program) else sys.maxsize
 
-    def is_due(self, program: Program) -> bool:
-        """True if a run is to be reviewed now."""
-        return self.may_happen(program) and self.model.clock.steps % INTERVAL == 0
+    @staticmethod
+    def is_due(steps: int) -> bool:
+        """True if a run is to be reviewed after so many steps."""
+        return steps % INTERVAL == 0
 
     def _look_up(self) -> None:
         """Find the islands anew where that changed which they follow from."""
