@@ -17,6 +17,7 @@ from systems.near import Floats, Rows, near_pairs, nearest
 
 FAR = 0.5  # of its radius, within which of a particle others are listed at least
 OVERLAP = 1e-9  # of the reach of two nodes; more at the start of a step is from before they ever parted
+LEAST = 1e-300  # m/s; no motion is that slow
 WATCHED, LEFT_ALONE, LASTING = 0, 1, 2  # kinds of pairs
 
 
@@ -84,8 +85,9 @@ class Vicinity:
         first, second = pairs[:, 0], pairs[:, 1]
         displacement = self.everywhere(displacement)
         line = (self.position[second] - self.position[first]) + (displacement[second] - displacement[first])
-        line = nearest(line, self.span[second])
-        distance = np.hypot(line[:, 0], line[:, 1])
+        if len(self.obstacles):
+            line = nearest(line, self.span[second])
+        distance = lengths(line)
         normal = line / np.where(distance > 0.0, distance, 1.0)[:, None]
         return distance - self.reach(pairs), normal
 
@@ -95,7 +97,8 @@ class Vicinity:
         return total
 
     def kinds(self, displacement: Floats) -> Rows:
-        """Of every pair at the start of a step: WATCHED, LEFT_ALONE (nodes that overlap) or LASTING."""
+        """Of every pair at the start of a step: LEAST = 1e-300  # m/s; no motion is that slow
+        WATCHED, LEFT_ALONE (nodes that overlap) or LASTING."""
         gap, _ = self.gaps(self.pairs, displacement)
         nodes = self._node[self.pairs].all(axis=1)
         kinds = np.where(nodes & (gap < -OVERLAP * self.reach(self.pairs)), LEFT_ALONE, WATCHED)
@@ -188,6 +191,8 @@ def lengths(vectors: Floats) -> Floats:
 
 def _soonest(room: Floats, speed: Floats, pull: Floats) -> float:
     """The least time (s) in which any gets that far (m): speed t + pull t²/2 = room."""
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        time = 2.0 * room / (speed + np.sqrt(speed**2 + 2.0 * pull * room))
-    return float(np.where(np.isnan(time), math.inf, time).min(initial=math.inf))
+    moves = (speed > 0.0) | (pull > 0.0)
+    room, speed, pull = room[moves], speed[moves], pull[moves]
+    with np.errstate(over="ignore"):
+        time = np.where(room > 0.0, 2.0 * room, 0.0) / (speed + np.sqrt(speed**2 + 2.0 * pull * room) + LEAST)
+    return float(time.min(initial=math.inf))

@@ -194,3 +194,22 @@ def test_a_structure_without_anything_near_it_takes_the_same_steps() -> None:
         session.run(steps=300)
     assert "collision.discs" in [system.name for system in collides.schedule.step_plan(collides.model)]
     assert state(collides) == state(alone)
+
+
+@pytest.mark.parametrize("below", ["floor", "disc"])
+def test_a_particle_under_drag_that_begins_in_contact_lies_there(below: str) -> None:
+    """Nothing moves at first, so that no speed tells that it is about to meet what it touches."""
+    document: dict[str, Any] = {
+        "format": "pinjoint model",
+        "version": 1,
+        "environment": GRAVITY | {"drag": 1.0},
+        "particles": [{"name": "p", "position": [0.0, 0.05]}],
+    }
+    if below == "floor":
+        document["components"] = {"walls.Wall": [{"name": "w", "start": [-1.0, 0.0], "end": [1.0, 0.0]}]}
+    else:
+        document["particles"].append({"name": "q", "position": [0.0, -0.05], "fixed": [True, True]})
+    session = Session.open(document)
+    session.run(time=0.1)
+    assert session.particles["p"].displacement == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert len(session.impacts) == 0
