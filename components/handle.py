@@ -32,10 +32,9 @@ class Handle:
     _world: weakref.ref[World]
     entity: int
 
-    def __init__(self, world: World, entity: int) -> None:
-        set_it = object.__setattr__  # of many at once, without a look at the names
-        set_it(self, "_world", weakref.ref(world))
-        set_it(self, "entity", entity)
+    def __init__(self, world: weakref.ref[World]) -> None:
+        """Of a world that gives it an entity; only `World.create` makes any."""
+        object.__setattr__(self, "_world", world)  # of many at once, without a look at the name
 
     if not TYPE_CHECKING:  # or any name would be right
 

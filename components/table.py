@@ -296,9 +296,9 @@ class Table(Generic[H]):
         if rows <= capacity:
             return
         capacity = max(rows, 2 * capacity)
-        self.entity = _grown(self.entity, np.empty(capacity, dtype=np.int64), self.count)
+        self.entity = grown(self.entity, np.empty(capacity, dtype=np.int64), self.count)
         for name, field in self.fields.items():
-            self._columns[name] = _grown(self._columns[name], field.allocate(capacity), self.count)
+            self._columns[name] = grown(self._columns[name], field.allocate(capacity), self.count)
 
 
 _OWN = frozenset(Table.__slots__)
@@ -309,7 +309,8 @@ def _read_only(view: Column) -> Column:
     return view
 
 
-def _grown(old: Column, new: Column, count: int) -> Column:
+def grown(old: Column, new: Column, count: int) -> Column:
+    """A new column that begins with the first `count` entries of an old one."""
     new[:count] = old[:count]
     return new
 

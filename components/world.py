@@ -17,7 +17,7 @@ from components.commands import Assign, Command, Create, Custom, Delete, Group, 
 from components.field import Column, Field, FieldError, Role, same
 from components.handle import Handle
 from components.spelling import missing
-from components.table import Table
+from components.table import Table, grown
 
 H = TypeVar("H", bound=Handle)
 Layout = tuple[tuple[str, tuple[str, ...]], ...]
@@ -57,7 +57,8 @@ class World:
         self.row_of_entity: NDArray[np.int64] = np.full(64, -1, dtype=np.int64)
         self.tables: dict[str, Table[Any]] = {}
         self.tags_revision = 0
-        self._tagged: dict[type, tuple[Any, dict[str, NDArray[np.intp]]]] = {}  # found at these revisions
+        self._marked: dict[type, NDArray[np.bool_]] = {}  # by tag, for each esper id whether it has it
+        self._tagged: tuple[Any, dict[Any, NDArray[np.intp]]] = (None, {})  # rows, found at these revisions
         self.changing = False
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}
@@ -392,12 +393,14 @@ class World:
     def _create(self, command: Create) -> Command:
         self.activate()
         table = self.tables[command.kind.table]
-        handles = [command.kind(self, 0) for _ in range(command.count)]
-        for handle in handles:
-            handle.entity = esper.create_entity(handle)
-        entities = np.array([handle.entity for handle in handles], dtype=np.int64)
-        table.append(handles, entities, dict(command.columns))
-        return Delete(tuple(entities.tolist()))
+        reference = weakref.ref(self)
+        handles = [command.kind(reference) for _ in range(command.count)]
+        entities = [esper.create_entity(handle) for handle in handles]
+        set_it = object.__setattr__  # of many at once, without a look at the name
+        for handle, entity in zip(handles, entities, strict=True):
+            set_it(handle, "entity", entity)
+        table.append(handles, np.array(entities, dtype=np.int64), dict(command.columns))
+        return Delete(tuple(entities))
 
     def _delete(self, command: Delete) -> Command:
         self.activate()
@@ -455,15 +458,13 @@ class World:
         if all(whole):
             return
         handles = {handle.entity: handle for table in self.tables.values() for handle in table.handles}
-        present = set(esper.get_entities())
-        tags: dict[int, list[Any]] = {}
-        for entity in handles.keys() & present:
-            parts: tuple[Any, ...] = esper.components_for_entity(entity)
-            tags[entity] = [part for part in parts if not isinstance(part, Handle)]
+        last = max(*handles, *esper.get_entities())
         _delete_context(self.context)
         self.activate()
-        for entity in range(1, max([*handles, *present]) + 1):  # esper numbers them in order
-            esper.create_entity(*([handles[entity], *tags.get(entity, ())] if entity in handles else []))
+        for entity in range(1, last + 1):  # esper numbers them in order
+            esper.create_entity(*([handles[entity]] if entity in handles else []))
+        for tag, marks in self._marked.items():
+            _add_to_each(np.flatnonzero(marks[: last + 1]), tag())
         self.tags_revision = self.next_revision()
         raise LookupError("elements were deleted through esper; use model.delete(handles), which can be undone")
 
@@ -471,51 +472,72 @@ class World:
 
     def tag(self, handle: Handle, tag: type) -> None:
         """Mark an entity with an (empty) component, such as Selected."""
-        self._ids([handle])
-        self.activate()
-        if handle.exists and not esper.has_component(handle.entity, tag):
-            esper.add_component(handle.entity, tag())
-            self.tags_revision = self.next_revision()
+        entity = np.array(self._ids([handle]))
+        if handle.exists and not self._marks(tag)[entity]:
+            self._mark(entity, tag)
 
     def untag(self, handle: Handle, tag: type) -> None:
         """Take a mark off an entity, if it has it."""
-        self.activate()
-        if esper.try_remove_component(handle.entity, tag) is not None:
-            self.tags_revision = self.next_revision()
+        entity = np.array(self._ids([handle]))
+        if self._marks(tag)[entity]:
+            self._unmark(entity, tag)
 
     def tag_only(self, handles: Iterable[Handle], tag: type) -> None:
         """Let exactly these entities carry a mark."""
-        self.activate()
-        entities = np.array(self._ids(list(handles)), dtype=np.int64)
-        wanted = set(entities[self.row_of_entity[entities] >= 0].tolist())
-        present = {entity for entity, _ in esper.get_component(tag)}
-        for entity in present - wanted:
-            esper.remove_component(entity, tag)
-        mark = tag()
-        for entity in wanted - present:
-            esper.add_component(entity, mark)
-        if wanted != present:
-            self.tags_revision = self.next_revision()
+        wanted = np.zeros(len(self.row_of_entity), dtype=bool)
+        wanted[self._ids(list(handles))] = True
+        wanted &= self.row_of_entity >= 0
+        present = self._marks(tag)
+        former, fresh = np.flatnonzero(present & ~wanted), np.flatnonzero(wanted & ~present)
+        self._unmark(former, tag)
+        self._mark(fresh, tag)
 
     def tagged(self, tag: type) -> list[Handle]:
         """Handles of the existing entities with a mark, in order of creation."""
-        rows = {name: self.tagged_rows(tag, name) for name in self.tables}
-        found = [self.tables[name].handles[row] for name in rows for row in rows[name].tolist()]
-        return [found[index] for index in np.argsort([handle.entity for handle in found]).tolist()]
+        marked = [(self.tables[name], rows) for name, rows in self.rows_tagged(tag).items()]
+        found = [table.handles[row] for table, rows in marked for row in rows.tolist()]
+        order = np.argsort(np.concatenate([table.entities[rows] for table, rows in marked]))
+        return [found[place] for place in order.tolist()]
+
+    def rows_tagged(self, tag: type) -> dict[str, NDArray[np.intp]]:
+        """The same as rows, ascending, by table."""
+        return {table: self.tagged_rows(tag, table) for table in self.tables}
 
     def any_tagged(self, tag: type) -> bool:
         """True if any existing entity has a mark; quicker than to ask for all that have it."""
-        return any(len(self.tagged_rows(tag, table)) for table in self.tables)
+        return any(map(len, self.rows_tagged(tag).values()))
 
     def tagged_rows(self, tag: type, table: str) -> NDArray[np.intp]:
         """Rows of the entities of one table with a mark, ascending."""
         now = (self.tags_revision, self.structure)
-        at, rows = self._tagged.get(tag, (None, {}))
-        if at != now:
+        if self._tagged[0] != now:
+            self._tagged = now, {}
+        known = self._tagged[1]
+        if (tag, table) not in known:
+            known[tag, table] = np.flatnonzero(self._marks(tag)[self.tables[table].entities])
+        return known[tag, table]
+
+    def _marks(self, tag: type) -> NDArray[np.bool_]:
+        """For each esper id, whether it has a mark: what esper knows too, as a column."""
+        marks, count = self._marked.get(tag, np.zeros(0, dtype=bool)), len(self.row_of_entity)
+        if len(marks) < count:
+            self._marked[tag] = marks = grown(marks, np.zeros(count, dtype=bool), len(marks))
+        return marks
+
+    def _mark(self, entities: NDArray[np.intp], tag: type) -> None:
+        if len(entities):
             self.activate()
-            rows = self._rows_by_table([entity for entity, _ in esper.get_component(tag)])
-            self._tagged[tag] = (now, rows)
-        return rows[table]
+            _add_to_each(entities, tag())
+            self._marks(tag)[entities] = True
+            self.tags_revision = self.next_revision()
+
+    def _unmark(self, entities: NDArray[np.intp], tag: type) -> None:
+        if len(entities):
+            self.activate()
+            for entity in entities.tolist():
+                esper.try_remove_component(entity, tag)
+            self._marks(tag)[entities] = False
+            self.tags_revision = self.next_revision()
 
     def rows_of(self, handles: Iterable[Handle]) -> dict[str, NDArray[np.intp]]:
         """Rows, ascending, of those elements that exist, by table. Raises LookupError for those of another model."""
@@ -589,6 +611,11 @@ class World:
 
 def _called(noun: str, name: Any) -> str:
     return str(name) if str(name).startswith(noun + " ") else f"{noun} {name}"
+
+
+def _add_to_each(entities: NDArray[np.intp], component: object) -> None:
+    for entity in entities.tolist():
+        esper.add_component(entity, component)
 
 
 def _delete_context(context: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ from components.model import ADDED, Model
 from components.particle import Particle
 from components.rod import Rod
 from components.table import Table, fields_of
+from components.tags import Selected
 from game.document import ModelError, document_of, parse
 from game.models import laid_out
 from systems.edit.moving import moving_rows
@@ -46,12 +47,12 @@ class Part:
         return np.concatenate([held[point] for kind, held in self.columns.items() for point in _points(kind)])
 
 
-def chosen(model: Model, handles: Iterable[Handle]) -> Chosen:
+def chosen(model: Model) -> Chosen:
     """Rows of the selected particles and rods, of the ends of those rods, and of the loads on them.
 
     And of the elements of mods among them. Raises Refusal if there are none.
     """
-    rows = model.rows_of(handles)
+    rows = model.rows_tagged(Selected)
     particles = moving_rows(model, rows)
     others = {kind: rows[kind.table] for kind in _added() if len(rows[kind.table])}
     if not len(particles) and not others:

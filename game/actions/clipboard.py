@@ -49,12 +49,12 @@ def _paste(session: Session, pixel: Vector) -> None:
 def _duplicate(session: Session, pixel: Vector) -> None:
     view = session.view
     beside = BESIDE * view.pixel_ratio / view.camera.scale
-    source = taken(session.model, chosen(session.model, session.selected))
+    source = taken(session.model, chosen(session.model))
     _show(session, paste(session.model, source, snapped(session.model, view, (beside, -beside))), "Duplicated")
 
 
 def _take_along(session: Session) -> None:
-    rows = chosen(session.model, session.selected)
+    rows = chosen(session.model)
     session.clipboard = text = written(session.model, rows)
     session.copied = text, taken(session.model, rows)
 

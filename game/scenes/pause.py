@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from components.tags import Selected
 from game.scenes.base import Scene
 
 if TYPE_CHECKING:
@@ -23,8 +24,10 @@ class Pause(Scene):
                 "P new particle under the pointer     L rod from one to another     C support     F force"
                 "     D open a model     F1 all keys"
             )
-        if any(handle.points for handle in session.selected[:1]):
+        selected = session.model.rows_tagged(Selected)
+        kinds = [session.model.tables[name].kind for name, rows in selected.items() if len(rows)]
+        if kinds and all(kind.points for kind in kinds):
             return "drag it or its ends     Return properties     Esc deselect     F1 keys"
-        if session.has_selected:
+        if kinds:
             return "Return properties     I its forces     Esc deselect     F1 keys"
         return "Space run     click select     I forces     wheel zoom     F1 keys"
