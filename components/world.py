@@ -56,7 +56,7 @@ class World:
         self.before_command: Callable[[], None] | None = None
         self.row_of_entity: NDArray[np.int64] = np.full(64, -1, dtype=np.int64)
         self.tables: dict[str, Table[Any]] = {}
-        self.tags_revision = 0
+        self.tags_revision = self._told_of_tags = 0
         self._marked: dict[type, NDArray[np.bool_]] = {}  # by tag, for each esper id whether it has it
         self._tagged: tuple[Any, dict[Any, NDArray[np.intp]]] = (None, {})  # rows, found at these revisions
         self.changing = False
@@ -79,7 +79,22 @@ class World:
         )
 
     def activate(self) -> None:
-        """Make this world's esper context the current one."""
+        """Make this world's esper context the current one, and tell it which entities are marked."""
+        self._switch()
+        if self._told_of_tags != self.tags_revision:
+            for tag, marks in self._marked.items():
+                before, now = (
+                    {entity for entity, _ in esper.get_component(tag)},
+                    set(np.flatnonzero(marks).tolist()),
+                )
+                mark = tag()
+                for entity in before - now:
+                    esper.remove_component(entity, tag)
+                for entity in now - before:
+                    esper.add_component(entity, mark)
+            self._told_of_tags = self.tags_revision
+
+    def _switch(self) -> None:
         if esper.current_world != self.context:
             esper.switch_world(self.context)
 
@@ -391,7 +406,7 @@ class World:
                 return command.apply(self)
 
     def _create(self, command: Create) -> Command:
-        self.activate()
+        self._switch()
         table = self.tables[command.kind.table]
         reference = weakref.ref(self)
         handles = [command.kind(reference) for _ in range(command.count)]
@@ -403,7 +418,7 @@ class World:
         return Delete(tuple(entities))
 
     def _delete(self, command: Delete) -> Command:
-        self.activate()
+        self._switch()
         doomed = self._with_dependents(np.array(command.entities, dtype=np.int64))
         removed = []
         # Referring tables first, so that what they refer to can still be named by entity.
@@ -422,7 +437,7 @@ class World:
         return Restore(tuple(reversed(removed)))
 
     def _restore(self, command: Restore) -> Command:
-        self.activate()
+        self._switch()
         entities: list[int] = []
         for piece in command.removed:
             table = self.tables[piece.table]
@@ -452,7 +467,7 @@ class World:
 
     def check_entities(self) -> None:
         """Raise LookupError, and put them back, if entities were deleted through esper, past the tables."""
-        self.activate()
+        self._switch()
         esper.clear_dead_entities()
         whole = (len(esper.get_component(t.kind)) == t.count for t in self.tables.values() if t.count)
         if all(whole):
@@ -460,37 +475,41 @@ class World:
         handles = {handle.entity: handle for table in self.tables.values() for handle in table.handles}
         last = max(*handles, *esper.get_entities())
         _delete_context(self.context)
-        self.activate()
+        self._switch()
         for entity in range(1, last + 1):  # esper numbers them in order
             esper.create_entity(*([handles[entity]] if entity in handles else []))
-        for tag, marks in self._marked.items():
-            _add_to_each(np.flatnonzero(marks[: last + 1]), tag())
         self.tags_revision = self.next_revision()
         raise LookupError("elements were deleted through esper; use model.delete(handles), which can be undone")
 
-    # --- tags: rare marks that esper answers for -----------------------------------------------------
+    # --- tags: marks that esper is told of when somebody is about to ask it ---------------------------
 
     def tag(self, handle: Handle, tag: type) -> None:
         """Mark an entity with an (empty) component, such as Selected."""
-        entity = np.array(self._ids([handle]))
-        if handle.exists and not self._marks(tag)[entity]:
-            self._mark(entity, tag)
+        if handle.exists:
+            self._mark(self._ids([handle]), tag, True)
 
     def untag(self, handle: Handle, tag: type) -> None:
         """Take a mark off an entity, if it has it."""
-        entity = np.array(self._ids([handle]))
-        if self._marks(tag)[entity]:
-            self._unmark(entity, tag)
+        self._mark(self._ids([handle]), tag, False)
 
     def tag_only(self, handles: Iterable[Handle], tag: type) -> None:
         """Let exactly these entities carry a mark."""
         wanted = np.zeros(len(self.row_of_entity), dtype=bool)
         wanted[self._ids(list(handles))] = True
-        wanted &= self.row_of_entity >= 0
-        present = self._marks(tag)
-        former, fresh = np.flatnonzero(present & ~wanted), np.flatnonzero(wanted & ~present)
-        self._unmark(former, tag)
-        self._mark(fresh, tag)
+        self._mark(slice(None), tag, wanted & (self.row_of_entity >= 0))
+
+    def _mark(self, entities: list[int] | slice, tag: type, marked: bool | NDArray[np.bool_]) -> None:
+        marks = self._marks(tag)
+        if (marks[entities] != marked).any():
+            marks[entities] = marked
+            self.tags_revision = self.next_revision()
+
+    def _marks(self, tag: type) -> NDArray[np.bool_]:
+        """For each esper id, whether it has a mark."""
+        marks, count = self._marked.get(tag, np.zeros(0, dtype=bool)), len(self.row_of_entity)
+        if len(marks) < count:
+            self._marked[tag] = marks = grown(marks, np.zeros(count, dtype=bool), len(marks))
+        return marks
 
     def tagged(self, tag: type) -> list[Handle]:
         """Handles of the existing entities with a mark, in order of creation."""
@@ -517,28 +536,6 @@ class World:
             known[tag, table] = np.flatnonzero(self._marks(tag)[self.tables[table].entities])
         return known[tag, table]
 
-    def _marks(self, tag: type) -> NDArray[np.bool_]:
-        """For each esper id, whether it has a mark: what esper knows too, as a column."""
-        marks, count = self._marked.get(tag, np.zeros(0, dtype=bool)), len(self.row_of_entity)
-        if len(marks) < count:
-            self._marked[tag] = marks = grown(marks, np.zeros(count, dtype=bool), len(marks))
-        return marks
-
-    def _mark(self, entities: NDArray[np.intp], tag: type) -> None:
-        if len(entities):
-            self.activate()
-            _add_to_each(entities, tag())
-            self._marks(tag)[entities] = True
-            self.tags_revision = self.next_revision()
-
-    def _unmark(self, entities: NDArray[np.intp], tag: type) -> None:
-        if len(entities):
-            self.activate()
-            for entity in entities.tolist():
-                esper.try_remove_component(entity, tag)
-            self._marks(tag)[entities] = False
-            self.tags_revision = self.next_revision()
-
     def rows_of(self, handles: Iterable[Handle]) -> dict[str, NDArray[np.intp]]:
         """Rows, ascending, of those elements that exist, by table. Raises LookupError for those of another model."""
         return self._rows_by_table(self._ids(list(handles)))
@@ -550,7 +547,7 @@ class World:
 
     def handle(self, entity: int) -> Handle:
         """The handle of an existing entity. Raises LookupError."""
-        self.activate()
+        self._switch()
         for table in self.tables.values():
             found: Handle | None = esper.try_component(entity, table.kind)
             if found is not None:
@@ -611,11 +608,6 @@ class World:
 
 def _called(noun: str, name: Any) -> str:
     return str(name) if str(name).startswith(noun + " ") else f"{noun} {name}"
-
-
-def _add_to_each(entities: NDArray[np.intp], component: object) -> None:
-    for entity in entities.tolist():
-        esper.add_component(entity, component)
 
 
 def _delete_context(context: str) -> None:

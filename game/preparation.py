@@ -46,6 +46,7 @@ class Preparation(System):
 
     name = "programs.preparation"
     phase = Phase.EVENTS
+    asks_esper = False
 
     def __init__(self) -> None:
         self._frames = 0

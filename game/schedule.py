@@ -129,7 +129,8 @@ class Schedule:
     def run(self, phase: Phase, scene: str, model: Model, frame: Any) -> None:
         """Run one phase of a frame, timing each system."""
         for system in self.frame_plan(phase, scene, model):
-            model.activate()
+            if system.asks_esper:
+                model.activate()
             started = time.perf_counter()
             system.process(frame)
             self.seconds[system.name] += time.perf_counter() - started

@@ -62,6 +62,7 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
         that touch the same thing, one writing, must be ordered by before/after.
     adds: columns that it adds to; additions never conflict.
     scenes: names of the scenes it is active in; None: all.
+    asks_esper: False if it never queries esper itself, which then need not be told of every mark first.
     mod: the mod that brought it, if one did; set by the program.
     """
 
@@ -73,6 +74,7 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
     writes: ClassVar[tuple[str, ...]] = ()
     adds: ClassVar[tuple[str, ...]] = ()
     scenes: ClassVar[tuple[str, ...] | None] = None
+    asks_esper: ClassVar[bool] = True
     mod: Any = None
 
     def needs(self, model: Model) -> bool:

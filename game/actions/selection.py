@@ -35,8 +35,9 @@ def _add_to_selection(session: Session, pixel: Vector) -> None:
 
 @action("select all")
 def _select_all(session: Session, pixel: Vector) -> None:
-    session.select(*everything(session.model))
-    session.notice = f"{len(session.selected)} elements selected."
+    chosen = everything(session.model)
+    session.select(*chosen)
+    session.notice = f"{len(chosen)} elements selected."
 
 
 @action("toggle diagrams", while_drawing=True)

@@ -125,6 +125,7 @@ class Sampling(System):
     name = "probes.sampling"
     phase = Phase.EVENTS
     scenes = ("simulation", "pause")
+    asks_esper = False
 
     def process(self, frame: Any) -> None:
         probes_of(frame.session).sample(frame.session)

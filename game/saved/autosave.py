@@ -43,6 +43,7 @@ class Autosave(System):
 
     name = "files.autosave"
     phase = Phase.EVENTS
+    asks_esper = False
 
     def __init__(self, folder: Path | None = None, interval: float = INTERVAL) -> None:
         self._folder = folder or library.data_folder() / "autosave"

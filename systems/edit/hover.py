@@ -22,6 +22,7 @@ class Hover(System):
     name = "edit.hover"
     phase = Phase.EDIT
     scenes = ("simulation", "pause", "properties", "force method")
+    asks_esper = False
 
     def __init__(self) -> None:
         self._looked: Any = None  # at what, from where and at which point, in the last frame

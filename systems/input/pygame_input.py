@@ -54,6 +54,7 @@ class PygameInput(System):
 
     name = "input.pygame"
     phase = Phase.INPUT
+    asks_esper = False
 
     def __init__(self) -> None:
         self.closed = False

@@ -23,6 +23,7 @@ class PygameRender(System):
 
     name = "render.pygame"
     phase = Phase.RENDER
+    asks_esper = False
 
     def __init__(self, surface: pygame.Surface, raster: Callable[[], Raster | None] | None = None) -> None:
         self.surface = surface

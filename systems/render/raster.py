@@ -66,10 +66,11 @@ class Raster:
 def _around(clip: Clip, mark: Strokes) -> Clip:
     """The part of a clip that strokes can reach; a flat one is at most √2 times as high as it is wide."""
     reach = 0.75 * mark.width + 1.0
-    low = np.minimum(mark.start.min(axis=0), mark.end.min(axis=0)) - reach
-    high = np.maximum(mark.start.max(axis=0), mark.end.max(axis=0)) + reach
-    left, top = max(clip[0], int(low[0])), max(clip[1], int(low[1]))
-    return left, top, max(min(clip[2], int(high[0]) + 1), left), max(min(clip[3], int(high[1]) + 1), top)
+    columns = [points[:, axis] for axis in (0, 1) for points in (mark.start, mark.end)]  # quicker than by rows
+    least, most = [column.min() - reach for column in columns], [column.max() + reach for column in columns]
+    left, top = max(clip[0], int(min(least[:2]))), max(clip[1], int(min(least[2:])))
+    right, bottom = min(clip[2], int(max(most[:2])) + 1), min(clip[3], int(max(most[2:])) + 1)
+    return left, top, max(right, left), max(bottom, top)
 
 
 def _contiguous(numbers: NDArray[Any]) -> NDArray[np.float64]:

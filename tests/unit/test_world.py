@@ -623,6 +623,7 @@ def test_tags_mark_existing_entities_in_order_of_creation() -> None:
     assert model.tagged(DiagramShown) == [b]
     model.apply(log.pop())
     assert model.tagged(Selected) == [a, c, rod]
+    model.activate()
     assert [entity for entity, _ in esper.get_components(Particle, Selected)] == [a.entity, c.entity]
 
 
