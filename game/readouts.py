@@ -10,6 +10,7 @@ from components.particle import Particle
 from components.rod import Rod
 from components.view import Readout
 from game.assessment import LARGEST
+from systems.base import StopReason
 
 if TYPE_CHECKING:
     from components.handle import Handle
@@ -63,6 +64,7 @@ def _theory(session: Session) -> Iterator[Readout]:
 
 def _overview(session: Session, theory: Theories, comparison: Comparison) -> Iterator[tuple[str, str]]:
     settlement = theory.settlement
+    yield from _verdict(session, comparison)
     if theory.refusal is not None:
         yield "linear theory", "a mechanism" if theory.refusal.status == "mechanism" else "not with cables"
     if theory.exact is None:
@@ -79,6 +81,19 @@ def _overview(session: Session, theory: Theories, comparison: Comparison) -> Ite
             )
     if not session.desk.assessment.undisturbed:
         yield "edited during the run: theory", "without that history"
+
+
+def _verdict(session: Session, comparison: Comparison) -> Iterator[tuple[str, str]]:
+    """Of a run at rest: whether it is where a slowly growing load leads to, and why not."""
+    from systems.statics.verify import DEPARTURES, differs
+
+    if session.simulation.reason is not StopReason.REST or comparison.worst("simulation") is None:
+        return
+    if differs(comparison):
+        reasons = [DEPARTURES[remark.kind] for remark in session.remarks if remark.kind in DEPARTURES]
+        yield "differs from static theory", ", ".join(dict.fromkeys(reasons)) or "see pinjoint verify"
+    else:
+        yield "at rest", "where static theory says"
 
 
 def _symbol(row: Row) -> str:

@@ -24,7 +24,11 @@ QUANTITIES = {
 
 
 JUMPS = ("snap-through", "bifurcation")
-ELSEWHERE = 1e-3  # of the largest displacement: a difference that no integration error makes
+DEPARTURES = {  # what a run does that ends elsewhere than a slowly growing load, by kind of event
+    "overshoot": "yielded in the overshoot",
+    "other equilibrium": "in another equilibrium",
+}
+ELSEWHERE = 1e-3  # of the largest value of its kind: a difference that no integration error makes
 FURTHER = 1e-2  # of the plastic strain of statics: more is an overshoot
 LEAST = 1e-6  # of the strain at first yield: less is rounding
 
@@ -187,6 +191,12 @@ class Comparison:
             else {}
             for quantity, values in self._values.items()
         }
+
+
+def differs(comparison: Comparison) -> bool:
+    """True if the simulation is farther from the exact equilibrium than errors of integration account for."""
+    worst = comparison.worst("simulation")
+    return worst is not None and (worst.simulation_error or 0.0) > ELSEWHERE
 
 
 def compare(model: Model, theory: Theories, simulated: Answer | None) -> Comparison:

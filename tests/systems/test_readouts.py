@@ -54,6 +54,21 @@ def test_what_theory_cannot_answer_is_said(name: str, title: str, said: str) -> 
     assert shown(session)["Theory beside the run"][title] == said
 
 
+@pytest.mark.parametrize(
+    ("name", "title", "said"),
+    [
+        ("isostatic", "at rest", "where static theory says"),
+        ("overshoot_yield", "differs from static theory", "yielded in the overshoot"),
+    ],
+)
+def test_at_rest_the_verdict_comes_before_the_errors(name: str, title: str, said: str) -> None:
+    session = Session.open(name)
+    session.press("m")
+    assert title not in shown(session)["Theory beside the run"]
+    session.run(until="rest")
+    assert list(shown(session)["Theory beside the run"].items())[0] == (title, said)
+
+
 def test_theory_follows_edits_and_says_when_it_does_not_know_the_history() -> None:
     session = Session.open("isostatic")
     session.press("m")
