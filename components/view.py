@@ -102,11 +102,13 @@ class Readout:
 class Shape:
     """A mechanism or a mode of vibration, to be drawn over the model.
 
-    title: such as "Mode 1 of 5: 9.276 Hz". displacement: from the original positions (m), as drawn, (n, 2).
+    title: such as "Mode 1 of 5: 9.276 Hz". displacement: (m), as drawn, (n, 2). about: the displacement (m) of the
+    equilibrium that it leads away from, (n, 2); None: it leads away from the original positions.
     """
 
     title: str
     displacement: NDArray[np.float64] = field(compare=False, repr=False)
+    about: NDArray[np.float64] | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass

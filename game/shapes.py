@@ -22,7 +22,7 @@ class NoShape(LookupError):
 
 
 class Shapes:
-    """The shape that is shown over a model, if any; it goes away when the model is edited."""
+    """The shape that is shown over a model, if any; it goes away when what it follows from changes."""
 
     def __init__(self, model: Model) -> None:
         self._model = model
@@ -33,13 +33,17 @@ class Shapes:
     @property
     def shown(self) -> Shape | None:
         """What is drawn now."""
-        if self._shown is not None and self._model.newest(Role.DOCUMENT) != self._revision:
+        if self._shown is not None and self._newest(self._shown) != self._revision:
             self._shown = None
         return self._shown
 
+    def _newest(self, shape: Shape) -> int:
+        """The newest change of what a shape follows from: about an equilibrium, of the state too."""
+        return self._model.newest(Role.DOCUMENT, *(() if shape.about is None else (Role.STATE,)))
+
     def show(self, shape: Shape) -> None:
-        """Draw this one until the model is edited."""
-        self._shown, self._revision = shape, self._model.newest(Role.DOCUMENT)
+        """Draw this one until the model is edited, or leaves the equilibrium that it is about."""
+        self._shown, self._revision = shape, self._newest(shape)
 
     def next(self) -> None:
         """Go on to the next: mechanisms, then modes by their frequency, then none. Raises NoShape."""
@@ -48,7 +52,10 @@ class Shapes:
             self.show(self._round[0])
             return
         after = self._round.index(self._shown) + 1 if self._shown in self._round else len(self._round)
-        self._shown = self._round[after] if after < len(self._round) else None
+        if after < len(self._round):
+            self.show(self._round[after])
+        else:
+            self._shown = None
 
 
 def _first_ones(model: Model) -> list[Shape]:
@@ -73,23 +80,29 @@ def mechanism_shapes(model: Model, most: int | None = None) -> list[Shape]:
 
 
 def mode_shapes(model: Model, most: int | None = None) -> list[Shape]:
-    """Natural modes of the unloaded structure by frequency, less its mechanisms; the lowest 50 of a large one, or `most`."""
+    """Natural modes by frequency, the lowest 50 of a large structure, or `most`.
+
+    About the present state, if that is an equilibrium under load, whose forces stiffen or soften the structure;
+    else of the unloaded structure, less its mechanisms.
+    """
+    from systems.statics.settle import Start
     from systems.statics.theory import indeterminacy
-    from systems.statics.vibration import FULL, vibrations
+    from systems.statics.vibration import FULL, rests_under_load, vibrations
 
     if model.rods.count == 0:
         return []
     degrees = indeterminacy(model)
-    still = degrees.mechanisms
-    count = model.rods.count - degrees.static  # the rank of the compatibility matrix
-    wanted = count if still + count <= FULL else min(count, LOWEST_OF_LARGE)
-    wanted = wanted if most is None else min(wanted, most)
-    found = vibrations(model, count=still + wanted)
+    rank = model.rods.count - degrees.static  # of the compatibility matrix
+    about = Start.present(model) if rests_under_load(model) else None
+    unknowns = degrees.mechanisms + rank
+    wanted = min(unknowns if unknowns <= FULL else LOWEST_OF_LARGE, unknowns if most is None else most)
+    found = vibrations(model, about, count=degrees.mechanisms + wanted)
+    still = degrees.mechanisms if about is None else int((found.angular_squared <= 0.0).sum())
+    modes = list(zip(found.hertz[still:].tolist(), found.modes[still:], strict=True))
+    under, places = ("", None) if about is None else (" under load", about.displacement)
     return [
-        _shape(model, f"Mode {number} of {count}: {hertz:.4g} Hz", motion)
-        for number, (hertz, motion) in enumerate(
-            zip(found.hertz[still:].tolist(), found.modes[still:], strict=True), start=1
-        )
+        _shape(model, f"Mode {number} of {unknowns - still}{under}: {hertz:.4g} Hz", motion, places)
+        for number, (hertz, motion) in enumerate(modes[:wanted], start=1)
     ]
 
 
@@ -107,8 +120,10 @@ def numbered(model: Model, kind: str, number: int) -> Shape:
     return found[number - 1]
 
 
-def _shape(model: Model, title: str, motion: NDArray[np.float64]) -> Shape:
-    return Shape(title, DRAWN_SHARE * extent(model) * motion)
+def _shape(
+    model: Model, title: str, motion: NDArray[np.float64], about: NDArray[np.float64] | None = None
+) -> Shape:
+    return Shape(title, DRAWN_SHARE * extent(model) * motion, about)
 
 
 def extent(model: Model) -> float:

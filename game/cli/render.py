@@ -32,7 +32,12 @@ def command(words: Sequence[str]) -> int:
     parser.add_argument("--diagrams", action="store_true", help="show all force diagrams")
     shape = parser.add_mutually_exclusive_group()
     shape.add_argument("--mechanism", type=int, metavar="N", help="draw a motion that elongates no rod over it")
-    shape.add_argument("--mode", type=int, metavar="N", help="draw a natural mode over it, 1 the lowest")
+    shape.add_argument(
+        "--mode",
+        type=int,
+        metavar="N",
+        help="draw a natural mode over it, 1 the lowest; at rest, that under load",
+    )
     parser.add_argument("--theme", choices=theme_names(), default="light", help="colours")
     parser.add_argument("--limit", type=positive, default=DEFAULT_LIMIT, help=argparse.SUPPRESS)
     options = parser.parse_args(words)
@@ -41,7 +46,6 @@ def command(words: Sequence[str]) -> int:
         raise UsageError(f"--output {options.output}: write a file that ends with {' or '.join(_PICTURES)}.")
     session = session_of(options)
     session.view.all_diagrams = options.diagrams
-    _show_shape(session, options)
     try:
         if options.output.lower().endswith(".gif"):
             status = _animate(session, options, (width, height))
@@ -69,6 +73,7 @@ def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) 
         status = session.run(until="rest", limit=options.limit)
     elif options.at is not None:
         status = session.run(time=options.at)
+    _show_shape(session, options)
     render_png(session, options.output, size, options.theme)
     return status
 
@@ -76,6 +81,7 @@ def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) 
 def _animate(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:
     from game.animation import render_gif
 
+    _show_shape(session, options)
     until = None if options.until_rest or options.at is None else session.time + options.at
     return render_gif(session, options.output, size, options.theme, until=until, limit=options.limit)
 

@@ -15,10 +15,12 @@ _MOVES_FROM = 0.5  # points
 
 
 def draw_shape(sheet: Sheet) -> None:
-    """What of the undeformed structure the shape moves, displaced by it."""
+    """What of the structure the shape moves, displaced by it from where it was found."""
     shape, position = sheet.view.shape, sheet.model.particles.position
     if shape is None or shape.displacement.shape != position.shape:
         return
+    if shape.about is not None:
+        position = position + shape.about * sheet.model.settings.displacement_scale
     places = sheet.view.camera.to_pixels(position + shape.displacement)
     colour = faded(sheet.theme.hover, _OPACITY)
     pixels = np.hypot(*shape.displacement.T) * sheet.view.camera.scale

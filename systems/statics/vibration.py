@@ -11,11 +11,13 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 
 from components.model import Model
 from systems.statics.equations import ROUND_OFF, Array, Matrix, Structure
+from systems.statics.external import external_forces
 from systems.statics.factor import Factor, pseudo_random
-from systems.statics.settle import StaticState
+from systems.statics.settle import Start, StaticState
 
 FULL = 600  # unknowns up to which all modes are computed
 LOWEST = 10  # modes of larger structures, unless more are asked for
+BALANCED = 1e-6  # of the largest force; a run ends at 1e-8 of it
 SHIFT = 1e-9  # below zero, of the highest ω², so that mechanisms (ω = 0) can be found too
 
 
@@ -36,12 +38,22 @@ class Vibrations:
         return frequencies
 
 
-def vibrations(model: Model, state: StaticState | None = None, count: int | None = None) -> Vibrations:
+def rests_under_load(model: Model) -> bool:
+    """True if the present state is an equilibrium, and not without forces in the rods."""
+    structure = Structure.of(model).with_translations()
+    response = structure.respond(model.particles.displacement, model.rods.plastic_strain)
+    external, pull = external_forces(model).at(1.0), float(np.abs(response.axial_force).max(initial=0.0))
+    unbalanced = structure.gather(external - structure.internal(response))
+    largest = max(pull, float(np.abs(external).max(initial=0.0)))
+    return pull > 0.0 and float(np.abs(unbalanced).max(initial=0.0)) <= BALANCED * largest
+
+
+def vibrations(model: Model, state: StaticState | Start | None = None, count: int | None = None) -> Vibrations:
     """The lowest natural modes of small undamped vibrations, K φ = ω² M φ; rods do not yield in them.
 
     state: the equilibrium that they are about, whose axial forces stiffen or soften the structure; None: the
-    original positions, without axial forces and with taut cables. count: how many; None: all of a small structure, 10 of a
-    large one.
+    original positions, without axial forces and with taut cables. count: how many; None: all of a small structure,
+    10 of a large one.
     """
     structure = Structure.of(model).with_translations()
     root = np.sqrt(structure.gather(np.repeat(model.particles.mass, 2).reshape(-1, 2)) / 1000.0)
@@ -60,7 +72,7 @@ def vibrations(model: Model, state: StaticState | None = None, count: int | None
     return Vibrations(values, modes.reshape(len(fields), *structure.unknown.shape))
 
 
-def _stiffness(structure: Structure, state: StaticState | None) -> Matrix:
+def _stiffness(structure: Structure, state: StaticState | Start | None) -> Matrix:
     if state is not None:
         response = structure.respond(state.displacement, state.plastic_strain)
         return structure.tangent(response, response.slack)

@@ -66,7 +66,7 @@ def test_at_rest_the_verdict_comes_before_the_errors(name: str, title: str, said
     session.press("m")
     assert title not in shown(session)["Theory beside the run"]
     session.run(until="rest")
-    assert list(shown(session)["Theory beside the run"].items())[0] == (title, said)
+    assert next(iter(shown(session)["Theory beside the run"].items())) == (title, said)
 
 
 def test_theory_follows_edits_and_says_when_it_does_not_know_the_history() -> None:

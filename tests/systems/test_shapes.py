@@ -18,6 +18,7 @@ from game.shapes import DRAWN_SHARE, NoShape, mechanism_shapes, mode_shapes, num
 from systems.render.marks import Discs
 from systems.render.picture import compose
 from systems.render.theme import load_theme
+from tests.reference.models import pendulum
 
 GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
 STIFFNESS = 1.0  # kN, of rods 1 m long between masses of 1 kg
@@ -64,6 +65,24 @@ def test_modes_of_a_chain_are_drawn_where_theory_says() -> None:
 
 def _in_model(session: Session, pixels: Any) -> Any:
     return np.array([session.view.camera.to_model(tuple(pixel)) for pixel in pixels])
+
+
+def test_at_rest_under_load_modes_are_those_about_the_equilibrium() -> None:
+    """A pendulum that hangs: it swings with ω² = g/L instead of being a mechanism, and is drawn where it hangs."""
+    hanging = pendulum(0.4)
+    session = session_of(hanging)
+    assert session.settle() == "equilibrium"
+    session.press("b")
+    session.press("b")
+    swing = math.sqrt(9.81 / (1.0 + 9.81e-3 / hanging["rods"][0]["stiffness"])) / (2 * math.pi)
+    assert shown(session) == f"Mode 1 of 2 under load: {swing:.4g} Hz"
+    shape = session.view.shape
+    assert shape is not None
+    assert shape.about is not None
+    lowest = session.model.particles.position + shape.about
+    assert lowest[1] == pytest.approx((0.0, -1.0 - 9.81e-3 / hanging["rods"][0]["stiffness"]), abs=1e-9)
+    session.simulation.model.give("particles.velocity", [[0.0, 0.0], [1.0, 0.0]])
+    assert shown(session) == ""
 
 
 def test_mechanisms_come_first_then_modes_then_none() -> None:
