@@ -28,7 +28,7 @@ MISSING = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]
 pytestmark = pytest.mark.skipif(bool(MISSING), reason=f"{' and '.join(MISSING)} not installed")
 
 ROOT = Path(__file__).parents[2]
-PATIENCE = 30.0  # s that anything may take, such as compiling on a slow machine
+PATIENCE = 150.0  # s that anything may take, such as compiling on a slow machine
 EMPTY = {"format": "pinjoint model", "version": 1}
 # How xdotool calls keys whose names are not their characters.
 X_NAMES = {"return": "Return", "escape": "Escape", "ctrl+n": "ctrl+n"}
