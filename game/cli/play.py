@@ -6,7 +6,6 @@ import sys
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from game import models
 from game.arguments import Parser
@@ -32,19 +31,20 @@ def command(words: Sequence[str]) -> int:
         "--data",
         type=Path,
         metavar="FOLDER",
-        help="where it saves and loads: without a window in an empty folder that is gone afterwards, else in yours",
+        help="where it saves and loads; left out, in an empty folder that is gone afterwards",
     )
     options = parser.parse_args(words)
     loaded = script.Script(options.script)
     with ExitStack() as kept:
         if options.data is not None:
             kept.enter_context(library.data_in(options.data))
+            loaded.has_data = True
         if options.window:
             failures = in_window(models.load(loaded.source), file_of(loaded.source), lesson=loaded)
         else:
             session = loaded.open()
-            if options.data is None:  # so that it ends alike however often it is played
-                kept.enter_context(library.data_in(Path(kept.enter_context(TemporaryDirectory()))))
+            if not loaded.has_data:  # so that it ends alike however often it is played
+                kept.enter_context(library.data_apart())
             failures = loaded.play(session)
     for failure in failures:
         print(f"{options.script} {failure}", file=sys.stderr)

@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from platformdirs import user_data_path
 
@@ -40,6 +41,13 @@ def data_in(folder: Path) -> Iterator[None]:
             del os.environ[DATA_VARIABLE]
         else:
             os.environ[DATA_VARIABLE] = before
+
+
+@contextmanager
+def data_apart() -> Iterator[Path]:
+    """As long as this lasts, data lies in an empty folder that is gone afterwards."""
+    with TemporaryDirectory() as folder, data_in(Path(folder)):
+        yield Path(folder)
 
 
 def models_folder() -> Path:

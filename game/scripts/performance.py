@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from components.field import Vector
 from components.view import Page, Status, View
+from game.desk import ModelFile
 from game.program.writer import REVIEW_INTERVAL
+from game.saved import library
 from game.scripts.script import Failure, Script
 
 if TYPE_CHECKING:
@@ -43,8 +45,21 @@ class Performance:
         self._natural = 0.0  # simulated seconds per second shown of what runs
 
     def play(self) -> list[Failure]:
-        """Play all lines, or until the person ends it; returns what was expected in vain. Raises ScriptError."""
-        session, failures = self._app.session, []
+        """Play all lines, or until the person ends it; returns what was expected in vain. Raises ScriptError.
+
+        What the script saves, it saves in a folder of its own; the person goes on with unsaved work.
+        """
+        if self._script.has_data:
+            return self._play()
+        with library.data_apart() as folder:
+            failures = self._play()
+        for desk in self._app.session.desks:
+            if desk.file.path is not None and folder in desk.file.path.parents:
+                desk.file, desk.saved = ModelFile(None, desk.file.name), -1
+        return failures
+
+    def _play(self) -> list[Failure]:
+        session, failures = self._app.session, list[Failure]()
         session.performing, session.footer = True, View()
         self._grow(1)
         self._say(self._script.title)

@@ -79,8 +79,11 @@ def _found(source: str | Path) -> Path | Traversable:
 class Script:
     """A script read from a file, or a lesson by its name, ready to be played in a session.
 
-    title, description: what its header says of it, or "".
+    title, description: what its header says of it, or "". has_data: whoever plays it chose a folder in which it
+    saves and loads; else it must be kept away from what the person saved.
     """
+
+    has_data = False
 
     def __init__(self, source: str | Path) -> None:
         self.path = _found(source)

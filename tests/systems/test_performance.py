@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from pathlib import Path
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
@@ -14,6 +15,7 @@ from components.model import Model
 from game import Session, models
 from game.app import App
 from game.desk import ModelFile
+from game.saved import library
 from game.scenes.load import LESSONS
 from game.scripts.performance import Performance
 from game.scripts.script import Script, lessons
@@ -82,6 +84,37 @@ def test_keys_pressed_meanwhile_do_nothing_to_the_model(app: App) -> None:
     script = Script("1_draw_a_truss")
     assert opened(app, script).play() == []
     assert app.session.particles.count == 3
+
+
+SAVES = """{"format": "pinjoint session", "version": 1, "model": "isostatic"}
+{"press": "s"}
+{"type": "mine"}
+{"press": "return"}
+{"expect": "scene = pause"}
+"""
+
+
+def test_what_a_script_saves_replaces_nothing_of_the_persons(
+    app: App, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(library.DATA_VARIABLE, str(tmp_path / "data"))
+    mine = library.models_folder() / "mine.json"
+    mine.parent.mkdir(parents=True)
+    mine.write_text("what I made")
+    (tmp_path / "saves.jsonl").write_text(SAVES)
+    script = Script(tmp_path / "saves.jsonl")
+    assert opened(app, script).play() == []
+    assert mine.read_text() == "what I made"
+    assert (app.session.file.path, app.session.file.name) == (None, "mine")
+    assert app.session.desk.unsaved
+    app.session.press("ctrl+s")
+    assert app.session.scene == "save"
+    app.session.act("pause")
+    script.has_data = True
+    mine.unlink()
+    assert opened(app, script).play() == []
+    assert app.session.file.path == mine
+    assert mine.is_file()
 
 
 def test_a_lesson_is_chosen_from_the_pictures() -> None:
