@@ -193,6 +193,7 @@ def load_encounters() -> None:
     encounters = Encounters(model, Impacts(model), lambda target: StopReason.DONE, _nothing_to_bind)
     before = Snapshot.take(model)
     encounters._near.look_up()
+    encounters._near.clear_time()
     encounters._meeting(before)
     encounters._strikes.happen(before)
     note_encounters()

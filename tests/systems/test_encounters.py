@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from game import Session
+from game.collisions.encounter_kernels import has_encounters
+from game.collisions.encounters import load_encounters
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
 
@@ -27,6 +29,12 @@ def truss(ball: dict[str, Any], restitution: float = 0.5, **settings: Any) -> di
         ],
         "rods": [rod | {"name": "AB", "between": ["A", "B"]}, rod | {"name": "BC", "between": ["B", "C"]}],
     }
+
+
+def test_what_a_window_loads_ahead_of_need_can_be_called() -> None:
+    """Here, not in the process that compiles it, nor in the frame in which the window calls it."""
+    load_encounters()
+    assert has_encounters()
 
 
 def state(session: Session) -> bytes:
