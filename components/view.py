@@ -126,6 +126,7 @@ class View:
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
     theory, energy: show theory beside the run, and its energy account, among them.
+    fitted: nobody looked closer or elsewhere since the whole model was shown; so it is in a window of any size.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -149,10 +150,12 @@ class View:
     theory: bool = False
     energy: bool = False
     shape: Shape | None = None
+    fitted: bool = False
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model."""
         self.camera.fit(drawn_places(model), MARGIN, self.canvas, self.pixel_ratio)
+        self.fitted = True
 
     @property
     def strip(self) -> Viewport:

@@ -542,6 +542,8 @@ class Session:
     def resize(self, width: int, height: int, pixel_ratio: float = 1.0) -> None:
         """The window has so many pixels now, and so many for each point."""
         self.view.camera.viewport, self.view.pixel_ratio = Viewport(0, 0, width, height), pixel_ratio
+        if self.view.fitted:
+            self.view.fit(self.model)
         if self.on_resize is not None:
             self.on_resize()
         self.scenes.active.resized(self)

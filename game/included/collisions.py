@@ -63,6 +63,8 @@ def toggle_speeds(session: Session, pixel: Vector) -> None:
     """Show the speeds of the particles, or not."""
     shown = _asked[session] = not _asked.get(session, is_gas(session.model))
     session.notice = "Speeds beside Rayleigh's curve." if shown else "Speeds are not shown."
+    if shown and not free_speeds(session.model).any():
+        session.notice += " They appear as soon as a particle that no rod holds is moving."
 
 
 def panels(session: Session) -> Sequence[Readout]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from components import Field, FieldError, Handle, Pieces, Selected, Table, Vector
 from components.tags import Hovered
 from systems.render.clip import bounds, clip_segments
-from systems.render.labels import Label, half_size
+from systems.render.labels import STRONG, Label, half_size
 from systems.render.marks import Discs, Mark, Strokes
 from systems.render.theme import faded
 
@@ -68,6 +68,7 @@ def draw(sheet: Sheet) -> Iterator[Mark]:
     low, high = bounds(sheet.viewport)
     width = WIDTH * sheet.unit
     start, end, rows = clip_segments(ends[:, 0], ends[:, 1], low - 2 * width, high + 2 * width)
+    sheet.occupancy.line(start, end, STRONG)
     selected, hovered = (sheet.tagged(tag, "walls") for tag in (Selected, Hovered))
     layers = [(selected, sheet.theme.selected), (hovered, sheet.theme.hover)]
     for colour, chosen in sheet.colours_of(rows, layers, sheet.theme.ink):

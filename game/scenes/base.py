@@ -48,10 +48,12 @@ class Scene:
     def zoom(self, session: Session, factor: float, pixel: Vector) -> None:
         """Look closer, so that what is under a pixel stays there."""
         session.view.camera.zoom(factor, pixel)
+        session.view.fitted = False
 
     def pan(self, session: Session, pixels: Vector) -> None:
         """Move the picture by so many pixels (right, down)."""
         session.view.camera.pan(pixels)
+        session.view.fitted = False
 
     def fit(self, session: Session) -> None:
         """Show everything."""

@@ -10,13 +10,13 @@ from systems.render.theme import faded
 from systems.render.typography import line_height, shortened, text_width
 
 _EDGE, _PAD, _GAP = 10.0, 9.0, 16.0  # points: to the edge, inside the panel, between name and value
-_WIDEST = 260.0  # points
+_WIDEST, _LEAST_ROOM = 320.0, 520.0  # points, of a panel and of the viewport beside which it stands
 _PLOT = (280.0, 150.0)  # points, width and height of a plot with its axes
 
 
 def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     """The panels, as many as there is room for between `room`'s top and bottom; none where they are hidden."""
-    if not sheet.view.legend or sheet.viewport.width < 2.0 * _WIDEST * sheet.unit:
+    if not sheet.view.legend or sheet.viewport.width < _LEAST_ROOM * sheet.unit:
         return []
     marks: list[Mark] = []
     top, bottom = room[0] + _EDGE * sheet.unit, room[1] - _EDGE * sheet.unit

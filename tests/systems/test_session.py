@@ -158,3 +158,24 @@ def test_what_no_script_can_mean_is_refused() -> None:
         Session.open(5)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="rod AB: ends x is 'A'; it must be the row of an element"):
         session.rods["AB"].between = ("A", "C")  # type: ignore[assignment]
+
+
+def test_a_window_of_another_size_shows_the_whole_model_until_somebody_looks_closer(session: Session) -> None:
+    def all_seen() -> bool:
+        room = session.view.canvas
+        return all(room.contains((x, y)) for x, y in session.view.camera.to_pixels(session.particles.position))
+
+    for size in ((640, 480), (2560, 1440), (400, 900)):
+        session.resize(*size)
+        assert all_seen()
+    scale = session.view.camera.scale
+    session.press("wheel up", (200.0, 450.0))
+    session.resize(640, 480)
+    assert session.view.camera.scale == pytest.approx(1.2 * scale)
+    session.press("home")
+    session.resize(1280, 800)
+    assert all_seen()
+    session.press("drag middle", (30.0, 0.0))
+    centre = session.view.camera.centre
+    session.resize(640, 480)
+    assert session.view.camera.centre == centre
