@@ -20,13 +20,33 @@ from game.shapes import Shapes
 from game.simulation import Simulation
 from systems.edit.pull import Pull
 
+Stamp = tuple[int, ...]
+
 
 @dataclass(frozen=True)
 class ModelFile:
-    """Where a model is saved again (None: it has no place yet), and the name that it goes by."""
+    """Where a model is saved again (None: it has no place yet), and the name that it goes by.
+
+    stamp: of what the file held when it was opened or saved.
+    """
 
     path: Path | None = None
     name: str = ""
+    stamp: Stamp = ()
+
+    @classmethod
+    def at(cls, path: Path) -> ModelFile:
+        """The file there, as it is now."""
+        return cls(path, path.stem, stamp_of(path))
+
+
+def stamp_of(path: Path) -> Stamp:
+    """What is another one as soon as anybody has written to a file; () if there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return ()
+    return found.st_ino, found.st_mtime_ns, found.st_size
 
 
 class Desk:
@@ -139,4 +159,4 @@ def file_of(source: str | Path | Mapping[str, Any]) -> ModelFile:
         return ModelFile()
     if isinstance(source, str) and source in models.bundled():
         return ModelFile(None, source)
-    return ModelFile(Path(source).absolute(), Path(source).stem)
+    return ModelFile.at(Path(source).absolute())

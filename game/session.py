@@ -154,7 +154,7 @@ class Session:
     def save_as(self, path: Path) -> None:
         """Write the model to a file that is its own from now on. Raises ModelError."""
         self.save(path)
-        self.desk.file = ModelFile(path, path.stem)
+        self.desk.file = ModelFile.at(path)
         self.desk.saved = self.model.revision
         self.notice = f"Saved as '{path.stem}'."
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from components.field import Vector
 from game.actions.registry import action
+from game.desk import stamp_of
 from game.models import ModelError
 from game.scenes.properties import Properties
+from systems.edit.refusal import Refusal
 
 if TYPE_CHECKING:
     from game.session import Session
@@ -29,12 +32,20 @@ def _load(session: Session, pixel: Vector) -> None:
 
 @action("save again")
 def _save_again(session: Session, pixel: Vector) -> None:
-    """Under the same name; a model without one is given it first."""
-    if session.file.path is None:
+    """Under the same name; a model without one is given it first. What somebody else wrote there is asked for."""
+    file = session.file
+    if file.path is None:
         _to_pause_and(session, "save")
         return
+    there = stamp_of(file.path)
+    if there not in ((), file.stamp):
+        session.desk.file = replace(file, stamp=there)
+        raise Refusal(
+            f"Another window or program has changed '{file.name}' since. Ctrl+S again replaces that; S asks for another"
+            " name."
+        )
     try:
-        session.save_as(session.file.path)
+        session.save_as(file.path)
     except ModelError as error:
         session.notice = str(error)
 

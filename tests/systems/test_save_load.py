@@ -172,6 +172,25 @@ def test_ctrl_s_writes_the_file_that_was_opened(tmp_path: Path) -> None:
     assert stiffness_in(path) == 5.0
 
 
+def test_what_another_window_saved_is_only_replaced_when_asked_twice(tmp_path: Path) -> None:
+    path = tmp_path / "ours.json"
+    models.save(models.parse(triangle()), path)
+    here, there = Session.open(path), Session.open(path)
+    here.rods["AB"].stiffness = 5.0
+    there.rods["AB"].stiffness = 7.0
+    there.press("ctrl+s")
+    here.press("ctrl+s")
+    assert "Another window or program has changed 'ours'" in here.notice
+    assert here.desk.unsaved
+    assert stiffness_in(path) == 7.0
+    here.press("ctrl+s")
+    assert here.notice == "Saved as 'ours'."
+    assert stiffness_in(path) == 5.0
+    path.unlink()
+    here.press("ctrl+s")
+    assert stiffness_in(path) == 5.0, "what is gone is not in the way"
+
+
 def test_an_example_is_not_overwritten(data: Path) -> None:
     session = Session.open("isostatic")
     session.rods["AB"].stiffness = 5.0

@@ -307,10 +307,14 @@ def test_verify_points_out_a_rod_that_yielded_in_the_overshoot(capsys: pytest.Ca
     assert status == 0
     assert found["status"] == "differs from static theory"
     assert found["remarks"][0]["rods"] == ["AB"]
-    assert found["message"].startswith("Rod AB yielded only in the overshoot: static force 9 kN < strength 10 kN")
+    assert found["message"].startswith(
+        "Rod AB yielded only in the overshoot: static force 9 kN < strength 10 kN"
+    )
 
 
-def test_verify_says_where_an_unexplained_difference_is(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_verify_says_where_an_unexplained_difference_is(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     """One load is taken away again before the other comes: statics, which lets both grow, yields less."""
     limits = {"tensile_strength": 215, "compressive_strength": 215}
     model = trusses.square((0, 0), **limits)
