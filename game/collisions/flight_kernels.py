@@ -35,9 +35,10 @@ def {part}({arguments}):
 
 def _program(part: str) -> tuple[str, dict[str, Callable[..., int]]]:
     """Source of a part, and what it calls."""
-    from systems.collision.discs import Discs
+    from systems.collision.flight.kernels import fly, take_steps
+    from systems.collision.window.kernels import open_window
 
-    kernel = getattr(Discs, part)
+    kernel = {EVENTS: fly, WINDOWS: open_window, PILES: take_steps}[part]
     arguments = ", ".join(inspect.signature(kernel.py_func).parameters)
     return _SOURCE.format(part=part, arguments=arguments), {"kernel": kernel}
 

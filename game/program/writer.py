@@ -152,8 +152,10 @@ class Writer:
             import numpy as np
             from numba import njit
 
-            compiled = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
-            inlined = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True)
+            from systems.kernels import part
+
+            compiled = part()
+            inlined = part(forceinline=True)
             entry = njit(error_model="numpy", cache=True)
             RATES = {self.rates}
             POWERS = {self.powers}

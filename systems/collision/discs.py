@@ -16,9 +16,7 @@ from components.obstacles import NO_OBSTACLES, Obstacles
 from components.paths import Paths
 from systems.collision import arrays
 from systems.collision.arrays import Floats, Grid, Group, Integers, Pile, Queue, Reason, Report, Ties
-from systems.collision.flight import kernels as flight
 from systems.collision.pile.kernels import STEP_SHARE
-from systems.collision.window import kernels as window
 from systems.near import nearest
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
@@ -48,13 +46,12 @@ class Impacts:
 class Discs:
     """Discs that fly, collide and rest on one another.
 
-    fly, take_steps, open_window: the kernels that advance them; a program puts some there that are compiled
-    already.
+    fly, take_steps, open_window: the kernels that advance them, compiled; a subclass has them.
     """
 
-    fly: Callable[..., int] = staticmethod(flight.fly)
-    take_steps: Callable[..., int] = staticmethod(flight.take_steps)
-    open_window: Callable[..., int] = staticmethod(window.open_window)
+    fly: Callable[..., int]
+    take_steps: Callable[..., int]
+    open_window: Callable[..., int]
 
     def __init__(
         self,

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.obstacles import NO_OBSTACLES, Obstacles
-from systems.collision.overlap.kernels import separate
 from systems.near import Floats, Rows, near_pairs, nearest
 
 SLACK = 1e-13  # of the reach of two discs; less is round-off
@@ -39,12 +38,12 @@ def part(
     radius: Floats,
     inverse_mass: Floats,
     among: Callable[[Rows], NDArray[np.bool_]],
-    kernel: Callable[..., Any] = separate,
+    kernel: Callable[..., Any],
     obstacles: Obstacles = NO_OBSTACLES,
 ) -> int:
     """Move discs apart that overlap, changing `displacement`; returns how many pairs still do in the end.
 
-    among: which of the pairs it is given are to be parted.
+    among: which of the pairs it is given are to be parted. kernel: `separate` of overlap/kernels.py, compiled.
     """
     count, still = len(position), np.zeros((len(obstacles), 2))
     places, moved = np.concatenate([position, obstacles.start]), np.concatenate([displacement, still])

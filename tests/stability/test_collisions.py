@@ -5,6 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from game.collisions.encounter_kernels import kernels
+from game.collisions.flight_kernels import engine
 from systems.collision.arrays import Reason
 from systems.collision.discs import Discs
 from systems.collision.overlaps import part
@@ -27,7 +29,7 @@ RADIUS = 0.05
 
 
 def fly(scene: Scene, until: float, **rest: object) -> Discs:
-    discs = Discs(**scene, **rest)
+    discs = engine()(**scene, **rest)
     reason, impacts = discs.advance(until, MOST_EVENTS)
     assert reason is Reason.DONE
     for numbers in (*discs.state_at(until), impacts.time, impacts.impulse, impacts.loss):
@@ -76,7 +78,7 @@ def test_a_pile_at_rest_is_in_equilibrium(count: int, columns: int) -> None:
 def test_a_pile_comes_to_rest_without_a_jump() -> None:
     """In 2 ms no disc goes farther than its speed takes it, but for the last fortieth of a radius to where it lies."""
     scene, interval = stacked(120, 10), 2e-3
-    discs = Discs(**scene, acceleration=DOWN, restitution=0.3)
+    discs = engine()(**scene, acceleration=DOWN, restitution=0.3)
     before, speed = discs.state_at(0.0)[0], 0.0
     for k in range(1, 3000):
         discs.advance(k * interval, MOST_EVENTS)
@@ -101,7 +103,7 @@ def test_discs_that_fly_apart_in_a_step_have_been_pushed() -> None:
         "radius": np.full(2 * rows, RADIUS),
         "inverse_mass": np.ones((2 * rows, 2)),
     }
-    discs = Discs(**scene, acceleration=DOWN, restitution=restitution)
+    discs = engine()(**scene, acceleration=DOWN, restitution=restitution)
     begin_steps.py_func(discs.numbers, discs.counts)
     _, impacts = discs.advance(0.1)
     assert len(impacts.time) == rows
@@ -154,7 +156,7 @@ def test_heaps_of_any_kind_never_sink_in(seed: int, restitution: float) -> None:
 
 def test_energy_of_a_falling_pile_only_decreases() -> None:
     scene = stacked(40, 6)
-    discs = Discs(**scene, acceleration=DOWN, restitution=0.5)
+    discs = engine()(**scene, acceleration=DOWN, restitution=0.5)
     mass = 1 / scene["inverse_mass"][:40, 0]
     before = np.inf
     for time in np.linspace(0, 3, 31)[1:]:
@@ -192,9 +194,13 @@ def test_five_hundred_on_one_point_are_parted() -> None:
     position, inverse_mass = np.zeros((500, 2)), np.ones((500, 2))
     radius = np.full(500, RADIUS)
     parted = []
+
+    def among(pairs: np.ndarray) -> np.ndarray:
+        return np.ones(len(pairs), dtype=bool)
+
     for _ in range(2):
         displacement = np.zeros((500, 2))
-        left = part(position, displacement, radius, inverse_mass, lambda pairs: np.ones(len(pairs), dtype=bool))
+        left = part(position, displacement, radius, inverse_mass, among, kernels().part)
         assert np.isfinite(displacement).all()
         parted.append(displacement)
     assert parted[0].tobytes() == parted[1].tobytes()

@@ -7,6 +7,7 @@ import pytest
 
 from components.obstacles import obstacles
 from game import Session, models
+from game.collisions.flight_kernels import engine
 from game.included.collisions import panels
 from systems.collision.arrays import Reason
 from systems.collision.discs import Discs
@@ -18,7 +19,7 @@ def discs_of(name: str) -> Discs:
     """The particles of a bundled model without rods, as discs."""
     model = models.load(name)
     particles = model.particles
-    return Discs(
+    return engine()(
         particles.position,
         particles.velocity,
         particles.radius,

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from numba import njit
 
 from components.obstacles import Obstacles
+from game.collisions.flight_kernels import engine
 from systems.collision.arrays import Reason
 from systems.collision.discs import Discs, Impacts
 from systems.collision.gap.kernels import NEVER, first_touch
@@ -51,7 +52,7 @@ def fly(
     count = len(position)
     inverse = np.repeat(1 / np.array(masses or [1.0] * count)[:, None], 2, axis=1)
     down = np.tile([0.0, -pull], (count, 1))
-    discs = Discs(
+    discs = engine()(
         position,
         velocity,
         np.full(count, radius),
@@ -159,7 +160,7 @@ def test_slowly_over_an_edge_it_turns_until_it_leaves() -> None:
     table = obstacles(((-1.0, 0.0), (0.0, 0.0)), restitution=0.0)
     start, speed = (-0.01, RADIUS), 1e-4
     discs, _ = fly([start], [(speed, 0)], table, 100.0, pull=GRAVITY, restitution=0.0)
-    trace = Discs(
+    trace = engine()(
         [start], [(speed, 0)], [RADIUS], [[1, 1]], acceleration=[[0, -GRAVITY]], restitution=0, obstacles=table
     )
     left = None
@@ -188,7 +189,7 @@ def test_over_an_edge_it_leaves_once_whatever_stands_below(
     edge = obstacles(((-1.0, 0.0), (0.0, 0.0)), ((0.0, 0.0), (0.1, -3.0)), restitution=restitution)
     if walls == 1:
         edge = obstacles(((-1.0, 0.0), (0.0, 0.0)), restitution=restitution)
-    discs = Discs(
+    discs = engine()(
         [(-0.01, RADIUS)],
         [(speed, 0)],
         [RADIUS],
@@ -307,7 +308,7 @@ def test_discs_that_slide_into_a_groove_do_not_sink_in(count: int, seed: int) ->
     rng = np.random.default_rng(seed)
     start = np.column_stack([rng.uniform(-0.7, 0.7, count), 1.0 + 0.12 * np.arange(count)])
     groove, down = obstacles(((-1.0, 1.0), (0.0, 0.0)), ((1.0, 1.0), (0.0, 0.0)), restitution=0.5), GRAVITY
-    discs = Discs(
+    discs = engine()(
         start,
         np.zeros((count, 2)),
         np.full(count, 0.04),
@@ -339,7 +340,7 @@ def test_a_run_that_is_resumed_goes_on_bit_for_bit() -> None:
     whole, _ = fly(start, velocity, walls, 3.0, pull=GRAVITY, restitution=0.9)
     half, _ = fly(start, velocity, walls, 1.5, pull=GRAVITY, restitution=0.9)
     moved, speeds = half.state_at(1.5)
-    resumed = Discs(
+    resumed = engine()(
         start,
         speeds,
         np.full(3, RADIUS),

@@ -44,7 +44,7 @@ from systems.collision.gap.kernels import (
     speed_noise,
     touch_speed,
 )
-from systems.collision.kernels import compiled, inlined
+from systems.collision.kernels import compiled
 from systems.collision.projection.kernels import begin, copy_motion, opening_rate, project
 
 STILL = 1e-10  # of the speed and acceleration that gravity gives; what moves less is at rest
@@ -103,7 +103,7 @@ def note_lasting(i, j, force, discs, ties, counts):
 # --- the end of a step --------------------------------------------------------------------------------------
 
 
-@inlined
+@compiled
 def stop_sinking(count, touching, group):
     """Project the velocities in `motion` for the contacts that have lasted until now."""
     active = 0
@@ -120,7 +120,7 @@ def stop_sinking(count, touching, group):
 # --- the forces from now on ---------------------------------------------------------------------------------
 
 
-@inlined
+@compiled
 def support(count, touching, discs, group, numbers):
     """Forces in the contacts of a group whose velocities are in `motion`.
 

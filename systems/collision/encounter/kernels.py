@@ -3,13 +3,13 @@
 from systems.collision.arrays import BIAS, EPSILON, OPENING
 from systems.collision.gap.kernels import NEVER, first_touch
 from systems.collision.impact.kernels import respond
-from systems.collision.kernels import inlined
+from systems.collision.kernels import compiled
 from systems.collision.projection.kernels import compliance
 
 NOISE = 16.0 * EPSILON  # of speeds and accelerations: slower approaches are round-off
 
 
-@inlined
+@compiled
 def first_meeting(h, pairs, kinds, position, before, velocity, after, radius, span):
     """When in a step of h seconds two discs first touch while they approach; NEVER if none do.
 
@@ -39,7 +39,7 @@ def first_meeting(h, pairs, kinds, position, before, velocity, after, radius, sp
     return earliest if earliest <= h else NEVER
 
 
-@inlined
+@compiled
 def strike(members, count, restitution, group):
     """The impact of a group whose links, normals and velocities are set; see impact/kernels.py."""
     for c in range(count):

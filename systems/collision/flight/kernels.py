@@ -85,7 +85,7 @@ from systems.collision.grid.kernels import (
     sort,
 )
 from systems.collision.impact.kernels import respond
-from systems.collision.kernels import compiled, inlined
+from systems.collision.kernels import compiled
 from systems.collision.pile.kernels import begin_steps, crowded, note_pushes, step
 from systems.collision.projection.kernels import compliance, opening_rate
 from systems.collision.queue.kernels import drop_first, is_void
@@ -97,7 +97,7 @@ QUEUE_FULL, GROUP_FULL = int(Reason.QUEUE_FULL), int(Reason.GROUP_FULL)
 TINY = 1e-300  # m; distance of centres that coincide
 
 
-@inlined
+@compiled
 def fly(until, most_events, discs, grid, ties, queue, group, report, numbers, counts):
     """Let the events of the present window happen up to a time (s), at most `most_events` of them. Returns a Reason.
 
@@ -124,7 +124,7 @@ def fly(until, most_events, discs, grid, ties, queue, group, report, numbers, co
     return GO_ON
 
 
-@inlined
+@compiled
 def _happen(discs, grid, ties, queue, group, report, numbers, counts):
     """The first event of the queue happens. Returns a Reason."""
     i, j = np.int64(queue.meetings[0, 0]), np.int64(queue.meetings[0, 1])
@@ -157,7 +157,7 @@ def _happen(discs, grid, ties, queue, group, report, numbers, counts):
     return reason
 
 
-@inlined
+@compiled
 def take_steps(until, most_steps, discs, grid, ties, pile, report, numbers, counts):
     """Let a pile take its steps, at most `most_steps`, until it is at rest or dissolved. Returns a Reason."""
     last, reason = counts[EVENTS] + most_steps, GO_ON

@@ -3,14 +3,14 @@
 import math
 
 from systems.collision.gap.kernels import nearest_of_piece
-from systems.collision.kernels import inlined
+from systems.collision.kernels import compiled
 
 MORE = 0.05  # of an overlap, by which discs are moved farther than apart: sweeps then come to an end
 MOST_SWEEPS = 400  # over the same pairs
 GOLDEN_ANGLE = 2.399963229728653  # between the directions of discs with one centre, so that all differ
 
 
-@inlined
+@compiled
 def separate(first, second, position, displacement, radius, inverse_mass, span, slack):
     """Move the discs of pairs that overlap by more than slack × reach apart; returns how many sweeps it took.
 

@@ -52,7 +52,7 @@ from systems.collision.grid.kernels import (
     level_of,
     neighbours,
 )
-from systems.collision.kernels import compiled, inlined
+from systems.collision.kernels import compiled
 from systems.collision.queue.kernels import changes, purge, push
 
 DONE, QUEUE_FULL, GRID_FULL = int(Reason.DONE), int(Reason.QUEUE_FULL), int(Reason.GRID_FULL)
@@ -118,7 +118,7 @@ def expect(i, j, discs, ties, queue, numbers, counts):
     return True
 
 
-@inlined
+@compiled
 def open_window(discs, grid, ties, queue, numbers, counts):
     """Choose a window that begins now, box all discs and queue all meetings in it. Returns a Reason."""
     counts[RENEW] = 1
