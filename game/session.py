@@ -32,6 +32,7 @@ from game.clock import FrameClock
 from game.collisions.impacts import Impacts
 from game.desk import Desk, Desks, ModelFile, file_of
 from game.document import missing_mods
+from game.energy import Energy
 from game.gestures import Gesture
 from game.history.history import History
 from game.history.timeline import Timeline
@@ -41,7 +42,7 @@ from game.reports.curve import goal_of
 from game.scenes import Scenes, Stage, all_scenes
 from game.schedule import Schedule
 from game.showing import show
-from game.simulation import FREE_FLIGHT, Energy, Simulation
+from game.simulation import FREE_FLIGHT, Simulation
 from game.surroundings import Autosaves, Prepares, Window
 from game.toolbar import toolbar_of
 from systems.base import Law, Phase, StopReason, System

@@ -7,10 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, replace
-
-import numpy as np
-from numpy.typing import NDArray
+from dataclasses import replace
 
 from components.extremes import incomputable
 from components.field import Column, Role, same
@@ -24,6 +21,7 @@ from game.catalogue import DRIVERS
 from game.collisions.encounters import Encounters
 from game.collisions.flight import Flight, part_overlaps
 from game.collisions.impacts import Impacts
+from game.energy import Account, Energy
 from game.history.moment import Moment
 from game.program.binding import ProgramError
 from game.program.culprit import blame_mod, find_culprit
@@ -32,16 +30,12 @@ from game.program.program import Program
 from game.program.writer import REVIEW_INTERVAL, form_of
 from game.schedule import Schedule
 from game.sleep import Sleep
-from game.step_size import automatic_step, first_step, is_outgrown, step_limit
+from game.step_size import StepSize
 from systems.base import Driver, StepSystem, StopReason
 from systems.collision.system import Collision, FreeFlight
 from systems.physics.automatic import choose
-from systems.physics.pace import natural_pace
-from systems.physics.spectrum import Spectrum, spectrum
 
-SHOWN = 1.0 / 120.0  # s shown, at the natural pace, that one step may last
 MOST_RETRIES = 6  # times that an automatic step is halved before a run is given up
-DEFAULT_DRIVER = "velocity_verlet"
 FREE_FLIGHT = FreeFlight()
 
 # What the clock is given when a run begins.
@@ -61,38 +55,13 @@ OBSERVED = (
 )
 
 
-@dataclass(frozen=True)
-class Energy:
-    """The energy account of a run, in J: initial + work = kinetic + elastic + dissipated + imbalance."""
-
-    initial: float
-    work: float
-    kinetic: float
-    elastic: float
-    dissipated_damping: float
-    dissipated_plastic: float
-    dissipated_impact: float
-
-    @property
-    def imbalance(self) -> float:
-        """What the integration has lost (positive) or created (negative)."""
-        dissipated = self.dissipated_damping + self.dissipated_plastic + self.dissipated_impact
-        return self.initial + self.work - (self.kinetic + self.elastic + dissipated)
-
-    def as_dict(self) -> dict[str, float]:
-        """All entries by name, the imbalance included."""
-        return asdict(self) | {"imbalance": self.imbalance}
-
-
 class Simulation:
     """Advances one model and keeps its derived columns, its energy account and its last good state.
 
     reason: why the last advance ended; message: the same as a sentence, or "".
-    warning, note: what a person should know though the run goes on, or "".
+    note: what a person should know though the run goes on, or "".
     impacts: what collided so far.
     compute_seconds, compile_seconds: spent so far in steps, and in compiling or loading programs.
-    smooth: steps are not longer than what is shown at once, even where accuracy would allow it; else they
-        are too long to be watched, and to be interrupted.
     watch: asked before steps are taken; returns after how many at most it wants to be asked again.
     """
 
@@ -101,16 +70,15 @@ class Simulation:
         self.schedule = schedule
         self.reason = StopReason.DONE
         self.message = ""
-        self.warning = ""
         self.note = ""
         self.impacts = Impacts(model)
         self._sleep = Sleep(model)
+        self._step_size = StepSize(model, self._sleep, lambda: self.driver)
+        self._account = Account(model, self._measured)
         self._encounters = Encounters(model, self.impacts, self._short_step, self._rebind)
         self.compute_seconds = 0.0
         self.compile_seconds = 0.0
-        self.stable_step = math.inf
         self.watch: Callable[[], int] | None = None
-        self.smooth = True
         self._programs: dict[tuple[str, ...], Program | Flight] = {}
         self._driver: Driver | None = None
         self._program: Program | Flight | None = None
@@ -119,7 +87,6 @@ class Simulation:
         self._collides = False
         self._armed = False  # the energy account and the step size fit the present document
         self._armed_revision = -1
-        self._before_edit: Column | None = None
         self._safe: Snapshot | None = None
         self._retries = 0
         model.before_change = self.before_change
@@ -185,7 +152,7 @@ class Simulation:
         self._armed = self._started
         self._sleep.forget()
         self._program = None  # its plan may be another one: what is in contact is part of the state
-        self._before_edit = None
+        self._account.before_edit = None
         self._safe = None
         self._retries = 0
         self.reason, self.message = StopReason.DONE, ""
@@ -212,7 +179,7 @@ class Simulation:
             Snapshot.take(self.model, *tables) if tables else self.present(),
             self.model.clock.steps,
             self._armed,
-            self._before_edit,
+            self._account.before_edit,
             self.stable_step,
             self.warning,
             self._binding,
@@ -231,10 +198,10 @@ class Simulation:
         moment.state.restore(self.model)
         self.forget()
         self._program = program
-        self._armed, self._before_edit = moment.armed, moment.before_edit
+        self._armed, self._account.before_edit = moment.armed, moment.before_edit
         if moment.whole:  # else what limits the step is found out anew
             self._safe = moment.state
-            self.stable_step, self.warning = moment.stable_step, moment.warning
+            self._step_size.stable, self._step_size.warning = moment.stable_step, moment.warning
         self._armed_revision = self.model.revision
 
     def wake(self) -> None:
@@ -244,8 +211,7 @@ class Simulation:
     def before_change(self) -> None:
         """Before anything is edited, note the energy that the edit starts from; the program is void."""
         if self._armed:
-            self.observe()
-            self._before_edit = self.program.measures.copy()
+            self._account.begin_edit()
             self._armed = False
         if self.model.clock.paths is not None:
             self.model.writable("clock.paths")[0] = None
@@ -258,15 +224,16 @@ class Simulation:
             problem = incomputable(self.model)
             if not problem:
                 self._part_overlaps()
-                self._close_account()
+                self.program.commit()  # what edits left beyond a strength yields
+                self._account.close()
                 self._review_sleep(edited=True)
-                self._choose_step(self._find_stable_step())
+                self.begin_step_size(self._step_size.first())
             self._armed = True
             self._armed_revision = self.model.revision
             self._safe = None
             self.reason, self.message = StopReason.DIVERGED if problem else StopReason.DONE, problem
         elif self._safe is None:
-            self._find_stable_step()
+            self._step_size.look_up()
         if self._safe is None:
             self._safe = self.present()
         return self.program
@@ -315,7 +282,7 @@ class Simulation:
         if not isinstance(program, Program) or not self._sleep.any_asleep:
             return program
         if self._sleep.disturb(program):
-            self._limit_step_anew()
+            self._step_size.limit_anew()
         return self._sleep.part(program)
 
     def _made(self, systems: list[StepSystem]) -> Program | Flight:
@@ -329,118 +296,40 @@ class Simulation:
         if any(isinstance(system, Collision) for system in self.schedule.step_plan(self.model)):
             self.note = part_overlaps(self.model)
 
-    def _account(self) -> tuple[float, float, float]:
-        """(initial energy, work, potential reference) in J, edits since the last step included.
-
-        What an edit adds to the energy counts as work; the energy that a run begins with is its initial one.
-        """
-        clock = self.model.clock
-        kinetic, _, elastic, potential = self.program.measures[:4].tolist()
-        if self._armed:
-            return clock.initial_energy, clock.work, clock.potential_reference
-        if self._before_edit is None:
-            dissipated = clock.dissipated_damping + clock.dissipated_plastic + clock.dissipated_impact
-            return kinetic + elastic + dissipated - clock.work, clock.work, potential
-        kinetic_before, _, elastic_before, potential_before = self._before_edit[:4].tolist()
-        work = potential_before - clock.potential_reference
-        work += kinetic + elastic - kinetic_before - elastic_before
-        return clock.initial_energy, clock.work + work, potential
-
-    def _close_account(self) -> None:
-        """Enter edits into the account; what they left beyond a strength has yielded, at nobody's expense."""
-        self.program.commit()
+    def _measured(self) -> Column:
+        """What the program measures in the present state."""
         self.observe()
-        entries = self._account()
-        for name, value in zip(("initial_energy", "work", "potential_reference"), entries, strict=True):
-            self.model.writable(f"clock.{name}")[0] = value
-        self._before_edit = None
+        return self.program.measures
 
     # --- the step size ---------------------------------------------------------------------------
 
-    def _find_stable_step(self) -> Spectrum:
-        """Find out what the present state allows, and warn of a step that a person made too long."""
-        found = spectrum(self.model, self.model.rods.axial_force, self._rods_that_limit)
-        self.stable_step = math.inf
-        if found.frequency > 0.0 or found.decay > 0.0:
-            self.stable_step = self.driver.stable_step(found.frequency, found.decay)
-        size = self.model.settings.time_step
-        self.warning = ""
-        if self.stable_step == 0.0 or (size is not None and size > self.stable_step):
-            self.warning = f"{self._remedy(size)} The run will probably diverge."
-        return found
+    @property
+    def stable_step(self) -> float:
+        """The largest stable step (s) that was found last."""
+        return self._step_size.stable
 
     @property
-    def _rods_that_limit(self) -> NDArray[np.bool_] | None:
-        """Where the error is controlled those that are awake limit the step; None: all rods do."""
-        if not self._controls_error or not self._sleep.any_asleep:
-            return None
-        awake = (self.model.particles.mobility > 0.0).any(axis=1) & ~self.model.particles.asleep
-        return np.asarray(awake[self.model.rods.between].any(axis=1))
+    def warning(self) -> str:
+        """That the steps are longer than is stable, or ""."""
+        return self._step_size.warning
 
     @property
-    def _controls_error(self) -> bool:
-        return self.driver.estimates_error and self.model.settings.time_step is None
+    def smooth(self) -> bool:
+        """True if steps are not longer than what is shown at once, even where accuracy would allow it.
 
-    def _remedy(self, size: float | None) -> str:
-        """What to do about an unstable run."""
-        if self.stable_step == 0.0:
-            return (
-                f"Without damping {self.integrator} is stable at no time step:"
-                f" choose the integrator {DEFAULT_DRIVER}, or give the rods damping."
-            )
-        if size is not None and size > self.stable_step:
-            return (
-                f"The time step {size:.3g} s is above the largest stable one, {self.stable_step:.3g} s for"
-                f" {self.integrator}: set it to automatic or make it smaller."
-            )
-        if self.driver.estimates_error and self.model.settings.time_step is None:
-            return "Make the tolerance smaller."
-        if self.driver.estimates_error:
-            return "Set the time step to automatic, so that the error is controlled, or make it smaller."
-        if self.driver is not DRIVERS[DEFAULT_DRIVER]:
-            return f"Make the time step smaller, or choose the integrator {DEFAULT_DRIVER}."
-        return "Make the time step smaller."
+        Else they are too long to be watched, and to be interrupted.
+        """
+        return self._step_size.smooth
 
-    def _choose_step(self, found: Spectrum) -> None:
-        """Begin with a step size that suits a document."""
-        model, chosen = self.model, self.model.settings.time_step
-        for name in ("step_limit", "step_error", "largest_displacement", "largest_speed"):
-            model.writable(f"clock.{name}")[0] = 0.0
-        if chosen is None and self.driver.estimates_error:
-            self._limit_step()
-            self.begin_step_size(first_step(found.frequency, found.decay, model.clock.step_limit))
-        else:
-            self.begin_step_size(chosen if chosen is not None else self._automatic_step(found.frequency))
+    @smooth.setter
+    def smooth(self, smooth: bool) -> None:
+        self._step_size.smooth = smooth
 
-    def _limit_step(self) -> None:
-        """Where the error is controlled, stability and the eye limit the step."""
-        self.model.writable("clock.step_limit")[0] = step_limit(self.stable_step, self._longest_shown())
-
-    def _limit_step_anew(self) -> None:
-        """Others are awake than before."""
-        if self._controls_error:
-            self._find_stable_step()
-            self._limit_step()
-
-    def _review_step(self) -> None:
-        """Change an automatic step size if the stable step changed much."""
-        if self.model.settings.time_step is not None:
-            return
-        found = self._find_stable_step()
-        if self.driver.estimates_error:
-            self._limit_step()
-            return
-        wanted = self._automatic_step(found.frequency)
-        if is_outgrown(self.model.clock.step_size, wanted, self.stable_step):
+    def _review_step_size(self) -> None:
+        """Change an automatic step size if what is stable changed much."""
+        wanted = self._step_size.reviewed()
+        if wanted is not None:
             self.begin_step_size(wanted)
-
-    def _automatic_step(self, frequency: float) -> float:
-        shown = self._longest_shown() if self.driver is FREE_FLIGHT else math.inf
-        return automatic_step(self.stable_step, frequency, self.model.rods.count, shown)
-
-    def _longest_shown(self) -> float:
-        """What one step may last (s) so that a person sees it."""
-        return SHOWN * natural_pace(self.model) if self.smooth else math.inf
 
     def begin_step_size(self, size: float) -> None:
         """From now on steps have this size; the guard against divergence compares with this moment."""
@@ -509,7 +398,7 @@ class Simulation:
             if self._stood_still_since(before):
                 self._heed(StopReason.REST)
             else:
-                self._review_step()
+                self._review_step_size()
 
     def _review_sleep(self, *, edited: bool = False) -> None:
         """Let islands at rest sleep, after edits or where a run is reviewed."""
@@ -517,7 +406,7 @@ class Simulation:
         if isinstance(program, Program) and (edited or self._sleep.may_happen(program)):
             others = self._sleep.review(program)
             if others and not edited:
-                self._limit_step_anew()
+                self._step_size.limit_anew()
 
     @property
     def _steps_to_review(self) -> int:
@@ -645,7 +534,7 @@ class Simulation:
         assert self._safe is not None
         self._safe.restore(self.model)
         self.message = (
-            f"The simulation diverged near t = {failed:.6g} s: {why}. {self._remedy(size)}"
+            f"The simulation diverged near t = {failed:.6g} s: {why}. {self._step_size.remedy(size)}"
             f" The last good state, at t = {self.model.clock.time:.6g} s, was kept."
         )
 
@@ -658,25 +547,12 @@ class Simulation:
     @property
     def energy(self) -> Energy:
         """The energy account now."""
-        clock = self.model.clock
-        self.observe()
-        kinetic, _, elastic, potential = self.program.measures[:4].tolist()
-        initial, work, reference = self._account()
-        return Energy(
-            initial=initial,
-            work=work + potential - reference,
-            kinetic=kinetic,
-            elastic=elastic,
-            dissipated_damping=clock.dissipated_damping,
-            dissipated_plastic=clock.dissipated_plastic,
-            dissipated_impact=clock.dissipated_impact,
-        )
+        return self._account.energy(edited=not self._armed)
 
     @property
     def residual(self) -> float:
         """Largest unbalanced force on a free particle over the largest force of all, dampers apart."""
-        self.observe()
-        unbalanced, largest = self.program.measures[4:6].tolist()
+        unbalanced, largest = self._measured()[4:6].tolist()
         return float(unbalanced / largest) if largest > 0.0 else 0.0
 
 

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from components.field import Column
 from components.load import load_breaks, loads_end
+from game.energy import Energy
 from game.program.program import ACCOUNT, CONTROL
 from game.program.writer import REVIEW_INTERVAL
-from game.simulation import Energy
 from game.step_size import automatic_step, first_step, is_outgrown, step_limit
 from game.sweeps.batch_program import BatchProgram
 from game.sweeps.stack import Stack
