@@ -22,7 +22,8 @@ from components.view import MAGNIFICATIONS, MARGIN, Plot, View, drawn_places, ma
 from game.desk import Desk, ModelFile
 from game.preparation import Preparation
 from game.raster_program import load_raster
-from game.saved.autosave import Autosave
+from game.saved import library
+from game.saved.autosave import Autosave, unkept
 from game.saved.preferences import (
     DEFAULT_THEME,
     preferred_magnification,
@@ -75,8 +76,10 @@ def open_window(
     expected in vain is returned.
     """
     path, source = record
-    app = App(model, file, _autosave(), theme or preferred_theme(), Preparation(), preferred_magnification())
+    autosave, trouble = _autosave()
+    app = App(model, file, autosave, theme or preferred_theme(), Preparation(), preferred_magnification())
     app.session.lesson = lesson
+    app.session.notice = trouble or app.session.notice
     if path is not None:
         with open(path, "w", encoding="utf-8") as script:
             Recorder(app.session, script, source)
@@ -86,12 +89,12 @@ def open_window(
     return app.run()
 
 
-def _autosave() -> Autosave | None:
-    """None where nothing can be written; the program is of use all the same."""
+def _autosave() -> tuple[Autosave | None, str]:
+    """None where nothing can be written, and why; the program is of use all the same."""
     try:
-        return Autosave()
-    except OSError:
-        return None
+        return Autosave(), ""
+    except OSError as error:
+        return None, unkept(library.data_folder(), error)
 
 
 def _find_display() -> None:

@@ -34,6 +34,14 @@ def spare_name(path: Path) -> str:
     return path.stem.partition(".")[2].partition(".")[2]
 
 
+def unkept(folder: Path, error: OSError) -> str:
+    """That unsaved work would not survive a crash, and why."""
+    return (
+        f"Unsaved work is not kept against a crash: {folder}: {error.strerror}. Make room there, or start Pinjoint with"
+        f" {library.DATA_VARIABLE} naming another folder."
+    )
+
+
 class Autosave(System):
     """Writes the unsaved work of a window to files that only a crash leaves behind.
 
@@ -52,6 +60,7 @@ class Autosave(System):
         self._count = 0
         self._written: dict[Desk, int] = {}  # revision of what the spare of a desk holds
         self._due = 0.0
+        self._trouble = self._told = ""  # why the last spare could not be written; what of that was said
         self._thread: threading.Thread | None = None
         self._folder.mkdir(parents=True, exist_ok=True)
         lock = lock_file(self._folder / f"{self._id}.lock")
@@ -92,7 +101,10 @@ class Autosave(System):
     # --- writing -------------------------------------------------------------------------------------
 
     def process(self, frame: Any) -> None:
-        """Write a spare of one model that changed, if it is time to."""
+        """Write a spare of one model that changed, if it is time to; say once if that cannot be done."""
+        if self._trouble != self._told:
+            self._told = self._trouble
+            frame.session.notice = self._trouble or frame.session.notice
         if (self._thread is not None and self._thread.is_alive()) or time.monotonic() < self._due:
             return
         desks = [desk for desk in frame.session.desks if desk.unsaved]
@@ -114,9 +126,13 @@ class Autosave(System):
 
     def _put(self, path: Path, still: _Still) -> None:
         began = time.monotonic()
-        # What no file can hold, or a full disk, shall not end the session; saving says what is wrong.
-        with contextlib.suppress(models.ModelError, OSError):
-            models.replace(path, msgspec.json.encode(document(cast(Model, still))))
+        with contextlib.suppress(models.ModelError):  # what no file can hold; saving says what is wrong
+            content = msgspec.json.encode(document(cast(Model, still)))
+            try:
+                models.replace(path, content)
+                self._trouble = ""
+            except OSError as error:
+                self._trouble = unkept(self._folder, error)
         spent = time.monotonic() - began
         self._due = began + max(self._interval, spent / SHARE)
 

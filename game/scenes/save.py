@@ -55,7 +55,13 @@ class Save(FileScene):
                 return
             path.parent.mkdir(parents=True, exist_ok=True)
             session.save_as(path)
-        except (library.NameRefused, models.ModelError, OSError) as error:
+        except OSError as error:
+            self.say(
+                f"{library.models_folder()} cannot be made: {error.strerror}. Start Pinjoint with {library.DATA_VARIABLE}"
+                " naming a folder where you may write."
+            )
+            return
+        except (library.NameRefused, models.ModelError) as error:
             self.say(str(error))
             return
         session.scenes.request("pause")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import subprocess
@@ -178,6 +179,24 @@ def test_what_is_saved_needs_no_spare(data: Path) -> None:
     gone(session, data)
     keeper.close(session.desks)
     assert not (data / "models").exists()
+
+
+def test_that_no_spare_can_be_written_is_said_once(data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(path: Path, content: bytes) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    keeper = Autosave(interval=0.0)
+    session = Session.open(triangle(), [keeper])
+    monkeypatch.setattr(models, "replace", full)
+    for stiffness, said in ((5.0, True), (6.0, False)):
+        session.rods["AB"].stiffness = stiffness
+        session.notice = ""
+        session.frame(0.0)
+        assert keeper._thread is not None
+        keeper._thread.join(10.0)
+        session.frame(0.0)
+        assert ("not kept against a crash" in session.notice and "No space left" in session.notice) is said
+    keeper.close(session.desks)
 
 
 def test_every_model_with_unsaved_work_has_its_spare(data: Path) -> None:

@@ -146,7 +146,7 @@ def test_a_file_in_place_of_the_folder_is_explained(session: Session, data: Path
     (data / "models").write_text("no folder")
     saved_as(session, "a")
     assert session.scene == "save"
-    assert message_of(session)
+    assert "models cannot be made: File exists. Start Pinjoint with PINJOINT_DATA" in message_of(session)
 
 
 def test_ctrl_s_saves_again_without_asking(session: Session, data: Path) -> None:
