@@ -267,9 +267,16 @@ class Session:
 
     @property
     def message(self) -> str:
-        """Why the run stopped, or what to beware of; "" if there is nothing to say."""
+        """What the scene asks or refuses, why the run stopped, or what to beware of; "" if there is nothing to say."""
         simulation = self.simulation
-        said = self.fault or simulation.message or simulation.warning or simulation.note or self.notice
+        said = (
+            self.fault
+            or self.scenes.active.message
+            or simulation.message
+            or simulation.warning
+            or simulation.note
+            or self.notice
+        )
         return " ".join([*filter(None, [said]), *(remark.message for remark in self.remarks)])
 
     @property
@@ -327,7 +334,7 @@ class Session:
         """
         from systems.statics.settle import settle
 
-        found = settle(self.model, factors)
+        found, strain = settle(self.model, factors), self.rods.plastic_strain.copy()
         with self.model.transaction("settle"):
             self.model.give("particles.displacement", found.final.displacement)
             self.model.give("particles.velocity", np.zeros_like(found.final.displacement))
@@ -338,7 +345,13 @@ class Session:
             self.model.give("clock.origin_steps", np.array([self.model.clock.steps]))
             if len(found.final.contacts) and self.simulation.driver is not FREE_FLIGHT:
                 self.model.clock.paths = resting(found.final.contacts, 1000.0 * found.final.contact_force)
-        self.notice = found.message or f"Settled: {found.status}."
+        self.notice = found.account
+        yielded = np.flatnonzero(found.final.plastic_strain != strain)
+        if len(yielded) and not found.events:  # at once: what it began from is beyond the strengths
+            named = (
+                f"{len(yielded)} rods have" if len(yielded) > 1 else f"{self.name(self.rods[yielded[0]])} has"
+            )
+            self.notice += f" {named} yielded at once."
         laws = [
             system for system in self.schedule.step_plan(self.model) if isinstance(system, Law) and system.mod
         ]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from components.field import Vector
 from game.actions.editing import nudge
 from game.actions.registry import Action, action
+from systems.edit.refusal import Refusal
 
 if TYPE_CHECKING:
     from game.session import Session
@@ -71,6 +72,8 @@ def _step_back(session: Session, pixel: Vector) -> None:
 
 @action("restart")
 def _restart(session: Session, pixel: Vector) -> None:
+    if session.at_beginning:
+        raise Refusal("This is the beginning: no time has passed. Ctrl+Z takes back edits and settling.")
     session.restart()
     session.notice = "Back at the beginning; all edits are kept."
 

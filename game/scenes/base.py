@@ -33,6 +33,11 @@ class Scene:
     targets: ClassVar[tuple[str, ...]] = ("pause",)
     sources: ClassVar[tuple[str, ...]] = ()
 
+    @property
+    def message(self) -> str:
+        """What it asks, tells or refuses in a place of its own; "" if nothing."""
+        return ""
+
     def enter(self, session: Session) -> None:
         """Called once when the scene becomes the active one."""
 

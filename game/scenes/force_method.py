@@ -50,6 +50,16 @@ class ForceMethod(Scene):
         self._places = [View(page=Page(), legend=False) for _ in range(3)]
         self._head, self._foot = View(page=Page(), legend=False), View(page=Page(), legend=False)
 
+    @property
+    def message(self) -> str:
+        """What is expected, or why the structure cannot be solved."""
+        self.finish()
+        return self._told
+
+    @property
+    def _told(self) -> str:
+        return words.message(self.shown_guide) if self.shown_guide else self._problem
+
     def enter(self, session: Session) -> None:
         self._problem, self._mechanism, self._page_of = "", None, -1
         self.work(session, "Solving the structure", partial(self._begin, session))
@@ -129,7 +139,7 @@ class ForceMethod(Scene):
     def _lay_out(self, session: Session) -> list[tuple[Model, View]]:
         """Place everything in the window; returns what stands in the middle."""
         guide, ratio, whole = self.shown_guide, session.view.pixel_ratio, session.view.canvas
-        self._head.heading = words.message(guide) if guide else self._problem
+        self._head.heading = self._told
         part = f"Part {guide.part} of {PARTS}" if guide else "Not possible"
         if self._work is not None:
             self._head.heading, part = self._work.text, "Working"

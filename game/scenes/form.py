@@ -29,6 +29,11 @@ class FormScene(Scene):
     def __init__(self) -> None:
         self.form = Form("")
 
+    @property
+    def message(self) -> str:
+        """What its heading says, and why the text of a box is refused."""
+        return " ".join(filter(None, [self.form.heading.message, *(box.problem for box in self.form.boxes)]))
+
     def enter(self, session: Session) -> None:
         self.form = self.make_form(session)
 

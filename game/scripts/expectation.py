@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from components.spelling import missing
-from game.force_method import words
 from game.target import PathError, locate_one
 
 if TYPE_CHECKING:
@@ -46,7 +45,12 @@ def check(session: Session, text: str) -> Iterator[tuple[str, Any]]:
 
 def _holds(got: Any, relation: str, value: str, slack: str | None) -> bool:
     if isinstance(got, bool | str) or got is None:
-        return relation == "=" and str(got).lower() == value.strip("\"'").lower()
+        if relation in "<>":
+            raise ValueError(
+                f"it is {got!r}, which is neither more nor less; write = or, for a part of a text, ≈."
+            )
+        said, wanted_text = str(got).lower(), value.strip("\"'").lower()
+        return said == wanted_text if relation == "=" else isinstance(got, str) and wanted_text in said
     if isinstance(got, tuple):
         raise ValueError(f"it has two components, {got}; ask for .x or .y.")
     try:
@@ -93,14 +97,14 @@ def _of_force_method(session: Session, quantity: str) -> Any:
     superposed.AC is set 2 + set 3, which is to equal real.AC, set 1.
     """
     guide = getattr(session.scenes.active, "guide", None)
+    if quantity == "message" and session.scene == "force method":
+        return session.scenes.active.message
     if guide is None:
         raise LookupError("the force method is not active; press K in pause first.")
     if quantity == "unknown":
         return guide.unknown.name if guide.unknown else None
     if quantity == "part":
         return guide.part
-    if quantity == "message":
-        return words.message(guide)
     if guide.solution is None:
         raise LookupError("nothing is released yet; pick an unknown in part 2 first.")
     what, _, rod = quantity.partition(".")

@@ -12,7 +12,8 @@ a "description". Every further line does one thing:
     {"action": "undo"}                          a named action
     {"run": "rest"}   {"run": 0.5}              until at rest; or by seconds
     {"steps": 128}                              by fixed steps
-    {"expect": "rods.AB.axial_force ≈ -28.34 ± 0.01"}   also =, <, >; scene, time, message, energy.…
+    {"expect": "rods.AB.axial_force ≈ -28.34 ± 0.01"}   also =, <, >; scene, time, count.rods, energy.…
+    {"expect": "message ≈ not found"}           what the window tells; of a text, ≈ asks for a part
     {"input": "click", "pixel": [512, 300]}     what a window recorded
     {"resize": [1280, 800, 2]}                  the window's pixels, and pixels per point
     {"say": "Press Space."}                     told to who watches it in a window; else nothing

@@ -25,6 +25,7 @@ from systems.statics.factor import lowest_mode, soft_modes
 from systems.statics.follow import Path, Point
 from systems.statics.loading import Loading, first_order_mechanism
 
+MOST_TOLD = 3  # events that an account tells besides
 TOLD = ("free body", "mechanism", "snap-through", "bifurcation", "note")  # kinds of events that messages repeat
 NEARLY_SOFT = 1e-9  # of the rods' stiffness: a motion that is resisted less is worth a note
 ROUGH = 1e-9  # of the largest force, unbalanced: worth a note
@@ -83,6 +84,14 @@ class Settlement:
     def message(self) -> str:
         """What a person should know: why it ended, and what happened before; "" if nothing."""
         return " ".join(dict.fromkeys(state.message for state in self.states if state.message))
+
+    @property
+    def account(self) -> str:
+        """What somebody who watched is told: the message, if any, and the first of what else happened."""
+        others = [event.message for event in self.events if event.message not in self.message]
+        more = f"And {len(others) - MOST_TOLD} more events." if len(others) > MOST_TOLD else ""
+        said = [self.message or f"Settled: {self.status}.", *others[:MOST_TOLD], more]
+        return " ".join(filter(None, said))
 
     @property
     def events(self) -> tuple[Event, ...]:

@@ -70,6 +70,39 @@ def test_a_session_expects_the_same_in_python() -> None:
         session.expect("rods.ABX.strain = 0")
 
 
+def test_a_part_of_a_text_is_expected_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(DATA_VARIABLE, str(tmp_path))
+    session = Session.open("isostatic")
+    session.press("r")
+    session.expect("message ≈ no time has passed")
+    session.press("d")
+    session.type("what nobody saved")
+    session.press("return")
+    session.expect("message ≈ File not found")
+    with pytest.raises(AssertionError, match="File not found: there is"):
+        session.expect("message = File not found")
+    with pytest.raises(ValueError, match="neither more nor less"):
+        session.expect("message < a")
+
+
+def test_a_message_of_the_force_method_is_expected() -> None:
+    session = Session.open("pendulum")
+    session.press("k")
+    session.expect("message ≈ mechanism")
+    session.expect("force_method.message ≈ mechanism")
+
+
+def test_settling_tells_what_yielded() -> None:
+    session = Session.open("hyperstatic_yield")
+    session.press("e")
+    session.expect("message ≈ Rod CD yields in compression at the load factor 0.922")
+    session = Session.open("hyperstatic")
+    session.press("e")
+    session.rods["CD"].compressive_strength = 80.0
+    session.press("e")
+    session.expect("message ≈ Rod CD has yielded at once")
+
+
 @pytest.mark.parametrize(
     ("further", "words"),
     [
