@@ -20,24 +20,29 @@ def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
         return []
     marks: list[Mark] = []
     top, bottom = room[0] + _EDGE * sheet.unit, room[1] - _EDGE * sheet.unit
+    width = max((_width(sheet, readout) for readout in sheet.view.readouts), default=0.0)
     for readout in sheet.view.readouts:
         height = (len(readout.rows) + 1) * line_height(sheet.font(12.0)) + 2 * _PAD * sheet.unit
         height += _PLOT[1] * sheet.unit if readout.plot is not None else 0.0
         if top + height > bottom:
             break
-        marks += _panel(sheet, readout, top, height)
+        marks += _panel(sheet, readout, top, width, height)
         top += height + 6.0 * sheet.unit
     return marks
 
 
-def _panel(sheet: Sheet, readout: Readout, top: float, height: float) -> list[Mark]:
-    u, theme, size = sheet.unit, sheet.theme, sheet.font(12.0)
+def _width(sheet: Sheet, readout: Readout) -> float:
+    """Pixels that a panel needs; all are as wide as the widest."""
+    u, size = sheet.unit, sheet.font(12.0)
     names = max((text_width(name, size) for name, _ in readout.rows), default=0.0)
     values = max((text_width(value, size, "semibold") for _, value in readout.rows), default=0.0)
     title = text_width(readout.title, size, "semibold")
-    width = min(max(names + _GAP * u + values, title), _WIDEST * u) + 2 * _PAD * u
-    if readout.plot is not None:
-        width = max(width, _PLOT[0] * u + 2 * _PAD * u)
+    plot = _PLOT[0] * u if readout.plot is not None else 0.0
+    return max(min(max(names + _GAP * u + values, title), _WIDEST * u), plot) + 2 * _PAD * u
+
+
+def _panel(sheet: Sheet, readout: Readout, top: float, width: float, height: float) -> list[Mark]:
+    u, theme, size = sheet.unit, sheet.theme, sheet.font(12.0)
     right = sheet.viewport.left + sheet.viewport.width - _EDGE * u
     left, y = right - width, top + _PAD * u + line_height(size) / 2
     sheet.occupancy.block(left, top, width, height)
