@@ -13,14 +13,16 @@ from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import describe_motion, moved, rod_names, slack_named
 from systems.statics.factor import SOFT, lowest_mode, regular, soft_modes
 from systems.statics.follow import Path, Point, Tangent
-from systems.statics.relax import RUNAWAY, relax
+from systems.statics.relax import RUNAWAY, STEPS, relax
 
 BEYOND = 1e-6  # of the change of load: how far beyond a loss of stability the structure moves on
 FIRST_LOAD = 1 / 64  # of the change of load, under which a first-order mechanism takes its shape
 UNEXCITED = 1e-6  # share of a mode in the response to the load, below which the load does not excite it
 STALLED = 0.05  # of a rod's length: a jump that leads no further has hardly changed anything
 MOST_STALLS = 2
+PASSING = 1000  # steps of relaxing under hardly more load before the whole load is tried
 MOST_INCREMENTS = 20000
+CRUSHED = -0.9  # plastic strain of a rod of which a tenth is left: soon its ends meet, and it has no direction
 
 
 @dataclass
@@ -57,6 +59,8 @@ class Loading:
                 if not tangent.flowing.any():
                     raise self._mechanism(motion, tangent.slack)
                 raise self._collapse(tangent.flowing, motion)
+            if not self.path.structure.linear and (self.point.plastic_strain <= CRUSHED).any():
+                raise self._crushed(self.path.structure.spread(tangent.rate))
         raise self._lost()
 
     # --- the start ---------------------------------------------------------------------------------
@@ -177,14 +181,24 @@ class Loading:
         if self.mechanism and critical.t < FIRST_LOAD and not plastic:
             self._relax(FIRST_LOAD, mode)
         else:
-            self._relax(min(1.0, critical.t + BEYOND), mode, beyond if plastic else None)
-            self._note_jump(beyond, critical, mode)
+            self._pass(critical, beyond, mode, plastic)
         change = path.structure.gather(self.point.displacement - critical.displacement)
         if path.structure.move(change, critical.response.reach) < STALLED:
             self.stalls += 1
         if self.stalls > MOST_STALLS:
             self._leap()
         return path.tangent(self.point)
+
+    def _pass(self, critical: Point, beyond: Tangent, mode: Array, plastic: bool) -> None:
+        """Move on under hardly more load; where that leads nowhere in good time, under the whole load."""
+        try:
+            self._relax(min(1.0, critical.t + BEYOND), mode, beyond if plastic else None, PASSING)
+        except NoEquilibrium as reason:
+            if reason.status != "limit reached":
+                raise
+            self._leap()
+        else:
+            self._note_jump(beyond, critical, mode)
 
     def _leap(self) -> None:
         """Give up following the path of a structure that hardly resists, and relax under the whole load."""
@@ -208,9 +222,9 @@ class Loading:
             lean = float(mode[np.abs(mode).argmax()]) if not beyond.flowing.any() else lean
         return mode if lean >= 0.0 else -mode
 
-    def _relax(self, t: float, nudge: Array | None, plastic: Tangent | None = None) -> None:
+    def _relax(self, t: float, nudge: Array | None, plastic: Tangent | None = None, steps: int = STEPS) -> None:
         start = self.path.after(self.point, self.point.displacement, t)
-        relaxed = relax(self.path, start, nudge)
+        relaxed = relax(self.path, start, nudge, steps)
         if relaxed.outcome == "equilibrium":
             self.point = relaxed.point
         elif relaxed.outcome == "gave up":
@@ -252,6 +266,19 @@ class Loading:
         )
         factor = self.factor(self.point.t)
         self.events.append(Event("collapse", factor, message, self._rods(flowing), _unit(motion)))
+        return NoEquilibrium("collapse", message)
+
+    def _crushed(self, motion: Array) -> NoEquilibrium:
+        """Something still holds the load, but what yields has no length left."""
+        crushed = self.point.plastic_strain <= CRUSHED
+        rows = np.flatnonzero(crushed)
+        message = (
+            f"Plastic collapse {self._at(self.point.t)}: {rod_names(self.model, rows)}"
+            f" {'is' if len(rows) == 1 else 'are'} crushed to a tenth of the length."
+            " Lower the load or strengthen what yields."
+        )
+        factor = self.factor(self.point.t)
+        self.events.append(Event("collapse", factor, message, self._rods(crushed), _unit(motion)))
         return NoEquilibrium("collapse", message)
 
     def _mechanism(self, motion: Array, slack: Flags) -> NoEquilibrium:

@@ -33,13 +33,13 @@ class Relaxed:
     outcome: str
 
 
-def relax(path: Path, start: Point, nudge: Array | None = None) -> Relaxed:
+def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STEPS) -> Relaxed:
     """Let a structure move under the load at start.t until it rests; nudge: the direction to start in."""
     structure, point = path.structure, start
     if nudge is not None:
         point = _moved(path, point, nudge, NUDGE)
     penalty = 0.0
-    for _ in range(STEPS):
+    for _ in range(steps):
         residual = structure.gather(path.load(point.t) - structure.internal(point.response))
         scale = max(path.scale, float(np.abs(point.response.axial_force).max(initial=0.0)))
         stable = regular(structure.tangent(point.response, point.response.soft), structure.weight).definite

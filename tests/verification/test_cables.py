@@ -17,7 +17,7 @@ from systems.statics.force_method import ForceMethodError, solve
 from systems.statics.path import Goal, load_path
 from systems.statics.settle import settle
 from systems.statics.theory import linear
-from tests.reference import statics
+from tests.reference import closed_forms, statics
 from tests.reference.elements import Model as Document
 from tests.reference.models import model, particle, random_truss, rod
 
@@ -275,11 +275,27 @@ def test_the_braced_portal_does_what_its_description_says(capsys: pytest.Capture
     assert "all cables counted as taut" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("tolerance", [1e-9, 1e-12])
+def test_errors_are_controlled_where_the_damper_of_a_cable_sets_in(tolerance: float) -> None:
+    """It sets in with a jump of c v. Taut the ball moves by m x'' + c x' + k x = m g until c x' + k x = 0."""
+    drop, mass, stiffness, damping, gravity = 0.5, 10.0, 1e5, 200.0, 9.81
+    instant, end = math.sqrt(2.0 * drop / gravity), 0.345
+    omega = math.sqrt(stiffness / mass)
+    zeta = damping / (2.0 * mass * omega)
+    sag = mass * gravity / stiffness
+    moved, speed = closed_forms.free_vibration(end - instant, omega, zeta, -sag, gravity * instant)
+    assert stiffness * (sag + moved) + damping * speed > 0.0
+    session = Session.open(hung(drop, damping=damping / 1000.0) | {"settings": {"tolerance": tolerance}})
+    session.run(time=end)
+    assert -session.particles.displacement[1, 1] == pytest.approx(drop + sag + moved, abs=tolerance)
+    assert -session.particles.velocity[1, 1] == pytest.approx(speed, abs=100.0 * tolerance)
+
+
 @pytest.mark.parametrize(
-    ("integrator", "order"), [("semi_implicit_euler", 1), ("velocity_verlet", 2), ("rk4", 4)]
+    ("integrator", "order"), [("semi_implicit_euler", 1), ("velocity_verlet", 2), ("rk4", 4), ("esdirk4", 4)]
 )
 def test_orders_hold_where_a_cable_tightens(integrator: str, order: int) -> None:
-    """The force has a kink there: steps across it cost h², so that Verlet keeps its order; rk4 ends a step there."""
+    """The force has a kink there: steps across it cost h², so that Verlet keeps its order; others end a step there."""
     drop, pulse = 0.5, math.sqrt(100.0 * 1000.0 / 10.0)
     instant = math.sqrt(2.0 * drop / 9.81)
     duration, sag = 0.9 * math.pi / pulse, 9.81 / pulse**2

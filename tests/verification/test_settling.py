@@ -16,6 +16,7 @@ from scipy.optimize import linprog
 from components.model import Model
 from game import Session, models
 from game.cli import main
+from systems.statics import loading
 from systems.statics.events import Event
 from systems.statics.follow import Path
 from systems.statics.settle import Settlement, StaticState, settle
@@ -317,6 +318,20 @@ def test_the_shallow_truss_lands_on_the_other_side() -> None:
     assert events(found, "snap-through")[0].load_factor == pytest.approx(limit, rel=RELATIVE)
     landing = closed_forms.von_mises_landing(1, 5, 1.28e6)
     assert found.final.displacement[1, 1] == pytest.approx(-landing, rel=RELATIVE)
+
+
+def test_a_jump_that_leads_nowhere_in_time_is_taken_under_the_whole_load(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As of slack cables that drift under next to no load; here of a snap-through that is given no time."""
+    model, limit = models.load(trusses.von_mises_truss()), closed_forms.von_mises_limit(1, 5, 1.28e6)[0]
+    direct = settle(model, [1.5 * limit])
+    monkeypatch.setattr(loading, "PASSING", 1)
+    found = settle(model, [1.5 * limit])
+    (note,) = events(found, "note")
+    assert note.load_factor == pytest.approx(limit, rel=RELATIVE)
+    assert "hardly resists" in note.message
+    assert found.final.displacement == pytest.approx(direct.final.displacement, rel=RELATIVE)
 
 
 def test_a_steep_truss_gives_way_sideways() -> None:
