@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import math
 import os
@@ -54,6 +55,23 @@ def test_a_document_becomes_a_model() -> None:
     assert loaded.rods["AB"].tensile_strength == 215.0
     assert loaded.rods["AB"].compressive_strength is None
     assert loaded.rods["AB"].stiffness == 164640.0
+
+
+@pytest.mark.parametrize("collects", [True, False])
+def test_reading_leaves_the_garbage_collector_as_it_was(tmp_path: Path, collects: bool) -> None:
+    good, bad = tmp_path / "good.json", tmp_path / "bad.json"
+    good.write_text(json.dumps(triangle()), encoding="utf-8")
+    bad.write_text(json.dumps(BASE | {"particles": 3}), encoding="utf-8")
+    before = gc.isenabled()
+    try:
+        (gc.enable if collects else gc.disable)()
+        models.load(good)
+        assert gc.isenabled() is collects
+        with pytest.raises(ModelError):
+            models.load(bad)
+        assert gc.isenabled() is collects
+    finally:
+        (gc.enable if before else gc.disable)()
 
 
 def test_sections_are_optional_and_have_defaults() -> None:
