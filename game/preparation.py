@@ -7,10 +7,13 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from components.obstacles import any_obstacles
 from game.collisions.encounter_kernels import has_encounters
 from game.collisions.encounters import load_encounters
 from game.collisions.flight_kernels import EVENTS, PILES, WINDOWS, has_parts
@@ -20,11 +23,12 @@ from game.program.cache import is_blank, load_compiler
 from game.program.program import has_program
 from game.program.writer import form_of
 from game.raster_program import has_raster, load_raster
-from systems.base import Phase, System
-from systems.collision.system import Collision
+from systems.base import Phase, StepSystem, System
+from systems.collision.system import Collision, Support, contacts_of
 from systems.edit.pull import Pull
 
 if TYPE_CHECKING:
+    from components.model import Model
     from game.simulation import Simulation
     from systems.render.raster import Raster
 
@@ -66,7 +70,7 @@ class Preparation(System):
             self._compiler.start()
         simulation = frame.session.simulation
         loaded, self._loaded = self._loaded, simulation.ready
-        if loaded and simulation.ready and self._waits_for_encounters(simulation) is None:
+        if loaded and simulation.ready and self._waits_for_meetings(simulation) is None:
             self._load_encounters(simulation)
         else:
             self._load(simulation)
@@ -95,21 +99,27 @@ class Preparation(System):
     def waits_for(self, simulation: Simulation) -> float | None:
         """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
         if simulation.ready:
-            return self._waits_for_encounters(simulation)
+            return self._waits_for_meetings(simulation)
         if simulation.integrator == FLIGHT:
             waits = [self._waits((half,), is_compiled) for half, is_compiled in FREE.items()]
             return max((waited for waited in waits if waited is not None), default=None)
-        model, plan = simulation.model, simulation.schedule.step_plan(simulation.model)
-        job = simulation.integrator, form_of(model, simulation.driver), *(system.name for system in plan)
+        job = _job(simulation, simulation.schedule.step_plan(simulation.model))
         waited = self._waits(job, lambda: _is_compiled(simulation))
-        others = self._waits_for_encounters(simulation)
+        others = self._waits_for_meetings(simulation)
         if waited is None and job in self._running:  # then it is new, with a hand that pulls as well
             self._waits((*job, Pull.name), lambda: False)
         return others if waited is None else waited
 
-    def _waits_for_encounters(self, simulation: Simulation) -> float | None:
-        """The same for what happens where particles of structures meet."""
-        return self._waits((ENCOUNTERS,), has_encounters) if _may_meet(simulation) else None
+    def _waits_for_meetings(self, simulation: Simulation) -> float | None:
+        """The same for what happens where particles of structures meet; some come to rest on others."""
+        if not _may_meet(simulation):
+            return None
+        waited = self._waits((ENCOUNTERS,), has_encounters)
+        if not _may_rest(simulation.model):
+            return waited
+        plan = _with_support(simulation)
+        resting = self._waits(_job(simulation, plan), lambda: _has_program(simulation, plan))
+        return resting if waited is None else waited
 
     def raster(self) -> Raster | None:
         """What draws large pictures, as soon as it is compiled."""
@@ -143,11 +153,31 @@ def _may_meet(simulation: Simulation) -> bool:
     return simulation.integrator != FLIGHT and any(isinstance(system, Collision) for system in plan)
 
 
+def _may_rest(model: Model) -> bool:
+    """True if something that is no structure may come to rest on one, or a structure on a wall, and none does yet."""
+    loose = len(np.unique(model.rods.between)) < model.particles.count
+    return (loose or any_obstacles(model)) and contacts_of(model) is None
+
+
+def _with_support(simulation: Simulation) -> list[StepSystem]:
+    """The plan from when on something rests on something."""
+    names = (system.name for system in simulation.schedule.step_plan(simulation.model))
+    return simulation.schedule.named((*names, Support.name))
+
+
+def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
+    form = form_of(simulation.model, simulation.driver)
+    return simulation.integrator, form, *(system.name for system in plan)
+
+
 def _is_compiled(simulation: Simulation) -> bool:
     """True if its program need only be loaded."""
     if simulation.integrator == FLIGHT:
         return all(is_compiled() for is_compiled in FREE.values())
-    plan = simulation.schedule.step_plan(simulation.model)
+    return _has_program(simulation, simulation.schedule.step_plan(simulation.model))
+
+
+def _has_program(simulation: Simulation, plan: Sequence[StepSystem]) -> bool:
     return has_program(simulation.model, plan, simulation.driver)
 
 

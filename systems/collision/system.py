@@ -60,10 +60,10 @@ class Support(Law):
 
     def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
         """The sum over the contacts of each particle (kN), from the forces of the last step."""
-        paths = contacts_of(model)
-        assert paths is not None
-        normal = normals(model, paths.contacts)
-        self._pushes[model] = support_forces(normal, paths.contacts, paths.forces, model.particles.count)
+        paths, pushes = contacts_of(model), np.zeros((model.particles.count, 2))
+        if paths is not None:
+            pushes = support_forces(normals(model, paths.contacts), paths.contacts, paths.forces, len(pushes))
+        self._pushes[model] = pushes
         return {"collision_support_force": self._pushes[model].view()}
 
     def push(self, model: Model, force: NDArray[np.float64] | float) -> None:

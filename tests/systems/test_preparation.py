@@ -93,7 +93,10 @@ def test_where_particles_may_meet_that_is_waited_for_too(app: App, compiler: Com
     session = app.session
     session.open_here("ball_on_truss")
     frames(app, 1)
-    assert [job[0] for job in compiler.jobs[1:]] == [session.simulation.integrator, "encounters"]
+    program, encounters, resting = compiler.jobs[1:]
+    assert program[0] == session.simulation.integrator
+    assert encounters == ("encounters",)
+    assert resting == (*program, "collision.support")  # from when on the ball lies on the truss
     session.press("space")
     frames(app, 3)
     assert session.model.clock.steps == 0
@@ -103,6 +106,15 @@ def test_where_particles_may_meet_that_is_waited_for_too(app: App, compiler: Com
     loaded = encounter_kernels.kernels()
     assert loaded.meeting.signatures  # though nothing has met yet
     assert loaded.impact.signatures
+
+
+def test_a_model_in_which_nothing_is_loose_does_not_wait_for_what_may_rest_on_it(
+    app: App, compiler: Compiler
+) -> None:
+    app.session.open_here("warren_bridge")
+    frames(app, 1)
+    assert ("encounters",) in compiler.jobs
+    assert not any("collision.support" in job for job in compiler.jobs)
 
 
 def test_what_other_models_may_need_comes_when_nothing_else_is_compiled(
