@@ -40,7 +40,7 @@ class PhysicalParticle:
     coef_restitution = 1.0
 
     def __init__(self, data: ParticleData):
-        self.mass = data.mass
+        self.mass = data.mass or 1.0  # a held one may have none here, in the thesis none has none (A.2.1.13)
         self.radius = data.radius
         self.constraint = [float(held) for held in data.fixed]
         self.user_applied_accels = _vectors(data.acceleration)

@@ -525,6 +525,13 @@ def test_thesis_objects_agree_with_the_arrays():
         assert np.abs(rows(objects[quantity]) - expected).max() < 1e-9 * np.abs(expected).max()
 
 
+def test_thesis_objects_follow_a_mass_whose_support_has_none():
+    model = models.oscillator(2 * math.pi, mass=2.0, force=0.3)
+    model["rods"][0]["density"] = 0
+    arrays, objects = (scheme.taylor2(deepcopy(model), 1e-4, 300) for scheme in (physics, thesis))
+    assert objects["displacement"]["B"] == pytest.approx(arrays["displacement"]["B"], rel=1e-9, abs=1e-15)
+
+
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize(("mass1", "mass2"), [(1, 1), (1, 1e4), (1e4, 1)])
 def test_thesis_head_on_collisions(restitution: float, mass1: float, mass2: float):
