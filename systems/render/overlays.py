@@ -236,6 +236,8 @@ _MEANINGS = {
     "yielding": "yielding",
     "slack": "slack cable",
     "force": "external force (kN)",
+    "load": "load",
+    "velocity": "velocity",
 }
 
 
@@ -283,9 +285,10 @@ def _rows(widths: list[float], gap: float, room: float) -> list[tuple[int, int]]
 def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:
     """The thing itself, small: a diagram, a yielding rod, a slack cable, an arrow."""
     u, theme = sheet.unit, sheet.theme
-    colour = theme.ink if name == "slack" else getattr(theme, name)
+    role = {"slack": "ink", "load": "force", "velocity": "running"}.get(name, name)
+    colour = getattr(theme, role)
     ends = np.array([[x, y]]), np.array([[x + width, y]])
-    if name == "force":
+    if name in ("force", "load", "velocity"):
         return [Stamps("arrow", ends[0], width, u, colour, colour)]
     if name == "yielding":
         return [Strokes(*ends, 3.0 * u, colour)]

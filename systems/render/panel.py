@@ -12,11 +12,12 @@ from components.camera import Camera, Viewport
 from components.form import Form, Tile
 from components.model import Model
 from components.view import View, drawn_places
+from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.form_layout import CAPTION, LOW, FormLayout, Place, lay_out
 from systems.render.help import draw_help
 from systems.render.layers import BELOW
-from systems.render.marks import Fills, Mark, Panel, Picture, Rectangles, Strokes, Text
-from systems.render.sheet import FEW, Sheet, measure
+from systems.render.marks import Fills, Mark, Panel, Picture, Rectangles, Text
+from systems.render.sheet import measure
 from systems.render.structure import draw_particles, draw_rods
 from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Colour, Theme, faded
@@ -238,7 +239,7 @@ def caret_at(place: Place, box: Box, x: float, unit: float) -> int:
 
 @lru_cache(maxsize=128)
 def thumbnail(model: Model, viewport: Viewport, unit: float, theme: Theme) -> tuple[Mark, ...]:
-    """A small picture of a model that does not change any more: walls, rods, supports and particles."""
+    """A small picture of a model that does not change any more: walls, rods, supports, particles and arrows."""
     camera = Camera(viewport=viewport)
     camera.fit(drawn_places(model), _THUMBNAIL_MARGIN, unit=unit)
     sheet = measure(model, View(camera=camera, pixel_ratio=_SMALLER * unit), theme)
@@ -247,20 +248,4 @@ def thumbnail(model: Model, viewport: Viewport, unit: float, theme: Theme) -> tu
     draw_supports(sheet, support_sides(sheet))
     draw_rods(sheet)
     draw_particles(sheet)
-    return (*sheet.marks, *_velocities(sheet))
-
-
-def _velocities(sheet: Sheet) -> list[Mark]:
-    """Arrows of one length in the directions in which particles move."""
-    velocity = sheet.model.particles.velocity
-    moving = np.flatnonzero((velocity != 0.0).any(axis=1))
-    if not 0 < len(moving) <= FEW:
-        return []
-    along = velocity[moving] / np.hypot(*velocity[moving].T)[:, None] * [1.0, -1.0]
-    across = along[:, ::-1] * [-1.0, 1.0]
-    u = sheet.unit
-    start = sheet.centres[moving] + along * sheet.radii[moving, None]
-    tip, neck = start + 40.0 * u * along, start + 30.0 * u * along
-    heads = np.stack([tip, neck + 6.0 * u * across, neck - 6.0 * u * across], axis=1)
-    colour = sheet.theme.force
-    return [Strokes(start, neck, 2.0 * u, colour), Fills(heads, colour)]
+    return (*sheet.marks, *draw_loads(sheet), *draw_velocities(sheet))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from components.form import Form
 from components.toolbar import Toolbar
 from components.view import View, drawn_positions
+from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.labels import place_labels
 from systems.render.layers import ABOVE, BELOW
@@ -52,6 +53,7 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme) -> Picture:
     draw_supports(sheet, sides)
     draw_rods(sheet)
     draw_particles(sheet)
+    sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]
     draw_shape(sheet)
     draw_particle_diagrams(sheet, sides)
     label_names(sheet)

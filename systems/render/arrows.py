@@ -1,0 +1,80 @@
+"""Arrows that say which way particles are loaded and thrown, all of one length; force diagrams say how much."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.tags import DiagramShown
+from systems.render.labels import STRONG
+from systems.render.marks import Fills, Mark, Strokes
+from systems.render.sheet import DIRECTIONS, Rows, Sheet
+from systems.render.supports import crowding
+from systems.render.theme import Colour
+
+MOST = 100  # particles, above which arrows would hide one another
+LENGTH, HEAD = 32.0, 10.0  # points
+GAP = 3.0  # points between an arrow and its particle
+
+
+def draw_loads(sheet: Sheet) -> Iterator[Mark]:
+    """The force that a person put on each particle, its loads at full size included, where no diagram shows it."""
+    model = sheet.model
+    force, count = model.particles.force.copy(), model.particles.count
+    for axis in (0, 1):
+        force[:, axis] += np.bincount(model.loads.on, model.loads.force[:, axis], count)
+    loaded = (force[:, 0] != 0.0) | (force[:, 1] != 0.0)
+    loaded[sheet.tagged(DiagramShown, "particles")] = False
+    rows = sheet.particles[loaded[sheet.particles]]
+    if sheet.view.all_diagrams or not 0 < len(rows) <= MOST:
+        return
+    sheet.legend.append("load")
+    along = _directions(force[rows])
+    ahead = np.argmax(along @ DIRECTIONS.T, axis=1)
+    crowd = crowding(sheet, rows)
+    pushes = (
+        crowd[rows, (ahead + 2) % 4] <= crowd[rows, ahead] + 0.1
+    )  # towards the particle, where there is room
+    yield from _arrows(sheet, rows, along, sheet.theme.force, pushes)
+
+
+def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
+    """The way each free particle goes, and each node that time has not moved yet, while time stands still."""
+    model = sheet.model
+    velocity = model.particles.velocity
+    moving = (velocity[:, 0] != 0.0) | (velocity[:, 1] != 0.0)
+    if model.clock.steps:
+        moving[model.rods.between.ravel()] = False
+    rows = sheet.particles[moving[sheet.particles]]
+    if sheet.view.status.speed or not 0 < len(rows) <= MOST:
+        return
+    sheet.legend.append("velocity")
+    yield from _arrows(sheet, rows, _directions(velocity[rows]), sheet.theme.running)
+
+
+def _directions(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Unit vectors in pixels, y down."""
+    scaled = vectors / np.abs(vectors).max(axis=1)[:, None]  # squares of very small ones would be 0
+    directions: NDArray[np.float64] = scaled / np.hypot(scaled[:, 0], scaled[:, 1])[:, None] * [1.0, -1.0]
+    return directions
+
+
+def _arrows(
+    sheet: Sheet,
+    rows: Rows,
+    along: NDArray[np.float64],
+    colour: Colour,
+    pushes: NDArray[np.bool_] | bool = False,
+) -> Iterator[Mark]:
+    """From the rims of particles outwards, or (pushes) ending there."""
+    u = sheet.unit
+    reach = (sheet.radii[rows] + GAP * u)[:, None] * along
+    length = LENGTH * u * along
+    tail = sheet.centres[rows] + np.where(np.reshape(pushes, (-1, 1)), -reach - length, reach)
+    tip, across = tail + length, along[:, ::-1] * [-1.0, 1.0]
+    neck = tip - HEAD * u * along
+    sheet.occupancy.line(tail, tip, STRONG)
+    yield Strokes(tail, neck, 2.0 * u, colour)
+    yield Fills(np.stack([tip, neck + 0.5 * HEAD * u * across, neck - 0.5 * HEAD * u * across], axis=1), colour)
