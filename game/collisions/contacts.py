@@ -47,12 +47,14 @@ class Contacts:
         pairs, forces = contacts.contacts, contacts.forces
         start = before.columns["particles.displacement"]
         _, normal = self._near.gaps(pairs, start)
-        held = HELD * self._near.size[pairs].min(axis=1)
+        size = self._near.size[pairs].min(axis=1)
+        held = HELD * size
         inverse: Floats | None = None
         tried: tuple[Floats, Floats] | None = None
         for turn in range(MOST_TRIES):
             if turn > 0:
                 before.restore(self.model)
+            self._note_energy(float((forces * size).sum()))
             _push(program, self.model, support_forces(normal, pairs, forces, self.model.particles.count))
             reason = take(until)
             h = self.model.clock.time - before.columns["clock.time"][0]
@@ -75,6 +77,14 @@ class Contacts:
         paths = Paths(NO_MOTION, pairs[lasts], forces[lasts], NO_CROWD)
         self.model.writable("clock.paths")[0] = paths
         return reason
+
+    def _note_energy(self, energy: float) -> None:
+        """Energies (J) are small or large beside what forces in contact would do along the radii of what they hold.
+
+        What begins in contact is supplied none, and would be told neither to rest nor from what appears from nowhere.
+        """
+        if energy > self.model.clock.energy_scale:
+            self.model.writable("clock.energy_scale")[0] = energy
 
     def _compliance(self, pairs: Rows, normal: Floats) -> Floats:
         """Nᵀ M⁻¹ N: how fast a unit force in one contact opens another, 1/kg."""
