@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from components.field import Role
 from components.handle import Handle
 from components.table import Table
 
@@ -74,11 +76,21 @@ Shape = Callable[[Table[Any]], Pieces]
 
 SHAPES: dict[type[Handle], Shape] = {}  # the kinds of elements with which particles collide
 
+_known: WeakKeyDictionary[Model, tuple[tuple[Any, ...], Obstacles]] = WeakKeyDictionary()  # with their versions
+
 
 def obstacles(model: Model) -> Obstacles:
     """The pieces of all elements of the kinds in SHAPES, with the restitution of the settings where none is given."""
     if not any_obstacles(model):
         return NO_OBSTACLES
+    versions = model.newest(Role.DOCUMENT), *SHAPES.values()
+    known = _known.get(model)
+    if known is None or known[0] != versions:
+        known = _known[model] = versions, _found(model)
+    return known[1]
+
+
+def _found(model: Model) -> Obstacles:
     parts = [(model.tables[kind.table], shape) for kind, shape in SHAPES.items() if kind.table in model.tables]
     found = [(table, shape(table)) for table, shape in parts if table.count]
     ends = np.concatenate([np.zeros((0, 2, 2)), *(pieces.ends for _, pieces in found)])

@@ -12,6 +12,7 @@ from components.snapshot import Snapshot
 from game.collisions.strikes import NO_CROWD, NO_MOTION
 from game.program.program import Program
 from systems.base import StopReason
+from systems.collision.complementarity import complementary
 from systems.collision.system import Support, contacts_of, support_forces
 from systems.collision.vicinity import Vicinity
 from systems.near import Floats, Rows
@@ -49,7 +50,7 @@ class Contacts:
         _, normal = self._near.gaps(pairs, start)
         size = self._near.size[pairs].min(axis=1)
         held = HELD * size
-        inverse: Floats | None = None
+        slope: Floats | None = None
         tried: tuple[Floats, Floats] | None = None
         for turn in range(MOST_TRIES):
             if turn > 0:
@@ -65,12 +66,12 @@ class Contacts:
             gap, _ = self._near.gaps(pairs, self.model.particles.displacement)
             if not (np.where(forces > 0.0, np.abs(gap), -gap) > held).any():
                 break
-            if inverse is None:
-                inverse = np.linalg.pinv(0.5 * h * h * self._compliance(pairs, normal))
+            if slope is None:
+                slope = 0.5 * h * h * self._compliance(pairs, normal)
             elif tried is not None:
-                inverse = _improved(inverse, forces - tried[0], gap - tried[1])
+                slope = _improved(slope, forces - tried[0], gap - tried[1])
             tried = forces, gap
-            forces = np.maximum(forces - inverse @ gap, 0.0)
+            forces = complementary(slope, gap, forces)
             if np.array_equal(forces, tried[0]):
                 break
         lasts = (forces > 0.0) | (gap <= held)
@@ -104,11 +105,7 @@ def _push(program: Program, model: Model, force: Floats | float) -> None:
             system.push(model, force)
 
 
-def _improved(inverse: Floats, moved: Floats, changed: Floats) -> Floats:
-    """Broyden's update of the inverse of how gaps follow forces."""
-    applied = inverse @ changed
-    scale = float(moved @ applied)
-    if scale == 0.0:
-        return inverse
-    updated: Floats = inverse + np.outer(moved - applied, moved @ inverse) / scale
+def _improved(slope: Floats, moved: Floats, changed: Floats) -> Floats:
+    """Broyden's update of how gaps follow forces."""
+    updated: Floats = slope + np.outer(changed - slope @ moved, moved) / float(moved @ moved)
     return updated

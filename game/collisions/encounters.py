@@ -12,8 +12,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from components.field import Role
 from components.model import Model
 from components.particle import Particle
+from components.paths import Paths
 from components.snapshot import Snapshot
 from game.collisions.contacts import Contacts
 from game.collisions.encounter_kernels import kernels, note_encounters
@@ -101,7 +103,7 @@ class Encounters:
     ) -> tuple[int, StopReason, Program]:
         """One step, or the part of it up to the first impact, and what that does."""
         before, clock = Snapshot.take(self.model), self.model.clock
-        start, steps, held = clock.time, clock.steps, contacts_of(self.model) is not None
+        start, steps, held = clock.time, clock.steps, contacts_of(self.model)
 
         def take(target: float | None) -> StopReason:
             def once(end: float | None) -> StopReason:
@@ -110,25 +112,30 @@ class Encounters:
             return self._contacts.step(program, before, once, target)
 
         reason = take(until if landing else None)
-        while not self._is_nearly_parabolic(before):
+        while not self._is_nearly_parabolic(before, held):
             half = 0.5 * (start + clock.time)
             before.restore(self.model)
             reason = take(half)
         if clock.time == start or reason is StopReason.DIVERGED:
             return clock.steps - steps, reason, program
-        time, resting = self._meeting(before), None
+        time, resting, tried = self._meeting(before, held), None, clock.time
         if time == start:  # what is pressed together from rest is told from the step that was tried
             resting = self._strikes.rest_speed(before)
             before.restore(self.model)
         elif time <= clock.time:
-            reason = self._end_at_meeting(before, take, time)
-        if self._strikes.happen(before, resting) or (held and contacts_of(self.model) is None):
+            reason = self._end_at_meeting(before, held, take, time)
+        as_found = self.model.newest(Role.STATE)
+        lasts = self._strikes.happen(before, resting)
+        if time == start and self.model.newest(Role.STATE) == as_found:  # only round-off presses it
+            reason = take(tried)
+            lasts = self._strikes.happen(before)
+        if lasts or (held is not None and contacts_of(self.model) is None):
             program = self._rebind()
         return max(clock.steps - steps, 1), reason, program
 
     # --- where paths meet ----------------------------------------------------------------------------
 
-    def _is_nearly_parabolic(self, before: Snapshot) -> bool:
+    def _is_nearly_parabolic(self, before: Snapshot, held: Paths | None) -> bool:
         """False if a pair comes so near that how its paths differ from parabolas could hide that it meets."""
         near, particles = self._near, self.model.particles
         old, speed = before.columns["particles.displacement"], before.columns["particles.velocity"]
@@ -142,17 +149,17 @@ class Encounters:
         doubt = near.everywhere(sway)[near.pairs].sum(axis=1)
         first, _ = near.gaps(near.pairs, old)
         last, _ = near.gaps(near.pairs, particles.displacement)
-        unsure = (np.minimum(first, last) < 2.0 * doubt) & (near.kinds(old) == WATCHED)
+        unsure = (np.minimum(first, last) < 2.0 * doubt) & (near.kinds(old, held) == WATCHED)
         return not (unsure & (doubt > DOUBT * near.size[near.pairs].min(axis=1))).any()
 
-    def _meeting(self, before: Snapshot) -> float:
-        """When a watched pair first met in the step just taken (s); infinite if none did."""
+    def _meeting(self, before: Snapshot, held: Paths | None) -> float:
+        """When a pair not held in contact first met in the step just taken (s); infinite if none did."""
         near, particles, start = self._near, self.model.particles, before.columns["clock.time"][0]
         old, speed = before.columns["particles.displacement"], before.columns["particles.velocity"]
         s = kernels().meeting(
             self.model.clock.time - start,
             near.pairs,
-            near.kinds(old),
+            near.kinds(old, held),
             near.position,
             near.everywhere(old),
             near.everywhere(speed),
@@ -162,14 +169,14 @@ class Encounters:
         )
         return float(start + s)
 
-    def _end_at_meeting(self, before: Snapshot, take: Take, time: float) -> StopReason:
+    def _end_at_meeting(self, before: Snapshot, held: Paths | None, take: Take, time: float) -> StopReason:
         """Take the step again so that it ends where the first pair meets: Newton's method on the gap."""
         near, particles, start = self._near, self.model.particles, before.columns["clock.time"][0]
         reason = StopReason.DONE
         for _ in range(MOST_TRIES):
             before.restore(self.model)
             reason = take(time)
-            pairs = near.pairs[near.kinds(before.columns["particles.displacement"]) == WATCHED]
+            pairs = near.pairs[near.kinds(before.columns["particles.displacement"], held) == WATCHED]
             gap, normal = near.gaps(pairs, particles.displacement)
             velocity = near.everywhere(particles.velocity)
             relative = velocity[pairs[:, 1]] - velocity[pairs[:, 0]]
@@ -194,7 +201,7 @@ def load_encounters() -> None:
     before = Snapshot.take(model)
     encounters._near.look_up()
     encounters._near.clear_time()
-    encounters._meeting(before)
+    encounters._meeting(before, None)
     encounters._strikes.happen(before)
     note_encounters()
 

@@ -17,6 +17,7 @@ from systems.near import Floats, Rows
 
 TOUCH = 1e-12  # of the reach of two particles: nearer than this they touch
 REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
+CROWD, CROWD_HEIGHT = 4, 1e-3  # the same where so many contacts last: they would pass on bounces without end
 NO_MOTION, NO_CROWD = np.zeros((0, 0)), np.zeros(0)  # of particles that do not fly free
 
 
@@ -36,7 +37,7 @@ class Strikes:
         """
         near, particles = self._near, self.model.particles
         gap, normal = near.gaps(near.pairs, particles.displacement)
-        kinds = near.kinds(before.columns["particles.displacement"])
+        kinds = near.kinds(before.columns["particles.displacement"], contacts_of(self.model))
         touching = np.flatnonzero((kinds != LEFT_ALONE) & (gap <= 4.0 * TOUCH * near.reach(near.pairs)))
         rate = self._rates(near.pairs, normal)
         noise = 1e-14 * np.hypot(*particles.velocity.T).max(initial=0.0)
@@ -66,9 +67,10 @@ class Strikes:
     def rest_speed(self, before: Snapshot) -> Floats:
         """Speed of approach below which pairs stay in contact: √(2 a h), a being the larger acceleration."""
         particles, pairs = self.model.particles, self._near.pairs
-        height = TOUCH * self._near.reach(pairs)
+        height, contacts = TOUCH * self._near.reach(pairs), contacts_of(self.model)
         if (self._near.restitution < 1.0).any():
-            height = np.maximum(height, REST_HEIGHT * self._near.size[pairs].min(axis=1))
+            share = REST_HEIGHT if contacts is None or len(contacts.contacts) < CROWD else CROWD_HEIGHT
+            height = np.maximum(height, share * self._near.size[pairs].min(axis=1))
         pull = np.hypot(*(particles.mobility * particles.applied_force).T)
         h = self.model.clock.time - before.columns["clock.time"][0]
         if h > 0.0:

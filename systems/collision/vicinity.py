@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from components.field import Role
 from components.model import Model
 from components.obstacles import obstacles
+from components.paths import Paths
 from systems.collision.system import contacts_of
 from systems.islands import islands
 from systems.near import Floats, Rows, near_pairs, nearest
@@ -96,14 +97,13 @@ class Vicinity:
         total: Floats = self.radius[pairs].sum(axis=1)
         return total
 
-    def kinds(self, displacement: Floats) -> Rows:
-        """Of every pair at the start of a step: LEAST = 1e-300  # m/s; no motion is that slow
-        WATCHED, LEFT_ALONE (nodes that overlap) or LASTING."""
+    def kinds(self, displacement: Floats, contacts: Paths | None) -> Rows:
+        """Of every pair at the start of a step: WATCHED, LEFT_ALONE (nodes that overlap) or LASTING."""
         gap, _ = self.gaps(self.pairs, displacement)
         nodes = self._node[self.pairs].all(axis=1)
         kinds = np.where(nodes & (gap < -OVERLAP * self.reach(self.pairs)), LEFT_ALONE, WATCHED)
-        contacts, count = contacts_of(self.model), len(self.position)
         if contacts is not None:
+            count = len(self.position)
             lasting = contacts.contacts[:, 0] * count + contacts.contacts[:, 1]
             kinds[np.isin(self.pairs[:, 0] * count + self.pairs[:, 1], lasting)] = LASTING
         return kinds
@@ -147,7 +147,7 @@ class Vicinity:
     def _time_apart(self, displacement: Floats) -> float:
         """For how long (s) none of the listed pairs can meet, or part if they are nodes that overlap."""
         gap, _ = self.gaps(self.pairs, displacement)
-        room = np.where(self.kinds(displacement) == LEFT_ALONE, -gap, np.maximum(gap, 0.0))
+        room = np.where(self.kinds(displacement, None) == LEFT_ALONE, -gap, np.maximum(gap, 0.0))
         first, second = (
             self.everywhere(values)[self.pairs].sum(axis=1) for values in (self._speed, self._pull)
         )

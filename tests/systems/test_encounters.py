@@ -9,6 +9,8 @@ import pytest
 from game import Session
 from game.collisions.encounter_kernels import has_encounters
 from game.collisions.encounters import load_encounters
+from systems.collision.system import contacts_of
+from systems.collision.vicinity import Vicinity
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
 
@@ -221,3 +223,95 @@ def test_a_particle_under_drag_that_begins_in_contact_lies_there(below: str) -> 
     session.run(time=0.1)
     assert session.particles["p"].displacement == pytest.approx((0.0, 0.0), abs=1e-12)
     assert len(session.impacts) == 0
+
+
+# --- several things in contact at once ------------------------------------------------------------------------
+
+
+def box(discs: list[dict[str, Any]], **sections: Any) -> dict[str, Any]:
+    """Discs between two walls on a floor, 0.6 m wide."""
+    ends = {
+        "floor": ([-0.3, 0.0], [0.3, 0.0]),
+        "left": ([-0.3, 0.0], [-0.3, 3.0]),
+        "right": ([0.3, 0.0], [0.3, 3.0]),
+    }
+    walls = [{"name": name, "start": start, "end": end} for name, (start, end) in ends.items()]
+    return {
+        "format": "pinjoint model",
+        "version": 1,
+        "environment": GRAVITY,
+        "particles": [{"name": f"p{k}", **disc} for k, disc in enumerate(discs)],
+        "components": {"walls.Wall": walls},
+    } | sections
+
+
+def assert_lies(session: Session) -> None:
+    """At rest, nothing sunk in by 1e-6 of a radius, and what holds it bears its weight."""
+    particles, near = session.model.particles, Vicinity(session.model)
+    near.look_up()
+    near.cover(particles.displacement, 0.0)
+    gap, _ = near.gaps(near.pairs, particles.displacement)
+    assert gap.min() >= -1e-6 * particles.radius.min()
+    contacts = contacts_of(session.model)
+    assert contacts is not None
+    assert (contacts.forces >= 0.0).all()
+    _, normal = near.gaps(contacts.contacts, particles.displacement)
+    force = 1000.0 * particles.constant_force
+    for (i, j), n, push in zip(contacts.contacts, normal, contacts.forces, strict=True):
+        force[i] -= push * n
+        if j < particles.count:
+            force[j] += push * n
+    alone = np.ones(particles.count, dtype=bool)
+    alone[session.model.rods.between.ravel()] = False
+    weight = 1000.0 * np.abs(particles.constant_force).max()
+    assert np.abs(force[alone]).max() <= 1e-6 * weight
+
+
+@pytest.mark.parametrize("drag", [0.5, 20.0])
+def test_a_small_pile_comes_to_rest_under_drag(drag: float) -> None:
+    """What opened within a step once met again at its start, for ever."""
+    discs = [{"position": [-0.2 + 0.13 * (k % 4) + 0.003 * k, 0.06 + 0.13 * (k // 4)]} for k in range(8)]
+    environment = GRAVITY | {"drag": drag}
+    session = Session.open(box(discs, environment=environment, settings={"restitution": 0.0}))
+    assert session.run(until="rest", limit=20.0) == "at rest"
+    assert_lies(session)
+    assert abs(session.energy.imbalance) < 1e-9 * session.energy.work
+
+
+@pytest.mark.parametrize("integrator", ["esdirk4", "dop853"])
+def test_an_integrator_of_either_kind_brings_a_ball_to_rest_on_a_truss(integrator: str) -> None:
+    session = Session.open(truss({}, integrator=integrator))
+    session.model.rods[0].damping = session.model.rods[1].damping = 20.0
+    assert session.run(until="rest") == "at rest"
+    assert session.rods["AB"].axial_force == pytest.approx(-0.0587925291, rel=1e-7)
+    assert abs(session.energy.imbalance) < 1e-6 * session.energy.work
+    assert_lies(session)
+
+
+def test_a_ball_rests_on_a_cable() -> None:
+    """Where it settles: the cable, loaded by its weight at mid span, is in balance with it."""
+    rope = {"stiffness": 100, "damping": 2.0, "density": 1, "tension_only": True}
+    document = truss({"position": [1.0, 0.1], "mass": 1.0, "fixed": [True, False]}, restitution=0.3)
+    document["particles"][1]["position"] = [1.0, -0.1]
+    document["rods"] = [rope | {"name": name, "between": list(name)} for name in ("AB", "BC")]
+    session = Session.open(document)
+    assert session.run(until="rest", limit=20.0) == "at rest"
+    assert_lies(session)
+    x, y = np.add(session.particles["B"].position, session.particles["B"].displacement)
+    pull = session.rods["AB"].axial_force
+    node = session.particles["B"].mass
+    assert pull == pytest.approx(9.81e-3 * (1.0 + node) * np.hypot(x, y) / (-2.0 * y), rel=1e-7)
+
+
+def test_a_ball_that_makes_a_truss_yield_rests_on_what_is_left() -> None:
+    """Its energy goes into impacts, dampers and plastic strain; afterwards no rod exceeds its strength."""
+    document = truss({"mass": 20.0}, restitution=0.5)
+    for rod in document["rods"]:
+        rod |= {"tensile_strength": 0.3, "compressive_strength": 0.3, "damping": 2.0}
+    session = Session.open(document)
+    assert session.run(until="rest") == "at rest"
+    assert_lies(session)
+    energy = session.energy
+    assert energy.dissipated_plastic > 0.1 * energy.work
+    assert abs(energy.imbalance) < 1e-6 * energy.work
+    assert np.abs(session.model.rods.axial_force).max() <= 0.3 * (1.0 + 1e-12)

@@ -1,0 +1,41 @@
+"""Contacts that push or open: against the least energy, found slowly, and where forces are not unique."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import nnls
+
+from systems.collision.complementarity import complementary
+
+
+def problem(seed: int, contacts: int, freedoms: int) -> tuple[np.ndarray, np.ndarray]:
+    """Lines of contacts on freedoms, and gaps without forces, that some motion could all open."""
+    random = np.random.default_rng(seed)
+    lines = random.normal(size=(contacts, freedoms))
+    return lines, lines @ random.normal(size=freedoms)
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 12), st.integers(1, 12))
+@settings(max_examples=60)
+def test_each_contact_pushes_or_is_open(seed: int, contacts: int, freedoms: int) -> None:
+    """Also where more contacts than freedoms leave forces open; taken again, gaps that should be 0 are to round-off."""
+    lines, gap = problem(seed, contacts, freedoms)
+    slope = lines @ lines.T
+    forces = np.zeros(contacts)
+    for _ in range(3):
+        forces = complementary(slope, gap + slope @ forces, forces)
+    left = gap + slope @ forces
+    scale = np.abs(gap).max()
+    assert (forces >= 0.0).all()
+    assert left.min() >= -1e-9 * scale
+    assert np.abs(np.minimum(forces * np.diag(slope), left)).max() <= 1e-9 * scale
+    # what moves goes the shortest way: min |Aᵀ F + b|² over F ≥ 0, where A b = gap
+    shift = np.linalg.lstsq(lines, gap, rcond=None)[0]
+    least, _ = nnls(lines.T, -shift)
+    np.testing.assert_allclose(lines.T @ forces, lines.T @ least, atol=1e-8 * max(np.abs(shift).max(), 1.0))
+
+
+def test_what_cannot_yield_is_not_pushed() -> None:
+    slope = np.array([[2.0, 0.0], [0.0, 0.0]])
+    assert complementary(slope, np.array([-1.0, -1.0]), np.zeros(2)) == pytest.approx([0.5, 0.0])
