@@ -1,5 +1,8 @@
 """The same model gives the same bits: in every process, however steps are divided, saved and reloaded."""
 
+import os
+import subprocess
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -186,3 +189,29 @@ def test_a_saved_time_is_kept(tmp_path: Path) -> None:
     assert applied[0] == pytest.approx(30 * (0.02 - 0.001) / 0.05, rel=1e-12)
     session.run(steps=1)
     assert session.time == pytest.approx(0.02 + session.model.clock.step_size, rel=1e-15)
+
+
+SETTLED = """
+import hashlib
+from systems.statics.settle import settle
+from tests.benchmarks.models import lattice
+found = hashlib.sha256()
+for rods in (150, 300):
+    for strength in (None, 20.0):
+        model = lattice(rods, tensile_strength=strength, compressive_strength=strength)
+        for state in settle(model, (1.0, 0.0)).states:
+            found.update(state.displacement.tobytes() + state.axial_force.tobytes())
+print(found.hexdigest())
+"""
+
+
+def test_settling_has_the_same_bits_on_any_number_of_threads_of_the_linear_algebra_library():
+    found = set()
+    for threads in ("1", "3"):
+        chosen = {f"{library}_NUM_THREADS": threads for library in ("OPENBLAS", "MKL", "OMP")}
+        words = [sys.executable, "-c", SETTLED]
+        run = subprocess.run(
+            words, env=os.environ | chosen, capture_output=True, text=True, timeout=120, check=True
+        )
+        found.add(run.stdout)
+    assert len(found) == 1
