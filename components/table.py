@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 H = TypeVar("H", bound="Handle")
 
 _SMALLEST_CAPACITY = 8
+_TRIED = 64  # names at once, at least, in search of a free one
 
 
 class Table(Generic[H]):
@@ -206,16 +207,17 @@ class Table(Generic[H]):
     def free_names(self, count: int, besides: Iterable[str] = ()) -> list[str]:
         """The `count` names of the form "rod n" with the smallest n that neither are used nor among `besides`."""
         noun, used, others = self.kind.noun, self._by_name, set(besides)
-        if count:
-            numbers = itertools.count(self._lowest_number)
-            self._lowest_number = next(n for n in numbers if f"{noun} {n}" not in used)
         found: list[str] = []
         first = self._lowest_number
         while (wanted := count - len(found)) > 0:
-            tried = [f"{noun} {n}" for n in range(first, first + wanted)]
-            found += [name for name in tried if name not in used and name not in others]
-            first += wanted
-        return found
+            last = first + max(wanted, _TRIED)
+            tried = [f"{noun} {n}" for n in range(first, last)]
+            free = [name for name in tried if name not in used]
+            if not free and first == self._lowest_number:
+                self._lowest_number = last
+            found += [name for name in free if name not in others]
+            first = last
+        return found[:count]
 
     def taken(self, names: Sequence[str]) -> set[str]:
         """Those of these names that entities have."""

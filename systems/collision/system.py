@@ -32,13 +32,16 @@ class Collision(StepSystem):
 
 def can_touch(model: Model) -> bool:
     """True if there are two particles that a rod does not join, or one and an obstacle, of which one can move."""
-    mobility, between = model.particles.mobility, model.rods.between
+    mobility = model.particles.mobility
     movable: NDArray[np.bool_] = (mobility[:, 0] > 0.0) | (mobility[:, 1] > 0.0)
     if any_obstacles(model) and movable.any():
         return True
     count, moving = len(movable), int(movable.sum())
     held = count - moving
     pairs = count * (count - 1) // 2 - held * (held - 1) // 2
+    if pairs > model.rods.count:
+        return True
+    between = model.rods.between
     joined = movable[between[:, 0]] | movable[between[:, 1]]
     return pairs > int(joined.sum())
 
