@@ -59,7 +59,7 @@ def _local_client(distributed: Any, workers: int) -> Any:
         threads_per_worker=1,
         env={VARIABLE: "1"},
         processes=True,
-        dashboard_address=None,
+        dashboard_address="127.0.0.1:0",  # any port: several sweeps may run at once
         silence_logs=logging.CRITICAL,
     )
 
