@@ -81,7 +81,8 @@ class Sleep:
         if not self.may_happen(program):
             return self._wake()
         stillness = self._observed(program)
-        rest = stillness.at_rest(self.model, self._of_particle, self._of_rod)
+        clock = self.model.clock
+        rest = stillness.at_rest(self._of_particle, self._of_rod, clock.force_scale, clock.energy_scale)
         rest[self._under_varying_loads] = rest[HELD] = False
         return self._let_sleep(rest[self._of_particle], stillness.kinetic)
 

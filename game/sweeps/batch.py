@@ -18,10 +18,13 @@ from components.load import load_breaks, loads_end
 from game.energy import Energy
 from game.program.program import ACCOUNT, CONTROL
 from game.program.writer import REVIEW_INTERVAL
+from game.sleep import INTERVAL
 from game.step_size import automatic_step, first_step, is_outgrown, step_limit
 from game.sweeps.batch_program import BatchProgram
 from game.sweeps.stack import Stack
 from systems.base import StopReason
+from systems.islands import HELD, islands
+from systems.physics.rest import Stillness
 from systems.physics.spectrum import spectra
 
 Mask = NDArray[np.bool_]
@@ -44,6 +47,9 @@ class Batch:
         self.resting, self.alone = np.zeros(blocks, dtype=bool), np.zeros(blocks, dtype=bool)
         self.rested = np.zeros(blocks)
         self.measures = np.zeros((blocks, 16))
+        self.unbalanced = np.zeros_like(stack["particles.displacement"])
+        self._may_sleep = bool(stack.single("settings.sleeping").any()) and program.program.follows_state
+        self._may_sleep &= islands(stack.part(np.zeros(1, dtype=np.intp)).as_model()).max(initial=HELD) > 1
         self.fixed_step = stack.single("settings.time_step")
         self._columns = program.columns(stack, varied_arrays)
         self._breaks = np.array([*load_breaks(stack.as_model()), math.inf])
@@ -73,6 +79,7 @@ class Batch:
         dissipated = sum(self.clock(name) for name in _DISSIPATED)
         self.clock("initial_energy")[...] = kinetic + elastic + dissipated - self.clock("work")
         self.clock("potential_reference")[...] = potential
+        self._leave_sleepers(self._all)
         frequency, decay, stable = self._limits()
         with np.errstate(invalid="ignore"):
             self.alone |= (stable == 0.0) | (self.fixed_step > stable)  # to be warned of
@@ -84,6 +91,21 @@ class Batch:
             else:
                 sizes[block] = automatic_step(stable[block], frequency[block], self._rods)
         self._begin_steps(np.flatnonzero(~self.alone), sizes)
+
+    def _leave_sleepers(self, blocks: NDArray[np.intp]) -> None:
+        """Leave those to runs of their own in which an island at rest would sleep now while others move."""
+        if not (self._may_sleep and len(blocks)):
+            return
+        self.observe()
+        model = self.stack.as_model()
+        of_particle = islands(model)
+        of_rod = of_particle[model.rods.between].max(axis=1, initial=HELD)
+        block = np.zeros(of_particle.max(initial=HELD) + 1, dtype=np.intp)  # of each island
+        block[of_particle] = np.repeat(self._all, len(of_particle) // self.stack.blocks)
+        scales = self.clock("force_scale")[block], self.clock("energy_scale")[block]
+        rest = Stillness.of(model, self.unbalanced.reshape(-1, 2)).at_rest(of_particle, of_rod, *scales)
+        rest[HELD] = False
+        self.alone[np.intersect1d(block[rest], blocks)] = True
 
     @property
     def _rods(self) -> int:
@@ -141,6 +163,7 @@ class Batch:
         self._call(
             "observe",
             self._all,
+            force=self.unbalanced,
             applied=stack["particles.applied_force"],
             reaction=stack["particles.reaction"],
             rods_axial_force=stack["rods.axial_force"],
@@ -154,12 +177,12 @@ class Batch:
         )
 
     def _advance(
-        self, blocks: NDArray[np.intp], steps: int, until: float = math.inf, landing: float = math.inf
+        self, blocks: NDArray[np.intp], steps: Any, until: float = math.inf, landing: float = math.inf
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Let blocks take up to so many steps, as Program.advance does."""
+        """Let blocks take up to so many steps, all or each, as Program.advance does."""
         time, size, total = (self.clock(name).copy() for name in ("time", "step_size", "steps"))
         first = total - self.clock("origin_steps")
-        wanted = np.full(self.stack.blocks, steps)
+        wanted = np.full(self.stack.blocks, steps, dtype=np.int64)
         if until < math.inf and not self.driver.controlled:
             left = ((until - time) / size * (1.0 + 1e-12)).astype(np.int64)
             wanted = np.clip(left, 0, steps)
@@ -214,7 +237,7 @@ class Batch:
 
     def _run(self, until: float, blocks: NDArray[np.intp]) -> None:
         while len(blocks := blocks[until - self.clock("time")[blocks] > 4.0 * math.ulp(until)]):
-            taken, reason = self._advance(blocks, REVIEW_INTERVAL, until)
+            taken, reason = self._advance(blocks, self._steps_to_review, until)
             reason = reason[blocks]
             rest = blocks[reason == StopReason.REST]
             self.resting[rest] = True
@@ -222,6 +245,15 @@ class Batch:
             self.alone[blocks[reason > StopReason.REST]] = True
             self._review(blocks[reason == StopReason.REVIEW])
             blocks = blocks[np.isin(reason, _GOING_ON) & (taken[blocks] > 0)]
+            self._leave_sleepers(blocks[self.clock("steps")[blocks] % INTERVAL == 0])
+            blocks = blocks[~self.alone[blocks]]
+
+    @property
+    def _steps_to_review(self) -> Any:
+        """Steps of each block until Simulation would stop next to look at it."""
+        if not self._may_sleep:
+            return REVIEW_INTERVAL
+        return INTERVAL - self.clock("steps") % INTERVAL
 
     def _review(self, blocks: NDArray[np.intp]) -> None:
         """Change automatic steps if the stable step changed much."""

@@ -25,6 +25,7 @@ _SHARED = (
     "loads_end",
 )  # one for all blocks, besides what is written anew for each
 _RETURNS = {"advance": "taken[k], reason[k] = "}
+_KEPT = {"observe": ("force",)}
 _PIECES = 4  # for each thread, so that none waits long for another
 
 
@@ -66,6 +67,11 @@ class BatchProgram:
             }
         )
 
+    def _scratch(self, entry: str) -> dict[str, tuple[int, ...]]:
+        """What of this an entry writes; the forces that are observed are kept for each block."""
+        kept = _KEPT.get(entry, ())
+        return {name: shape for name, shape in self._scratch_shapes.items() if name not in kept}
+
     def _source(self) -> str:
         lines = [
             '"""A step program for blocks. Generated; safe to delete."""',
@@ -74,7 +80,7 @@ class BatchProgram:
             "",
         ]
         for name, parameters in self._parameters.items():
-            one_for_all = (*_SHARED, *self._scratch_shapes)
+            one_for_all = (*_SHARED, *self._scratch(name))
             arguments = [p if p in one_for_all else f"{p}[k]" for p in parameters]
             lines += [
                 '@njit(error_model="numpy", nogil=True, cache=True)',
@@ -121,7 +127,7 @@ class BatchProgram:
         taken, reason = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
 
         def work(some: NDArray[np.intp]) -> None:
-            scratch = {name: np.zeros(shape) for name, shape in self._scratch_shapes.items()}
+            scratch = {name: np.zeros(shape) for name, shape in self._scratch(entry).items()}
             given = [scratch[p] if p in scratch else arguments[p] for p in self._parameters[entry]]
             getattr(self._module, f"{entry}_each")(some, taken, reason, *given)
 

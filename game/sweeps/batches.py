@@ -21,7 +21,6 @@ from game.sweeps.plan import Plan, Record
 from game.sweeps.stack import Stack
 from game.sweeps.variation import Random, Value
 from game.target import EVERY, Target, locate, settable
-from systems.islands import islands
 from systems.physics.automatic import SMALL, stiffnesses, suited_to
 
 if TYPE_CHECKING:
@@ -62,9 +61,6 @@ class Batches:
             and len(placed) <= 1  # two could meet on the way, which is refused
             and all(type(system).__module__.startswith("systems.") for system in self._specimen.step_systems)
             and all(self._is_number(target) for target in self._targets)
-            and not (
-                model.settings.sleeping and islands(model).max(initial=0) > 1
-            )  # each sleeps at its own time
         )
 
     @staticmethod

@@ -48,21 +48,23 @@ class Stillness:
         )
 
     @_BEYOND
-    def at_rest(self, model: Model, of_particle: Rows, of_rod: Rows) -> Mask:
-        """Which islands are at rest, given those of the particles and rods."""
+    def at_rest(
+        self, of_particle: Rows, of_rod: Rows, force_scale: Array | float, energy_scale: Array | float
+    ) -> Mask:
+        """Which islands are at rest, given those of the particles and rods, and what clocks say of all or of each."""
         from systems.physics.kernels import (
             REST_RESIDUAL,
             SMALL_SHARE,
         )  # numba is imported with the first program
 
-        count, clock = int(of_particle.max(initial=0)) + 1, model.clock
+        count = int(of_particle.max(initial=0)) + 1
         largest = _largest(count, (of_particle, self.load), (of_rod, self.pull))
         round_off = _largest(count, (of_rod, self.round_off))
         still_force = np.maximum(
-            REST_RESIDUAL * np.maximum(largest, SMALL_SHARE * clock.force_scale), 8.0 * round_off
+            REST_RESIDUAL * np.maximum(largest, SMALL_SHARE * force_scale), 8.0 * round_off
         )
         elastic = np.bincount(of_rod, self.elastic, count)
-        still_energy = REST_RESIDUAL**2 * np.maximum(elastic, SMALL_SHARE**2 * clock.energy_scale)
+        still_energy = REST_RESIDUAL**2 * np.maximum(elastic, SMALL_SHARE**2 * energy_scale)
         residual = _largest(count, (of_particle, self.residual))
         kinetic = np.bincount(of_particle, self.kinetic, count)
         rest: Mask = (residual <= still_force) & (kinetic <= still_energy)

@@ -138,10 +138,51 @@ def beside(**chosen: Any) -> dict[str, Any]:
     return TRIANGLE | {"particles": [*TRIANGLE["particles"], apart], "settings": chosen}
 
 
+def two_triangles(**chosen: Any) -> dict[str, Any]:
+    """Two that are alike, beside each other."""
+    letters = str.maketrans("ABC", "DEF")
+    particles = [
+        p | {"name": p["name"].translate(letters), "position": [p["position"][0] + 5, p["position"][1]]}
+        for p in TRIANGLE["particles"]
+    ]
+    rods = [
+        r | {"name": r["name"].translate(letters), "between": [n.translate(letters) for n in r["between"]]}
+        for r in TRIANGLE["rods"]
+    ]
+    return TRIANGLE | {
+        "particles": [*TRIANGLE["particles"], *particles],
+        "rods": [*TRIANGLE["rods"], *rods],
+        "settings": chosen,
+    }
+
+
+@pytest.mark.parametrize(
+    ("vary", "alone_too"),
+    [
+        ("rods.DE.stiffness=1e5,2e5", 0),  # both islands move until the whole is at rest
+        ("particles.E.force=0", 1),  # the second island rests from the start, and sleeps
+    ],
+)
+def test_islands_are_computed_together_until_one_would_sleep(vary: str, alone_too: int) -> None:
+    path, _, values = vary.partition("=")
+    axes = [f"{path}.{d}={values}" for d in "xy"] if path.endswith("force") else [vary]
+    plan = planned(two_triangles(sleeping=True, collisions=False), axes, TIMES)
+    together = Worker(plan).together(range(plan.size))
+    assert len(together) == plan.size - alone_too
+    assert together == {number: alone(plan, number) for number in together}
+
+
 @pytest.mark.parametrize("sleeping", [True, False])
-def test_islands_that_may_sleep_are_single_runs(sleeping: bool) -> None:
-    plan = planned(beside(sleeping=sleeping, collisions=False), ["rods.AB.stiffness=1e5,2e5"], TIMES)
-    assert (Worker(plan).at_a_time == 1) is sleeping
+def test_an_island_falls_asleep_in_a_run_of_its_own(sleeping: bool) -> None:
+    """By small fixed steps, of which reviews come every 1024."""
+    steps = {"integrator": "velocity_verlet", "time_step": 2e-6, "collisions": False}
+    model = two_triangles(sleeping=sleeping, **steps)
+    for rod in model["rods"][3:]:
+        rod["damping"] = 20.0
+    plan = planned(model, ["rods.AB.stiffness=1.6e5,1.7e5"], Analysis(times=(2.5e-2,)))
+    together = Worker(plan).together(range(plan.size))
+    assert len(together) == (0 if sleeping else 2)
+    assert together == {number: alone(plan, number) for number in together}
 
 
 def test_structures_whose_particles_can_meet_are_single_runs() -> None:

@@ -196,7 +196,8 @@ def test_what_is_beyond_all_numbers_stays_awake_without_a_warning(beyond: float)
     unbalanced = np.zeros((session.particles.count, 2))
     unbalanced[:3] = state.writable("particles.velocity")[:3] = beyond
     stillness = Stillness.of(state, unbalanced)
-    rests = stillness.at_rest(state, of_particle, of_particle[state.rods.between].max(axis=1))
+    of_rod = of_particle[state.rods.between].max(axis=1)
+    rests = stillness.at_rest(of_particle, of_rod, state.clock.force_scale, state.clock.energy_scale)
     assert rests[1:].tolist() == [False, True]
 
 
