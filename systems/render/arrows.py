@@ -51,7 +51,7 @@ def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
     if sheet.view.status.speed or not 0 < len(rows) <= MOST:
         return
     sheet.legend.append("velocity")
-    yield from _arrows(sheet, rows, _directions(velocity[rows]), sheet.theme.running)
+    yield from _arrows(sheet, rows, _directions(velocity[rows]), sheet.theme.ink)
 
 
 def _directions(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -285,7 +285,7 @@ def _rows(widths: list[float], gap: float, room: float) -> list[tuple[int, int]]
 def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:
     """The thing itself, small: a diagram, a yielding rod, a slack cable, an arrow."""
     u, theme = sheet.unit, sheet.theme
-    role = {"slack": "ink", "load": "force", "velocity": "running"}.get(name, name)
+    role = {"slack": "ink", "load": "force", "velocity": "ink"}.get(name, name)
     colour = getattr(theme, role)
     ends = np.array([[x, y]]), np.array([[x + width, y]])
     if name in ("force", "load", "velocity"):

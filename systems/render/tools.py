@@ -55,7 +55,7 @@ def _force(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
 
 
 def _velocity(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
-    return _arrow(sheet, start, end, sheet.theme.running)
+    return _arrow(sheet, start, end, sheet.theme.ink)
 
 
 def _pull(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:

@@ -53,10 +53,10 @@ def test_velocities_are_seen_while_time_stands_still() -> None:
     model = triangle()
     model.create(Particle, 1, name=["ball"], position=[(0.0, 2.0)], velocity=[(1.0, 0.0)])
     model.particles["B"].velocity = (0.0, 1.0)
-    assert len(tips(model, LIGHT.running)) == 2
-    assert len(tips(model, LIGHT.running, status=Status(speed=1.0, state="running"))) == 0
+    assert len(tips(model, LIGHT.ink)) == 2
+    assert len(tips(model, LIGHT.ink, status=Status(speed=1.0, state="running"))) == 0
     model.writable("clock.steps")[0] = 5
-    assert len(tips(model, LIGHT.running)) == 1, "nodes swing to and fro"
+    assert len(tips(model, LIGHT.ink)) == 1, "nodes swing to and fro"
 
 
 def test_very_many_arrows_are_left_out() -> None:
