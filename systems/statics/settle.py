@@ -122,8 +122,8 @@ def settle(
 
     Factors multiply forces and loads; accelerations grow from 0 to 1 with the first factor and then stay.
     In a model that has not moved yet, lack of fit and moved supports act before the load does; in any other
-    the forces that hold its present state are exchanged for the load. Ends early, with a status other than
-    "equilibrium", where there is no equilibrium to go on to.
+    the forces that hold its present state are exchanged for the load, and factors on the way count both.
+    Ends early, with a status other than "equilibrium", where there is no equilibrium to go on to.
     geometry: "linear" for first-order theory about the original positions, with the same yielding.
     Raises FieldError for numbers too large or too small to compute with, ValueError for no load factors.
     """
@@ -184,12 +184,12 @@ class _Settling:
         self.structure = Structure.of(model, geometry)
         self.external = external_forces(model)
         self.events = [Event("note", 0.0, note) for note in self.external.notes]
-        self.factor = 0.0
         self.looked_for_bodies = self.soft = False
         at_rest = Path(self.structure, self._nothing, self._nothing)
         self.point = at_rest.start(start.displacement, start.plastic_strain)
         self.largest = float(np.abs(self.point.response.axial_force).max(initial=0.0))
         self.load = self._holding()
+        self.factor = self._held_factor() if start.displacement.any() else 0.0
         self.slack = at_rest.branches(self.point.response).slack
 
     @property
@@ -202,6 +202,14 @@ class _Settling:
         loads = (self.external.at(1.0), self.point.response.axial_force)
         largest = max(float(np.abs(values).max(initial=0.0)) for values in loads)
         return held if np.abs(held).max(initial=0.0) > UNSTRESSED * largest else self._nothing
+
+    def _held_factor(self) -> float:
+        """How much of what load factors multiply holds the present state; 0 where accelerations act as well."""
+        scaled = np.where(self.structure.unknown, self.external.scaled, 0.0)
+        size = float((scaled * scaled).sum())
+        return (
+            float((self.load * scaled).sum()) / size if size > 0.0 and not self.external.steady.any() else 0.0
+        )
 
     def through(self, factors: Sequence[float]) -> Settlement:
         """The states at these load factors in turn, up to the first that is no equilibrium."""
@@ -338,7 +346,7 @@ class _SettlingWithDiscs(_Settling):
         self.discs = discs
         self.structure = self.bare = discs.beside(self.structure)
         self.point = replace(self.point, displacement=self._all(start.displacement))
-        self.load = self._nothing
+        self.load, self.factor = self._nothing, 0.0
 
     def _all(self, field: Array) -> Array:
         """A field over the particles (n, 2) as one over particles and obstacles."""

@@ -19,7 +19,7 @@ from game.cli import main
 from systems.statics import loading
 from systems.statics.events import Event
 from systems.statics.follow import Path
-from systems.statics.settle import Settlement, StaticState, settle
+from systems.statics.settle import Settlement, StaticState, apply, settle
 from tests.reference import closed_forms, statics
 from tests.reference import models as trusses
 from tests.reference.elements import Model as Document
@@ -305,6 +305,15 @@ def test_the_shallow_truss_snaps_at_its_limit_load() -> None:
     (event,) = events(settle(models.load("von_mises")), "snap-through")
     assert event.load_factor * 3800.0 == pytest.approx(3789.46, abs=0.01)
     assert "3789.46 kN" in event.message
+
+
+@pytest.mark.parametrize("share", [0.5, 0.9])
+def test_from_a_loaded_state_on_it_snaps_at_the_same_load(share: float) -> None:
+    """What is reported is the load that acts then, not the share of what was added."""
+    model = models.load("von_mises")
+    apply(model, settle(model, [share]).final)
+    (event,) = events(settle(model), "snap-through")
+    assert event.load_factor * 3800.0 == pytest.approx(3789.46, abs=0.01)
 
 
 def test_the_shallow_truss_lands_on_the_other_side() -> None:
