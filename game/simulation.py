@@ -33,10 +33,12 @@ from game.sleep import Sleep
 from game.step_size import StepSize
 from systems.base import Driver, StepSystem, StopReason
 from systems.collision.system import Collision, FreeFlight
+from systems.edit.pull import Pull
 from systems.physics.automatic import choose
 
 MOST_RETRIES = 6  # times that an automatic step is halved before a run is given up
 FREE_FLIGHT = FreeFlight()
+FEW = 8  # particles without rods, among which a hand's force is followed within a step, and not on exact paths
 
 # What the clock is given when a run begins.
 CHOSEN = ("step_size", "guard_energy", "initial_energy", "potential_reference")
@@ -113,7 +115,8 @@ class Simulation:
         """The integrator that the settings ask for, or that suits the model; free particles need none."""
         if self._driver is None:
             name = self.model.settings.integrator
-            if [type(system) for system in self.schedule.step_plan(self.model)] == [Collision]:
+            plan = {type(system) for system in self.schedule.step_plan(self.model)}
+            if plan == {Collision} or (plan == {Collision, Pull} and self.model.particles.count > FEW):
                 self._driver = FREE_FLIGHT
             else:
                 self._driver = DRIVERS[choose(self.model) if name == AUTOMATIC else name]
@@ -287,7 +290,7 @@ class Simulation:
 
     def _made(self, systems: list[StepSystem]) -> Program | Flight:
         if self.driver is FREE_FLIGHT:
-            return Flight(self.model, self.impacts)
+            return Flight(self.model, self.impacts, next((s for s in systems if isinstance(s, Pull)), None))
         return make_program(self.model, systems, self.driver)
 
     def _part_overlaps(self) -> None:

@@ -1,4 +1,4 @@
-"""Encounters: impacts and contacts of particles that rods, drag or a hand drive.
+"""Encounters: impacts and contacts of particles that rods or drag drive.
 
 The integrator takes its steps; when particles come near each other every step is looked at: the paths in it
 are taken as parabolas, whose first meeting is found like that of free particles, the step is taken again to end

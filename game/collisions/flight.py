@@ -21,6 +21,7 @@ from systems.collision.arrays import CROWD_COUNTS, CROWD_NUMBERS, MOVING
 
 if TYPE_CHECKING:
     from systems.collision.discs import Discs
+    from systems.edit.pull import Pull
 
 CROWD = len(CROWD_COUNTS) + len(CROWD_NUMBERS)
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
@@ -67,17 +68,19 @@ class Flight:
     """The particles of one model on their exact paths from impact to impact.
 
     measures: as of a step program. compile_seconds: what compiling it took, or loading it from the cache.
-    What the paths are is part of the model's state: clock.paths.
+    What the paths are is part of the model's state: clock.paths. pull: of a hand; its force is constant during a step,
+    so that the paths are exact in it.
     """
 
-    def __init__(self, model: Model, impacts: Impacts) -> None:
+    def __init__(self, model: Model, impacts: Impacts, pull: Pull | None = None) -> None:
         started = time.perf_counter()
         self.model = model
         self.measures = np.zeros(8)
         self._impacts = impacts
+        self._pull = pull
         for part in (EVENTS, WINDOWS):
             load_part(part)
-        if self.model.particles.constant_force.any() or has_parts(PILES):
+        if self.model.particles.constant_force.any() or pull is not None or has_parts(PILES):
             load_part(PILES)
         self.bind()
         self.compile_seconds = time.perf_counter() - started
@@ -108,13 +111,13 @@ class Flight:
                 particles.radius,
                 np.where(particles.fixed, 0.0, 1.0 / particles.mass[:, None]),
                 displacement=particles.displacement,
-                acceleration=particles.mobility * particles.constant_force,
+                acceleration=particles.mobility * (particles.constant_force + self._hands_force()),
                 restitution=self.model.settings.restitution,
                 time=clock.time,
                 obstacles=obstacles(self.model),
                 lost=clock.dissipated_impact,
             )
-            if clock.paths is not None and self._fits(clock.paths):
+            if self._pull is None and clock.paths is not None and self._fits(clock.paths):
                 self._flying.follow(clock.paths)
             self._state_revision = self.model.newest(Role.STATE)
         assert self._flying is not None
@@ -138,8 +141,34 @@ class Flight:
         """Let the time of up to `steps` steps pass; returns how many, and why it stopped.
 
         No step ends after `until` (s); one that would pass `landing` (s) is cut to end there. Steps are only
-        where one looks: what happens does not depend on them.
+        where one looks: what happens does not depend on them, unless a hand pulls.
         """
+        if self._pull is None:
+            return self._pass(steps, until, landing)
+        taken, reason = 0, StopReason.DONE
+        while taken < steps and reason is StopReason.DONE and self._pulled_step(until, landing):
+            taken += 1
+        return taken, reason
+
+    def _pulled_step(self, until: float, landing: float) -> int:
+        """A step in which the hand's force stays as it is; its work is accounted for."""
+        force, particles = self._hands_force(), self.model.particles
+        self._flying, before = None, particles.displacement.copy()
+        taken, _ = self._pass(1, until, landing)
+        if taken:
+            work = 1000.0 * float((force * (particles.displacement - before)).sum())
+            self.model.writable("clock.work")[0] = self.model.clock.work + work
+            self._state_revision = self.model.newest(Role.STATE)
+        return taken
+
+    def _hands_force(self) -> NDArray[np.float64]:
+        """On each particle (kN)."""
+        force = np.zeros((self.model.particles.count, 2))
+        if self._pull is not None and self._pull.hand is not None:
+            force[self._pull.hand.particle.row] = self._pull.force
+        return force
+
+    def _pass(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         clock = self.model.clock
         first, origin, size = clock.steps - clock.origin_steps, clock.origin, clock.step_size
         if until < math.inf:
@@ -176,7 +205,7 @@ class Flight:
 
     def _steps_until_rest(self, discs: Discs) -> float:
         """In how many steps a check will find everything at rest; infinite if it moves."""
-        if not discs.at_rest:
+        if self._pull is not None or not discs.at_rest:
             return math.inf
         clock = self.model.clock
         since = math.ceil((discs.last_change - clock.origin) / clock.step_size) + clock.origin_steps
@@ -198,11 +227,12 @@ class Flight:
     def commit(self) -> None:
         """Nothing here has a history."""
 
+    @np.errstate(over="ignore", invalid="ignore")  # of forces that are too large to compute with, as is said
     def observe(self) -> None:
         """Bring forces, reactions and measures up to date."""
         particles = self.model.particles
         constant, fixed, velocity = particles.constant_force, particles.fixed, particles.velocity
-        force = constant + 0.001 * self.discs.contact_forces()
+        force = constant + self._hands_force() + 0.001 * self.discs.contact_forces()
         self.model.writable("particles.applied_force")[...] = force
         self.model.writable("particles.reaction")[...] = np.where(fixed, 0.0 - force, 0.0)
         free: NDArray[np.float64] = np.where(fixed, 0.0, force)

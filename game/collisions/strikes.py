@@ -11,13 +11,15 @@ from components.paths import Paths
 from components.snapshot import Snapshot
 from game.collisions.encounter_kernels import kernels
 from game.collisions.impacts import Impacts
-from systems.collision.system import contacts_of
+from systems.collision.system import REST_HEIGHT, contacts_of
 from systems.collision.vicinity import LASTING, LEFT_ALONE, WATCHED, Vicinity
 from systems.near import Floats, Rows
 
 TOUCH = 1e-12  # of the reach of two particles: nearer than this they touch
-REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
-CROWD, CROWD_HEIGHT = 4, 1e-3  # the same where so many contacts last: they would pass on bounces without end
+CROWD, CROWD_HEIGHT = (
+    4,
+    1e-3,
+)  # where so many contacts last, this share replaces REST_HEIGHT: bounces go on and on
 NO_MOTION, NO_CROWD = np.zeros((0, 0)), np.zeros(0)  # of particles that do not fly free
 
 

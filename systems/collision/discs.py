@@ -17,12 +17,12 @@ from components.paths import Paths
 from systems.collision import arrays
 from systems.collision.arrays import Floats, Grid, Group, Integers, Pile, Queue, Reason, Report, Ties
 from systems.collision.pile.kernels import STEP_SHARE
+from systems.collision.system import REST_HEIGHT
 from systems.near import nearest
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
 REPORT = 4096  # impacts reported at a time
 MORE_PATIENCE = 64  # calm steps from one search for the equilibrium of a pile to the next
-REST_HEIGHT = 1e-9  # of the radius; larger: bouncing ends sooner
 
 
 @dataclass(frozen=True)

@@ -68,7 +68,8 @@ class Resting:
     place: centres, shape (n, 2), m. radius: shape (n,), m. inverse_mass: of each direction, shape (n, 2), 1/kg,
     0 where it is held. pull: acceleration without contacts, shape (n, 2), m/s². may_collide: tells which of the
     pairs it is given do, in which obstacles count on after the discs. pushing: pairs of which
-    it is known that they push, the lower number first, shape (c, 2); forces: how strongly, shape (c,), N.
+    it is known that they push, the lower number first, shape (c, 2); forces: how strongly, shape (c,), N. A disc in
+    none of these flies: it is not moved, and what it comes near is not at rest.
     """
 
     def __init__(
@@ -86,7 +87,7 @@ class Resting:
         self._may_collide, self._obstacles = may_collide, obstacles
         count = len(place)
         self._moves: NDArray[np.bool_] = np.zeros(count + len(obstacles), dtype=bool)
-        self._moves[pushing] = True  # what nothing pushes flies, and does not lie in the pile
+        self._moves[pushing] = True
         self._moves[:count] &= (inverse_mass > 0.0).any(axis=1)
         self._moves[count:] = False
         self._flies = np.zeros_like(self._moves)

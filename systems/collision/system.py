@@ -18,6 +18,10 @@ from systems.near import nearest
 if TYPE_CHECKING:
     from components.model import Model
 
+REST_HEIGHT = (
+    1e-9  # of the smaller radius; bounces that would rise less end in contact; larger: they end sooner
+)
+
 
 class Collision(StepSystem):
     """Discs that meet push one another apart; see game/collisions/flight.py for what drives them."""

@@ -10,6 +10,8 @@ import pytest
 from game import Session
 from game.cli import main
 from game.models import document
+from systems.collision.vicinity import Vicinity
+from systems.edit.pull import hand_on
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
 
@@ -258,3 +260,71 @@ def test_impacts_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert [float(c) for c in (cells[0], *cells[3:])] == pytest.approx(
         [0.08, 3.75, 4.6875, 0.45, 0.0], rel=1e-12
     )
+
+
+# --- a hand that pulls -----------------------------------------------------------------------------------------
+
+
+def pull(session: Session, name: str, anchors: list[tuple[float, float]], steps: int = 40) -> None:
+    """Pull a particle to displacements, one after the other, for so many steps each, and let go."""
+    session.simulation.advance(0)
+    hand = hand_on(session.model, session.view, session.particles[name], lambda: session.pace)
+    for anchor in anchors:
+        session.timeline.hold(hand.at(anchor))
+        session.run(steps=steps)
+    session.timeline.hold(None)
+
+
+def sinking(session: Session) -> float:
+    """By how much of a radius discs are in one another at most."""
+    near = Vicinity(session.model)
+    near.look_up()
+    displacement = session.model.particles.displacement
+    near.cover(displacement, 0.0)
+    return float((-near.gaps(near.pairs, displacement)[0] / near.size[near.pairs].min(axis=1)).max(initial=0.0))
+
+
+def test_a_hand_pulls_a_disc_into_others_on_exact_paths() -> None:
+    """Its work, that of a force constant in each step, is all energy that there is."""
+    session = Session.open(model([{"position": [0.11 * k, 0.0]} for k in range(9)]))
+    pull(session, "p0", [(0.2, 0.01), (0.4, 0.0), (0.0, 0.3)])
+    assert session.simulation.integrator == "free_flight"
+    assert len(session.impacts) >= 4
+    energy = session.energy
+    assert energy.work > 0.0
+    assert energy.work == pytest.approx(energy.kinetic, rel=1e-12)
+    assert sinking(session) <= 1e-12
+
+
+def test_a_hand_pulls_a_disc_through_a_pile() -> None:
+    """It is followed without end or loss, and once let go the pile comes to rest again."""
+    session = Session.open(pile(12))
+    assert session.run(until="rest", limit=10.0) == "at rest"
+    x, y = session.particles["p24"].displacement
+    pull(session, "p24", [(x + 0.03, y - 0.02), (x, y)], steps=60)
+    assert sinking(session) <= 1e-3
+    energy = session.energy
+    assert energy.work > 0.0
+    assert abs(energy.imbalance) <= 1e-4 * energy.work  # a pile's step was cut short where the hand moved
+    assert session.run(until="rest", limit=session.model.clock.time + 20.0) == "at rest"
+    assert sinking(session) <= 1e-6
+
+
+def test_stepping_back_replays_what_a_hand_did_with_the_same_bits() -> None:
+    session = Session.open(gas(restitution=0.9))
+    session.run(steps=20)
+    session.simulation.advance(0)
+    hand = hand_on(session.model, session.view, session.particles["p7"], lambda: session.pace)
+    states = {}
+    for anchor in ((0.2, 0.1), (-0.1, 0.2)):
+        session.timeline.hold(hand.at(anchor))
+        for _ in range(15):
+            session.run(steps=1)
+            states[session.model.clock.steps] = state(session)
+    session.timeline.hold(None)
+    session.run(steps=10)
+    for _ in range(12):
+        assert session.step(-3)
+        now = session.model.clock.steps
+        assert states.get(now, state(session)) == state(session)
+    assert now < 30

@@ -11,6 +11,7 @@ from game.collisions.encounter_kernels import has_encounters
 from game.collisions.encounters import load_encounters
 from systems.collision.system import contacts_of
 from systems.collision.vicinity import Vicinity
+from systems.edit.pull import hand_on
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
 
@@ -315,3 +316,18 @@ def test_a_ball_that_makes_a_truss_yield_rests_on_what_is_left() -> None:
     assert energy.dissipated_plastic > 0.1 * energy.work
     assert abs(energy.imbalance) < 1e-6 * energy.work
     assert np.abs(session.model.rods.axial_force).max() <= 0.3 * (1.0 + 1e-12)
+
+
+def test_a_hand_presses_a_disc_onto_a_node() -> None:
+    """From aside, then from above; it never passes, and all work is accounted for, through impacts and lasting contact."""
+    session = Session.open(truss({"position": [0.2, 1.5]}))
+    session.simulation.advance(0)
+    hand = hand_on(session.model, session.view, session.particles["ball"], lambda: session.pace)
+    for k in range(20):
+        session.timeline.hold(hand.at((0.8, -0.8 if k < 10 else -1.1)))
+        session.run(time=0.1)
+        assert gap(session) > -1e-6 * 0.05
+    session.timeline.hold(None)
+    energy = session.energy
+    assert len(session.impacts) > 0
+    assert abs(energy.imbalance) < 1e-6 * (abs(energy.work) + energy.dissipated_damping)

@@ -39,7 +39,7 @@ def test_dragging_a_running_particle_pulls_it_with_a_spring_whose_work_is_accoun
     assert session.view.preview is None
 
 
-@pytest.mark.filterwarnings("ignore:overflow")
+@pytest.mark.filterwarnings("error")
 def test_what_could_not_begin_to_move_can_be_taken_hold_of() -> None:
     """A force that is too large to compute with leaves the run without a step size."""
     particles = [{"name": "A", "position": [0, 0], "force": [1e300, 0]}, {"name": "B", "position": [1, 0]}]
