@@ -18,7 +18,7 @@ from game.sweeps.worker import Worker
 from tests.benchmarks.models import lattice
 
 ANALYSES = {"settled": Analysis(load_factors=(1.0,)), "run to rest": Analysis()}
-STEP, STEPS = 1e-6, 1000
+STEP, STEPS = 1e-6, 8000
 
 Row = dict[str, Any]
 
