@@ -29,8 +29,11 @@ class _Code(JITCodeLibrary):
 
     def finalize(self) -> None:
         """It is what it is: what takes it in optimises it."""
-        for called in self._linking_libraries:
-            self._reload_init.update(called._reload_init)
+        if hasattr(
+            self, "_reload_init"
+        ):  # in newer versions of numba: what is to be done when cached code is loaded
+            for called in self._linking_libraries:
+                self._reload_init.update(called._reload_init)
         self._finalized = True
 
     def _get_module_for_linking(self) -> Any:
