@@ -13,9 +13,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
+
+from game import Session
+from game.preparation import AHEAD
+from game.program.writer import form_of
 
 Row = dict[str, Any]
 
@@ -32,9 +36,13 @@ BEGAN = "PINJOINT_BENCH_BEGAN"
 
 
 def report(*, quick: bool) -> dict[str, list[Row]]:
-    """The tables: seconds from the start to a picture and to a run, longest gaps between frames; commands."""
+    """The tables: seconds from the start to a picture and to a run, longest gaps between frames; compiling; commands."""
     names = list(JOURNEYS)[:2] if quick else list(JOURNEYS)
-    return {"window": [row for name in names for row in journeys(name)], "commands": commands()}
+    return {
+        "window": [row for name in names for row in journeys(name)],
+        "compiling": compiling(("encounters",) if quick else ("isostatic", "ball_on_truss", *AHEAD)),
+        "commands": commands(),
+    }
 
 
 def journeys(name: str) -> list[Row]:
@@ -56,6 +64,26 @@ def _environment(folder: Path) -> dict[str, str]:
     homes = {f"XDG_{what}_HOME": str(folder / what) for what in ("CACHE", "DATA", "CONFIG")}
     usual = {"SDL_VIDEODRIVER": "dummy", **os.environ, "PYTHONDONTWRITEBYTECODE": ""}
     return {**usual, **homes, BEGAN: repr(time.time())}
+
+
+def compiling(whats: Sequence[str]) -> list[Row]:
+    """Processor seconds, with an empty cache, of processes that compile ahead of need: programs of models, or parts."""
+    rows = []
+    for what in whats:
+        job = [what] if what in AHEAD else _job(Session.open(what))
+        with tempfile.TemporaryDirectory() as folder:
+            cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+            words = [sys.executable, "-m", "game.prepare", "--no-mods", *job]
+            subprocess.run(words, env=_environment(Path(folder)), check=True, stdout=subprocess.DEVNULL)
+            rows.append({"what": what, "cpu_s": resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - cpu})
+    return rows
+
+
+def _job(session: Session) -> list[str]:
+    """What compiles the program of its model."""
+    simulation = session.simulation
+    plan = simulation.schedule.step_plan(session.model)
+    return [simulation.integrator, form_of(session.model, simulation.driver), *(system.name for system in plan)]
 
 
 def commands() -> list[Row]:
