@@ -181,7 +181,8 @@ class Encounters:
             velocity = near.everywhere(particles.velocity)
             relative = velocity[pairs[:, 1]] - velocity[pairs[:, 0]]
             rate = (normal * relative).sum(axis=1)
-            late = np.where(rate < 0.0, gap / np.where(rate < 0.0, rate, 1.0), -math.inf)
+            with np.errstate(over="ignore"):  # far from each other, nearly at rest: late by for ever
+                late = np.where(rate < 0.0, gap / np.where(rate < 0.0, rate, 1.0), -math.inf)
             first = int(np.argmax(late))  # the pair that met first, or is to meet first
             better = time - float(late[first])
             if abs(gap[first]) <= TOUCH * near.reach(pairs)[first] or better == time:
