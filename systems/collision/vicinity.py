@@ -122,10 +122,11 @@ class Vicinity:
         if covered < 0.0:
             self._list(self._least, displacement)
             covered = self._covered(displacement)
-        while covered < min(enough, 0.5 * (apart := self._time_apart(displacement))):
+        before = -math.inf
+        while before < covered < min(enough, 0.5 * self._time_apart(displacement)):
             self._list(np.maximum(self._least, self._travel(2.0 * covered)), displacement)
-            covered = self._covered(displacement)
-        return min(covered, apart)
+            before, covered = covered, self._covered(displacement)
+        return min(covered, self._time_apart(displacement))  # forces that are not finite leave no time
 
     def cover(self, start: Floats, swing: float) -> None:
         """List all pairs that can be near each other in a step from `start` to the present displacement.
