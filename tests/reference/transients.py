@@ -17,6 +17,7 @@ from tests.reference.physics import Simulation
 
 TIGHT = 1e-13  # relative tolerance of one step
 MOST_EVENTS = 1000
+AT_STRENGTH = 1e-12  # of it, within which a force is at a strength
 
 Event = Callable[[float, np.ndarray], float]
 
@@ -45,7 +46,7 @@ def follow(model: Model, duration: float) -> tuple[np.ndarray, float]:
     Raises RuntimeError if there is no end of events.
     """
     s = _Branched(model)
-    s.branches = [0] * len(s.elements.rods)
+    s.branches = [_first_branch(s, index) for index in range(len(s.elements.rods))]
     end, largest = s.time + duration, 0.0
     kinks = {time for load in s.elements.loads for time in load.breaks()[1::2] if s.time < time < end}
     events = 0
@@ -56,6 +57,14 @@ def follow(model: Model, duration: float) -> tuple[np.ndarray, float]:
             if events > MOST_EVENTS:
                 raise RuntimeError(f"More than {MOST_EVENTS} events until t = {s.time} s.")
     return s.u, largest
+
+
+def _first_branch(s: _Branched, index: int) -> int:
+    """The branch a rod begins on: one at its strength, as what began beyond it is, yields on if it goes on outwards."""
+    outwards = math.copysign(1, s.elongation_rate(s.elements.rods[index], s.u, s.v))
+    strength = s.strength(index, int(outwards))
+    there = outwards * s.elastic_force(index, s.u) >= strength * (1.0 - AT_STRENGTH)
+    return int(outwards) if there and strength < math.inf else 0
 
 
 def _to_next_event(s: _Branched, stop: float) -> float:
