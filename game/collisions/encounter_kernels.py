@@ -34,8 +34,8 @@ def part(first, second, position, displacement, radius, inverse_mass, span, slac
 
 
 def _kernels() -> dict[str, Callable[..., Any]]:
-    from systems.collision.encounter.kernels import first_meeting, strike
-    from systems.collision.overlap.kernels import separate
+    from systems.collision.kernels.encounter import first_meeting, strike
+    from systems.collision.kernels.overlap import separate
 
     return {"first_meeting": first_meeting, "strike": strike, "separate": separate}
 

@@ -35,8 +35,8 @@ def {part}({arguments}):
 
 def _program(part: str) -> tuple[str, dict[str, Callable[..., int]]]:
     """Source of a part, and what it calls."""
-    from systems.collision.flight.kernels import fly, take_steps
-    from systems.collision.window.kernels import open_window
+    from systems.collision.kernels.flight import fly, take_steps
+    from systems.collision.kernels.window import open_window
 
     kernel = {EVENTS: fly, WINDOWS: open_window, PILES: take_steps}[part]
     arguments = ", ".join(inspect.signature(kernel.py_func).parameters)

@@ -33,7 +33,11 @@ def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
             continue
         seen.add(function)
         plain = getattr(function, "py_func", function)
-        parts += [plain.__qualname__, repr(getattr(function, "targetoptions", {})), _described(plain.__code__)]
+        parts += [
+            f"{plain.__module__}.{plain.__qualname__}",
+            repr(getattr(function, "targetoptions", {})),
+            _described(plain.__code__),
+        ]
         for name, value in sorted(_used_by(plain).items()):
             parts.append(f"{name} = {_constant(value)}")
             if hasattr(value, "py_func"):

@@ -39,7 +39,7 @@ MOVING = (UX, UY, VX, VY, AX, AY, EPOCH, STEP, NOISE)  # what time changes, as c
 
 
 class Grid(NamedTuple):
-    """Boxes around the paths of all discs, and a hash grid of them; see grid/kernels.py.
+    """Boxes around the paths of all discs, and a hash grid of them; see kernels/grid.py.
 
     boxes: left, bottom, right, top, shape (n, 4), m. layer: of each disc, shape (n,). levels: the cells of
     layer k have the size cell × 2^levels[k], ascending, shape (64,). heads: first entry of each bucket, a power
@@ -56,7 +56,7 @@ class Grid(NamedTuple):
 
 
 class Queue(NamedTuple):
-    """Meetings to come, a binary heap; see queue/kernels.py.
+    """Meetings to come, a binary heap; see kernels/queue.py.
 
     times: shape (capacity,), s. meetings: shape (capacity, 4): two discs, and how often each had changed its
     path when the meeting was foreseen; it is void once either has changed again.
@@ -130,7 +130,7 @@ DIRECT = 48  # contacts up to which a projection is solved directly; more: by sw
 
 
 class Pile(NamedTuple):
-    """Discs that take steps, the pairs of them that are near, and the contacts of the present step; see pile/kernels.py.
+    """Discs that take steps, the pairs of them that are near, and the contacts of the present step; see kernels/pile.py.
 
     motion: of each disc, shape (4, n, 2); travel: likewise, shape (4, n). pairs: two discs each, ascending, shape
     (p, 2); forces: in them in the step before, N, shape (p,). chosen: which pairs are contacts; order: the same, in

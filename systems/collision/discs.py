@@ -16,7 +16,7 @@ from components.obstacles import NO_OBSTACLES, Obstacles
 from components.paths import Paths
 from systems.collision import arrays
 from systems.collision.arrays import Floats, Grid, Group, Integers, Pile, Queue, Reason, Report, Ties
-from systems.collision.pile.kernels import STEP_SHARE
+from systems.collision.kernels.pile import STEP_SHARE
 from systems.collision.system import REST_HEIGHT
 from systems.near import nearest
 

@@ -43,7 +43,7 @@ def part(
 ) -> int:
     """Move discs apart that overlap, changing `displacement`; returns how many pairs still do in the end.
 
-    among: which of the pairs it is given are to be parted. kernel: `separate` of overlap/kernels.py, compiled.
+    among: which of the pairs it is given are to be parted. kernel: `separate` of kernels/overlap.py, compiled.
     """
     count, still = len(position), np.zeros((len(obstacles), 2))
     places, moved = np.concatenate([position, obstacles.start]), np.concatenate([displacement, still])

@@ -55,7 +55,7 @@ class Support(Law):
 
     name = "collision.support"
     each = "particles"
-    kernel = "systems.collision.support.kernels:support"
+    kernel = "systems.collision.kernels.support:support"
     adds = ("particles.force",)
     account = "work"
 

@@ -9,8 +9,8 @@ from game.collisions.encounter_kernels import kernels
 from game.collisions.flight_kernels import engine
 from systems.collision.arrays import Reason
 from systems.collision.discs import Discs
+from systems.collision.kernels.pile import begin_steps
 from systems.collision.overlaps import part
-from systems.collision.pile.kernels import begin_steps
 from tests.reference.scenes_of_discs import (
     GRAVITY,
     Scene,

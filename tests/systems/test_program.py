@@ -441,3 +441,17 @@ def test_an_edited_kernel_is_noticed_in_what_it_calls_too(
         answers.append(program.answer(10.0))
     assert answers == [20.0, 50.0]
     assert len(list(tmp_path.glob("pinjoint_program_*.py"))) == 2
+
+
+def test_a_kernel_that_moved_to_another_module_is_compiled_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is cached may know what it calls by its module, and cannot be loaded where that is gone."""
+    monkeypatch.setattr("game.program.cache.cache_folder", lambda: tmp_path)
+    for name in ("kernels_before", "kernels_after"):
+        spec = importlib.util.spec_from_loader(name, loader=None)
+        assert spec is not None
+        module = importlib.util.module_from_spec(spec)
+        exec(CALLEE.replace("twice", "kernel"), vars(module))
+        assert compile_module(SOURCE, {"kernel": vars(module)["kernel"]}).answer(10.0) == 20.0
+    assert len(list(tmp_path.glob("pinjoint_program_*.py"))) == 2

@@ -11,7 +11,7 @@ from numba import njit
 from game.collisions.flight_kernels import engine
 from systems.collision.arrays import Reason
 from systems.collision.discs import Discs, Impacts
-from systems.collision.gap.kernels import NEVER, first_approach
+from systems.collision.kernels.gap import NEVER, first_approach
 from tests.reference import closed_forms, collisions
 from tests.reference.scenes_of_discs import GRAVITY, Scene, break_shot, gas, line, stacked, with_held
 

@@ -13,7 +13,7 @@ from components.obstacles import Obstacles
 from game.collisions.flight_kernels import engine
 from systems.collision.arrays import Reason
 from systems.collision.discs import Discs, Impacts
-from systems.collision.gap.kernels import NEVER, first_touch
+from systems.collision.kernels.gap import NEVER, first_touch
 from tests.reference import collisions
 from tests.reference.scenes_of_discs import GRAVITY
 

@@ -26,8 +26,8 @@ from systems.collision.arrays import (
     VX,
     VY,
 )
-from systems.collision.gap.kernels import extent
 from systems.collision.kernels import compiled
+from systems.collision.kernels.gap import extent
 
 FARTHEST_CELL = 2.0**40  # cells from the origin; farther out cells grow, so that they can be told apart
 COARSEST = 63

@@ -9,7 +9,7 @@ v = e v_elastic + (1 − e) v_plastic. For a single contact it is Newton's law.
 
 from systems.collision.arrays import ACTIVE, GIVEN, IMPULSE, OPENING
 from systems.collision.kernels import compiled
-from systems.collision.projection.kernels import begin, copy_motion, opening_rate, project, push_apart
+from systems.collision.kernels.projection import begin, copy_motion, opening_rate, project, push_apart
 
 MOST_REFLECTIONS = 1000000  # in one impact; after that the rest of it is taken as plastic
 

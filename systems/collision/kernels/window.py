@@ -33,8 +33,9 @@ from systems.collision.arrays import (
     WINDOW,
     Reason,
 )
-from systems.collision.contact.kernels import find_lasting
-from systems.collision.gap.kernels import (
+from systems.collision.kernels import compiled
+from systems.collision.kernels.contact import find_lasting
+from systems.collision.kernels.gap import (
     NEVER,
     first_approach,
     first_touch,
@@ -43,7 +44,7 @@ from systems.collision.gap.kernels import (
     relative_motion,
     speed_noise,
 )
-from systems.collision.grid.kernels import (
+from systems.collision.kernels.grid import (
     COARSEST,
     box_size,
     enclose,
@@ -52,8 +53,7 @@ from systems.collision.grid.kernels import (
     level_of,
     neighbours,
 )
-from systems.collision.kernels import compiled
-from systems.collision.queue.kernels import changes, purge, push
+from systems.collision.kernels.queue import changes, purge, push
 
 DONE, QUEUE_FULL, GRID_FULL = int(Reason.DONE), int(Reason.QUEUE_FULL), int(Reason.GRID_FULL)
 

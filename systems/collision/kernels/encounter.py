@@ -1,10 +1,10 @@
 """Meetings within one step of an integrator, and the joint impact of discs that touch."""
 
 from systems.collision.arrays import BIAS, EPSILON, OPENING
-from systems.collision.gap.kernels import NEVER, first_touch
-from systems.collision.impact.kernels import respond
 from systems.collision.kernels import compiled
-from systems.collision.projection.kernels import compliance
+from systems.collision.kernels.gap import NEVER, first_touch
+from systems.collision.kernels.impact import respond
+from systems.collision.kernels.projection import compliance
 
 NOISE = 16.0 * EPSILON  # of speeds and accelerations: slower approaches are round-off
 
@@ -41,7 +41,7 @@ def first_meeting(h, pairs, kinds, position, before, velocity, after, radius, sp
 
 @compiled
 def strike(members, count, restitution, group):
-    """The impact of a group whose links, normals and velocities are set; see impact/kernels.py."""
+    """The impact of a group whose links, normals and velocities are set; see kernels/impact.py."""
     for c in range(count):
         group.contacts[c, BIAS] = 0.0
         group.contacts[c, OPENING] = compliance(c, c, group)

@@ -57,11 +57,11 @@ from systems.collision.arrays import (
     WY,
     Reason,
 )
-from systems.collision.contact.kernels import find_lasting, forget_lasting, is_held, note_lasting
-from systems.collision.gap.kernels import NEVER, is_straight, nearest, relative_motion, rest_speed
-from systems.collision.grid.kernels import enclose, enter, neighbours, place_box, sort
 from systems.collision.kernels import compiled
-from systems.collision.window.kernels import is_joined, set_layers
+from systems.collision.kernels.contact import find_lasting, forget_lasting, is_held, note_lasting
+from systems.collision.kernels.gap import NEVER, is_straight, nearest, relative_motion, rest_speed
+from systems.collision.kernels.grid import enclose, enter, neighbours, place_box, sort
+from systems.collision.kernels.window import is_joined, set_layers
 
 DONE, SETTLE = int(Reason.DONE), int(Reason.SETTLE)
 GROUP_FULL, REPORT_FULL, GRID_FULL = int(Reason.GROUP_FULL), int(Reason.REPORT_FULL), int(Reason.GRID_FULL)

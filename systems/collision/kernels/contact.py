@@ -35,7 +35,8 @@ from systems.collision.arrays import (
     WX,
     WY,
 )
-from systems.collision.gap.kernels import (
+from systems.collision.kernels import compiled
+from systems.collision.kernels.gap import (
     NEVER,
     is_straight,
     passing,
@@ -44,8 +45,7 @@ from systems.collision.gap.kernels import (
     speed_noise,
     touch_speed,
 )
-from systems.collision.kernels import compiled
-from systems.collision.projection.kernels import begin, copy_motion, opening_rate, project
+from systems.collision.kernels.projection import begin, copy_motion, opening_rate, project
 
 STILL = 1e-10  # of the speed and acceleration that gravity gives; what moves less is at rest
 STEP_ANGLE = 0.0156  # by which discs turn around one another in a step; discs sink by its cube / 8 of a radius

@@ -57,7 +57,8 @@ from systems.collision.arrays import (
     WY,
     Reason,
 )
-from systems.collision.contact.kernels import (
+from systems.collision.kernels import compiled
+from systems.collision.kernels.contact import (
     find_lasting,
     forget_lasting,
     is_held,
@@ -65,7 +66,7 @@ from systems.collision.contact.kernels import (
     stop_sinking,
     support,
 )
-from systems.collision.gap.kernels import (
+from systems.collision.kernels.gap import (
     NEVER,
     is_answered_for,
     nearest,
@@ -74,7 +75,7 @@ from systems.collision.gap.kernels import (
     rest_speed,
     touch_speed,
 )
-from systems.collision.grid.kernels import (
+from systems.collision.kernels.grid import (
     enclose,
     enter,
     layer_of,
@@ -84,12 +85,11 @@ from systems.collision.grid.kernels import (
     place_box,
     sort,
 )
-from systems.collision.impact.kernels import respond
-from systems.collision.kernels import compiled
-from systems.collision.pile.kernels import begin_steps, crowded, note_pushes, step
-from systems.collision.projection.kernels import compliance, opening_rate
-from systems.collision.queue.kernels import drop_first, is_void
-from systems.collision.window.kernels import expect, is_joined
+from systems.collision.kernels.impact import respond
+from systems.collision.kernels.pile import begin_steps, crowded, note_pushes, step
+from systems.collision.kernels.projection import compliance, opening_rate
+from systems.collision.kernels.queue import drop_first, is_void
+from systems.collision.kernels.window import expect, is_joined
 
 DONE, BUSY, REPORT_FULL = int(Reason.DONE), int(Reason.BUSY), int(Reason.REPORT_FULL)
 GO_ON = int(Reason.GO_ON)

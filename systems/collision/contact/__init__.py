@@ -1,1 +1,0 @@
-"""Discs that stay in contact."""

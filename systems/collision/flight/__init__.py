@@ -1,1 +1,0 @@
-"""Flight from impact to impact."""

@@ -1,1 +1,0 @@
-"""When two discs meet."""

@@ -1,1 +1,0 @@
-"""Which discs can meet at all."""

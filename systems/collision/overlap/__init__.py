@@ -1,1 +1,0 @@
-"""Discs that overlap where a run begins."""

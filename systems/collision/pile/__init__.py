@@ -1,1 +1,0 @@
-"""Crowds of discs in lasting contact."""

@@ -1,1 +1,0 @@
-"""Motion that no contact forbids."""

@@ -1,1 +1,0 @@
-"""Which meeting comes first."""

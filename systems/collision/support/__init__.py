@@ -1,1 +1,0 @@
-"""Forces between particles that rest on one another while other forces drive them."""

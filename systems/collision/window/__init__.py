@@ -1,1 +1,0 @@
-"""What is foreseen, and for how long."""
