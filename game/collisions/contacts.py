@@ -37,8 +37,7 @@ class Contacts:
     ) -> StopReason:
         """One step from a moment before, taken by `take`: a whole one, or up to a time (s).
 
-        Forces F ≥ 0, constant during the step and along the mean of the lines of centres before and after it, so that
-        the motion is of second order, are sought by Broyden's method, which begins with the compliance
+        Forces F ≥ 0, constant during the step, are sought by Broyden's method, which begins with the compliance
         h²/2 Nᵀ M⁻¹ N; contacts whose force is 0 may open. All tries end at the same time: where the error is
         controlled, other forces would choose another step, and gaps would jump with them.
         """
@@ -49,7 +48,6 @@ class Contacts:
         pairs, forces = contacts.contacts, contacts.forces
         start = before.columns["particles.displacement"]
         _, normal = self._near.gaps(pairs, start)
-        along = normal
         size = self._near.size[pairs].min(axis=1)
         held = HELD * size
         slope: Floats | None = None
@@ -58,15 +56,14 @@ class Contacts:
             if turn > 0:
                 before.restore(self.model)
             self._note_energy(float((forces * size).sum()))
-            _push(program, self.model, support_forces(along, pairs, forces, self.model.particles.count))
+            _push(program, self.model, support_forces(normal, pairs, forces, self.model.particles.count))
             reason = take(until)
             h = self.model.clock.time - before.columns["clock.time"][0]
             if h == 0.0 or reason is StopReason.DIVERGED:
                 return reason
             if program.driver.controlled:
                 until = self.model.clock.time
-            gap, turned = self._near.gaps(pairs, self.model.particles.displacement)
-            along = 0.5 * (normal + turned)
+            gap, _ = self._near.gaps(pairs, self.model.particles.displacement)
             if not (np.where(forces > 0.0, np.abs(gap), -gap) > held).any():
                 break
             if slope is None:
