@@ -161,7 +161,8 @@ class Vicinity:
 
     def _travel(self, time: float) -> Floats:
         """How far (m) particles can get in a time (s)."""
-        return time * (self._speed + 0.5 * time * self._pull)
+        with np.errstate(over="ignore", invalid="ignore"):  # forces of mods may be anything
+            return time * (self._speed + 0.5 * time * self._pull)
 
     def _vigour(self) -> tuple[Floats, Floats]:
         """Speeds (m/s) that particles cannot exceed now, and by how much these can grow in time (m/s²).

@@ -36,8 +36,17 @@ class Hand:
         self.session = self.app.session
         self._fresh = count(1)  # something else every time: a particle, a place
         while not self.session.simulation.ready:  # nobody is that quick
-            self.frame()
-            time.sleep(FRAME)
+            self.pause()
+
+    def pause(self) -> None:
+        """Look on for a moment."""
+        self.frame()
+        time.sleep(FRAME)
+
+    def wait(self) -> None:
+        """Until what a run needs after the last edit is compiled, which is measured elsewhere."""
+        while self.session.waited_for(self.session.simulation) is not None:
+            self.pause()
 
     def frame(self) -> None:
         """One frame of the window, which has an event to deal with."""
@@ -196,6 +205,7 @@ def reactions(*, quick: bool) -> Iterator[Row]:
         hand = Hand(2_000 if quick else 10_000)
         hand.session.save_as(library.data_folder() / "lattice.json")
         for what, act, times in SESSION:
+            hand.wait()
             taken = [_milliseconds(hand, act) for _ in range(times)]
             waited, busy = (sorted(column) for column in zip(*taken, strict=True))
             if what:

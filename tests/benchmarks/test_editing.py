@@ -18,6 +18,7 @@ def test_every_action_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     rods = hand.session.rods.count
     for what, act, times in SESSION:
         seen = False
+        hand.wait()
         for _ in range(times):
             act(hand)
             hand.frame()
