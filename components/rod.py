@@ -199,6 +199,13 @@ def is_warm(world: World) -> bool:
     return bool(world.tables["rods"].temperature_change.any())
 
 
+def nodes(world: World) -> NDArray[np.bool_]:
+    """Which particles rods join, shape (particles,)."""
+    joined = np.zeros(world.tables["particles"].count, dtype=bool)
+    joined[world.tables["rods"].between] = True
+    return joined
+
+
 def has_cables(world: World) -> bool:
     """True if some rod bears tension only."""
     return bool(world.tables["rods"].tension_only.any())

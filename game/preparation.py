@@ -11,9 +11,8 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from components.obstacles import any_obstacles
+from components.rod import nodes
 from game.collisions.encounter_kernels import has_encounters
 from game.collisions.encounters import load_encounters
 from game.collisions.flight_kernels import EVENTS, PILES, WINDOWS, has_parts
@@ -155,8 +154,7 @@ def _may_meet(simulation: Simulation) -> bool:
 
 def _may_rest(model: Model) -> bool:
     """True if something that is no structure may come to rest on one, or a structure on a wall, and none does yet."""
-    loose = len(np.unique(model.rods.between)) < model.particles.count
-    return (loose or any_obstacles(model)) and contacts_of(model) is None
+    return contacts_of(model) is None and (any_obstacles(model) or not nodes(model).all())
 
 
 def _with_support(simulation: Simulation) -> list[StepSystem]:

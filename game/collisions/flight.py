@@ -13,6 +13,7 @@ from components.field import Role
 from components.model import Model
 from components.obstacles import obstacles
 from components.paths import Paths
+from components.rod import nodes
 from game.collisions.encounter_kernels import kernels
 from game.collisions.flight_kernels import EVENTS, PILES, WINDOWS, engine, has_parts, load_part
 from game.collisions.impacts import Impacts
@@ -35,8 +36,7 @@ def part_overlaps(model: Model) -> str:
     node: NDArray[np.bool_] = np.ones(particles.count + len(others), dtype=bool)  # obstacles count as nodes
     held = node.copy()
     held[: particles.count] = (particles.mobility == 0.0).all(axis=1)
-    node[: particles.count] = False
-    node[model.rods.between.ravel()] = True
+    node[: particles.count] = nodes(model)
 
     def among(pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
         left_alone: NDArray[np.bool_] = np.logical_or(node[pairs].all(axis=1), held[pairs].all(axis=1))

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components import Model, Plot, Readout, Vector
+from components.rod import nodes
 
 if TYPE_CHECKING:
     from game.mods import App
@@ -28,8 +29,7 @@ def free_speeds(model: Model) -> NDArray[np.float64]:
     In equilibrium the energies of all are distributed alike, so that these are too, whatever the masses.
     """
     particles = model.particles
-    free = np.logical_not(particles.fixed.all(axis=1))
-    free[model.rods.between.ravel()] = False
+    free = np.logical_not(particles.fixed.all(axis=1) | nodes(model))
     mass = particles.mass[free]
     speed: NDArray[np.float64] = np.hypot(*particles.velocity[free].T) * np.sqrt(
         mass / (mass.mean() if len(mass) else 1.0)

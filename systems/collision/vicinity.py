@@ -12,6 +12,7 @@ from components.field import Role
 from components.model import Model
 from components.obstacles import obstacles
 from components.paths import Paths
+from components.rod import nodes
 from systems.collision.system import contacts_of
 from systems.islands import islands
 from systems.near import Floats, Rows, near_pairs, nearest
@@ -46,8 +47,7 @@ class Vicinity:
         joined = np.sort(ends[:, 0] * (self._count + len(others)) + ends[:, 1])
         self._joined = np.append(joined, -1)  # what is looked up and would come last meets no pair
         self._node = np.ones(self._count + len(others), dtype=bool)
-        self._node[: self._count] = False
-        self._node[ends.ravel()] = True
+        self._node[: self._count] = nodes(self.model)
         self._moves: NDArray[np.bool_] = self.everywhere(np.any(particles.mobility > 0.0, axis=1))
         self.position = np.concatenate([particles.position, others.start])
         self.radius = np.concatenate([particles.radius, others.radius])
@@ -122,11 +122,11 @@ class Vicinity:
         if covered < 0.0:
             self._list(self._least, displacement)
             covered = self._covered(displacement)
-        before = -math.inf
-        while before < covered < min(enough, 0.5 * self._time_apart(displacement)):
+        before, apart = -math.inf, self._time_apart(displacement)
+        while before < covered < min(enough, 0.5 * apart):  # forces that are not finite leave no time
             self._list(np.maximum(self._least, self._travel(2.0 * covered)), displacement)
-            before, covered = covered, self._covered(displacement)
-        return min(covered, self._time_apart(displacement))  # forces that are not finite leave no time
+            before, covered, apart = covered, self._covered(displacement), self._time_apart(displacement)
+        return min(covered, apart)
 
     def cover(self, start: Floats, swing: float) -> None:
         """List all pairs that can be near each other in a step from `start` to the present displacement.

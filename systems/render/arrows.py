@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from components.rod import nodes
 from components.tags import DiagramShown
 from systems.render.labels import STRONG
 from systems.render.marks import Fills, Mark, Strokes
@@ -46,7 +47,7 @@ def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
     velocity = model.particles.velocity
     moving = (velocity[:, 0] != 0.0) | (velocity[:, 1] != 0.0)
     if model.clock.steps:
-        moving[model.rods.between.ravel()] = False
+        moving &= ~nodes(model)
     rows = sheet.particles[moving[sheet.particles]]
     if sheet.view.status.speed or not 0 < len(rows) <= MOST:
         return

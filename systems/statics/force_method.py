@@ -16,7 +16,7 @@ from scipy.sparse import csc_matrix, diags
 from components.extremes import incomputable
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod
+from components.rod import Rod, nodes
 from components.spelling import missing
 from systems.statics.equations import Array, Structure
 from systems.statics.explain import cables_named, describe_motion
@@ -93,8 +93,7 @@ def counted_indeterminacy(model: Model) -> int:
 
     Rods and constraints of the particles that rods join, less two equations for each.
     """
-    used = np.zeros(model.particles.count, dtype=bool)
-    used[model.rods.between] = True
+    used = nodes(model)
     constraints = int(model.particles.fixed[used].sum())
     return int(model.rods.count + constraints - 2 * used.sum())
 
