@@ -83,11 +83,8 @@ class World:
         self._switch()
         if self._told_of_tags != self.tags_revision:
             for tag, marks in self._marked.items():
-                before, now = (
-                    {entity for entity, _ in esper.get_component(tag)},
-                    set(np.flatnonzero(marks).tolist()),
-                )
-                mark = tag()
+                before = {entity for entity, _ in esper.get_component(tag)}
+                now, mark = set(np.flatnonzero(marks).tolist()), tag()
                 for entity in before - now:
                     esper.remove_component(entity, tag)
                 for entity in now - before:

@@ -16,10 +16,8 @@ from systems.collision.vicinity import LASTING, LEFT_ALONE, WATCHED, Vicinity
 from systems.near import Floats, Rows
 
 TOUCH = 1e-12  # of the reach of two particles: nearer than this they touch
-CROWD, CROWD_HEIGHT = (
-    4,
-    1e-3,
-)  # where so many contacts last, this share replaces REST_HEIGHT: bounces go on and on
+CROWD = 4  # contacts that last, from which on bounces would go on and on
+CROWD_HEIGHT = 1e-3  # replaces REST_HEIGHT there
 NO_MOTION, NO_CROWD = np.zeros((0, 0)), np.zeros(0)  # of particles that do not fly free
 
 

@@ -18,9 +18,7 @@ from systems.near import nearest
 if TYPE_CHECKING:
     from components.model import Model
 
-REST_HEIGHT = (
-    1e-9  # of the smaller radius; bounces that would rise less end in contact; larger: they end sooner
-)
+REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
 
 
 class Collision(StepSystem):
