@@ -20,6 +20,8 @@ COMFORTABLE = 1080.0  # points: on displays higher than this, type and symbols g
 COMFORTABLE_HEIGHT, LEAST_HEIGHT = 480.0, 240.0  # points that are left in a window by itself, and at all
 BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
+COLUMN, COLUMN_SHARE, WIDEST_COLUMN = 294.0, 0.34, 340.0  # points, share of the canvas: the column of panels
+LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
 
 
 def magnified(height: float, display: float, chosen: float) -> float:
@@ -97,6 +99,11 @@ class Readout:
     rows: tuple[tuple[str, str], ...] = ()
     plot: Plot | None = None
 
+    @property
+    def is_large(self) -> bool:
+        """True if it does not fit into a corner of the picture."""
+        return self.plot is not None or len(self.rows) > 1
+
 
 @dataclass(frozen=True)
 class Shape:
@@ -127,6 +134,8 @@ class View:
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
     theory, energy: show theory beside the run, and its energy account, among them.
     fitted: nobody looked closer or elsewhere since the whole model was shown; so it is in a window of any size.
+    shares: the model is fitted beside the panels, which else cover it where they must. since: by title, when each
+    panel came, in turn.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -147,15 +156,33 @@ class View:
     toolbar: Toolbar = field(default_factory=Toolbar)
     theme: str = "light"
     readouts: tuple[Readout, ...] = ()
+    since: dict[str, int] = field(default_factory=dict)
     theory: bool = False
     energy: bool = False
     shape: Shape | None = None
     fitted: bool = False
+    shares: bool = False
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model."""
-        self.camera.fit(drawn_places(model), MARGIN, self.canvas, self.pixel_ratio)
+        self.camera.fit(drawn_places(model), MARGIN, self.room, self.pixel_ratio)
         self.fitted = True
+
+    def follow(self, model: Model) -> None:
+        """Fit the model anew if it has left the picture, unless somebody looks closer."""
+        pixels = self.camera.to_pixels(drawn_places(model))
+        pixels = pixels[np.isfinite(pixels).all(axis=1)]
+        low = np.array([self.room.left, self.room.top])
+        high = low + (self.room.width, self.room.height)
+        if self.fitted and not ((pixels >= low) & (pixels <= high)).all():
+            self.fit(model)
+
+    def share(self, model: Model, *, shares: bool) -> None:
+        """Leave room for panels, or not, and fit the model into what is left, unless somebody looks closer."""
+        if shares != self.shares:
+            self.shares = shares
+            if self.fitted:
+                self.fit(model)
 
     @property
     def strip(self) -> Viewport:
@@ -170,6 +197,27 @@ class View:
         """The part of the viewport that is left for the model."""
         window, taken = self.camera.viewport, self.strip.width
         return Viewport(window.left + taken, window.top, window.width - taken, window.height)
+
+    @property
+    def panels(self) -> Viewport:
+        """Where panels stand: in a column at the right, if that is too narrow in the lower half, else anywhere."""
+        c, u = self.canvas, self.pixel_ratio
+        if c.width >= LEAST_BESIDE * u:
+            width = round(min(max(COLUMN * u, COLUMN_SHARE * c.width), WIDEST_COLUMN * u))
+            return Viewport(c.left + c.width - width, c.top, width, c.height)
+        if c.height >= LEAST_ABOVE * u:
+            return Viewport(c.left, c.top + c.height // 2, c.width, c.height - c.height // 2)
+        return c
+
+    @property
+    def room(self) -> Viewport:
+        """The part of the canvas that a model is fitted into."""
+        c, panels = self.canvas, self.panels
+        if not self.shares or panels == c:
+            return c
+        if panels.width < c.width:
+            return Viewport(c.left, c.top, c.width - panels.width, c.height)
+        return Viewport(c.left, c.top, c.width, c.height - panels.height)
 
 
 def drawn_positions(model: Model) -> NDArray[np.float64]:

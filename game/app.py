@@ -310,7 +310,7 @@ def _drawn(session: Session, size: tuple[int, int], theme: str, around: Points) 
     status = replace(session.view.status, hint="")  # nobody presses keys in a picture
     camera = Camera(viewport=Viewport(0, 0, *size))
     view = replace(session.view, camera=camera, toolbar=Toolbar(), heading="", status=status)
-    view.camera.fit(around, MARGIN, view.canvas, view.pixel_ratio)
+    view.camera.fit(around, MARGIN, view.room, view.pixel_ratio)
     Canvas(load_raster).draw(surface, compose(session.model, view, load_theme(theme)))
     return surface
 

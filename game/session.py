@@ -41,7 +41,7 @@ from game.registry import SYSTEMS
 from game.reports.curve import goal_of
 from game.scenes import Scenes, Stage, all_scenes
 from game.schedule import Schedule
-from game.showing import show
+from game.showing import make_room, show
 from game.simulation import FREE_FLIGHT, Simulation
 from game.surroundings import Autosaves, Prepares, Window
 from game.toolbar import toolbar_of
@@ -183,6 +183,7 @@ class Session:
         self._begin_at_desk()
 
     def _begin_at_desk(self) -> None:
+        make_room(self)
         self.view.fit(self.model)
         if missing := missing_mods(self.model):
             self.notice = (
@@ -510,6 +511,7 @@ class Session:
         except (Refusal, FieldError) as error:
             self.notice = str(error)
         self.scenes.apply(self)
+        make_room(self)
         self.offer_tools()
 
     def offer_tools(self) -> None:

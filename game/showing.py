@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from components.view import Preview, Status
+from components.view import Preview, Readout, Status
 from game.gestures import TOOL_HINTS
 from game.readouts import own_readouts
 from game.registry import PANELS
@@ -33,7 +34,7 @@ def show(session: Session) -> None:
     view.heading = scene.heading
     view.shape = session.desk.shapes.shown
     view.keys = help_lines(scene.name) if view.help else []
-    view.readouts = (*own_readouts(session), *(readout for panel in PANELS for readout in panel(session)))
+    _show_readouts(session)
     view.status = Status(
         time=session.time,
         speed=session.clock.shown_pace if session.busy else 0.0,
@@ -42,6 +43,31 @@ def show(session: Session) -> None:
         problem=_problem(session),
         notice=said or " ".join(remark.message for remark in session.remarks),
     )
+
+
+def _show_readouts(session: Session) -> None:
+    """All panels, and in which order they came."""
+    view = session.view
+    view.readouts = (*own_readouts(session), *_panels(session))
+    latest, since = max(view.since.values(), default=0), view.since
+    view.since = {
+        readout.title: since.get(readout.title, latest + number)
+        for number, readout in enumerate(view.readouts, start=1)
+    }
+
+
+def _panels(session: Session) -> Iterator[Readout]:
+    return (readout for panel in PANELS for readout in panel(session))
+
+
+def make_room(session: Session) -> None:
+    """Let the model stand beside the panels, if there are any that would cover it.
+
+    After actions, and never because of time or frames, so that a recording is replayed in the same picture.
+    """
+    view = session.view
+    wanted = view.theory or view.energy or any(readout.is_large for readout in _panels(session))
+    view.share(session.model, shares=view.legend and wanted)
 
 
 def _awaited(session: Session) -> str:

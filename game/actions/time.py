@@ -109,3 +109,4 @@ def _redo(session: Session, pixel: Vector) -> None:
 def _settle(session: Session, pixel: Vector) -> None:
     """To the static equilibrium under the full load, without waiting."""
     session.settle()
+    session.view.follow(session.model)

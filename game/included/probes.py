@@ -100,10 +100,13 @@ class Probes:
         self.all = [*self.all, probe][-FEW:]
         return probe
 
+    def keep_to(self, model: Model) -> None:
+        """Forget those of another model."""
+        if self._model is None or self._model() is not model:
+            self.all = []
+
     def sample(self, session: Session) -> None:
         """Read all of them, if time has passed since."""
-        if self._model is None or self._model() is not session.model:
-            self.all = []
         behind = [probe for probe in self.all if probe.time != session.time]
         if behind and session.simulation.ready:
             session.simulation.observe()
@@ -115,8 +118,10 @@ _probes: weakref.WeakKeyDictionary[Session, Probes] = weakref.WeakKeyDictionary(
 
 
 def probes_of(session: Session) -> Probes:
-    """The probes of a session."""
-    return _probes.setdefault(session, Probes())
+    """The probes of a session, all of the model that is open."""
+    probes = _probes.setdefault(session, Probes())
+    probes.keep_to(session.model)
+    return probes
 
 
 class Sampling(System):

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from components.camera import Viewport
 from components.view import BETWEEN
 from systems.render.marks import Mark, Panel, Rectangles, Stamps, Strokes, Text
 from systems.render.sheet import Sheet
@@ -16,6 +17,7 @@ from systems.render.typography import line_height, shortened, text_width, wrappe
 _EDGE = 14.0  # points between overlays and the edges of the viewport
 _HEADING = 20.0  # points, size of its type
 _SMALL = 300.0  # points: in a viewport less high, what is not needed is left out
+_FEW_LINES = 3  # of a notice
 BAR = 28.0  # points, height of the status bar
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
@@ -194,18 +196,28 @@ def _backing(sheet: Sheet, left: float, y: float, width: float, size: int) -> Ma
     return Panel(left - 4.0 * u, y - 0.7 * size, width + 8.0 * u, 1.4 * size, 3.0 * u, paper)
 
 
+def _beside_panels(sheet: Sheet, said: str, size: int, around: float) -> tuple[Viewport, float, list[str]]:
+    """Where a notice stands, and the width and lines of its text: beside the panels, unless it is long."""
+    for v in (sheet.view.room, sheet.viewport):
+        room = min(v.width - 2 * _EDGE * sheet.unit, 640.0 * sheet.unit) - around
+        lines = wrapped(said, room, size)
+        if len(lines) <= _FEW_LINES:
+            break
+    return v, room, lines
+
+
 def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
     """Why it stopped or what an action did, wrapped, above the status bar or at the top if that is freer."""
     status, (top, bottom) = sheet.view.status, ends
     said = status.problem or status.notice
     if not said:
         return []
-    v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(13.0)
+    u, theme, size = sheet.unit, sheet.theme, sheet.font(13.0)
     pad, icon = 12.0 * u, 18.0 * u
-    width = min(v.width - 2 * _EDGE * u, 640.0 * u)
-    room = width - 2 * pad - icon - 10.0 * u
-    lines = wrapped(said, room, size)
-    width -= room - max(text_width(line, size) for line in lines)
+    around = 2 * pad + icon + 10.0 * u
+    v, room, lines = _beside_panels(sheet, said, size, around)
+    bottom = min(bottom, v.top + v.height)
+    width = around + max(text_width(line, size) for line in lines)
     most = max(int((bottom - top - 60.0 * u) / line_height(size)), 1)
     if len(lines) > most:
         lines = [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), room, size)]
