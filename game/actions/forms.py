@@ -46,6 +46,8 @@ _on_form("cut text", lambda scene, session: scene.cut(session))
 _on_form("paste text", lambda scene, session: scene.paste(session))
 _on_form("scroll up", lambda scene, session: scene.scroll(session, -1))
 _on_form("scroll down", lambda scene, session: scene.scroll(session, 1))
+_on_form("page up", lambda scene, session: scene.page(session, -1))
+_on_form("page down", lambda scene, session: scene.page(session, 1))
 
 
 @action("click form")

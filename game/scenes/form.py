@@ -76,6 +76,7 @@ class FormScene(Scene):
                 self.next_box(session, by)
         else:
             typing.step_caret(self.form, 1 if direction == "right" else -1)
+            self._reveal_selected(session)
 
     # --- pictures ----------------------------------------------------------------------------------
 
@@ -92,18 +93,19 @@ class FormScene(Scene):
 
     def resized(self, session: Session) -> None:
         """Keep the selected box in sight."""
-        if self.form.selected is not None:
-            self.reveal(session, self.form.selected)
+        self._reveal_selected(session)
 
     # --- input -------------------------------------------------------------------------------------
 
     def type(self, session: Session, text: str) -> None:
         typing.write(self.form, text)
+        self._reveal_selected(session)
         self.changed(session)
 
     def erase(self, session: Session, *, after: bool = False) -> None:
         """Backspace, or Delete."""
         typing.erase(self.form, after=after)
+        self._reveal_selected(session)
         self.changed(session)
 
     def cancel(self, session: Session) -> None:
@@ -117,8 +119,7 @@ class FormScene(Scene):
     def next_box(self, session: Session, by: int) -> None:
         """Tab: select the next box, or the previous one."""
         typing.move_on(self.form, by)
-        if self.form.selected is not None:
-            self.reveal(session, self.form.selected)
+        self._reveal_selected(session)
 
     def click(self, session: Session, pixel: Vector) -> None:
         """Select a box (a switch also turns), put its caret, or choose a tile."""
@@ -163,15 +164,24 @@ class FormScene(Scene):
         heading.first = max(self.layout(session).first + rows, 0)
         heading.first = self.layout(session).first
 
+    def page(self, session: Session, by: int) -> None:
+        """Let all rows that are seen but one go by."""
+        self.scroll(session, by * max(self.layout(session).shown - 1, 1))
+
     def reveal(self, session: Session, item: Box | Tile) -> None:
-        """Scroll until a box or tile is seen."""
+        """Scroll until a box or tile is seen, with the heading of its section if it is the first there."""
         layout, heading = self.layout(session), self.form.heading
         if layout.place_of(item) is not None:
             return
-        row = row_of(self.form, item, layout)
-        heading.first = min(layout.first, row)
+        row, above = row_of(self.form, item, layout)
+        heading.first = min(layout.first, above)
         while heading.first < row and self.layout(session).place_of(item) is None:
             heading.first += 1
+
+    def _reveal_selected(self, session: Session) -> None:
+        """What is typed into is seen."""
+        if self.form.selected is not None:
+            self.reveal(session, self.form.selected)
 
     # --- clipboard ---------------------------------------------------------------------------------
 

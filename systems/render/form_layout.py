@@ -139,11 +139,12 @@ def _last_first(heights: Sequence[float], room: float) -> int:
     return min(first, max(len(heights) - 1, 0))
 
 
-def row_of(form: Form, item: Box | Tile, layout: FormLayout) -> int:
-    """The number of the row in which a box or tile is."""
+def row_of(form: Form, item: Box | Tile, layout: FormLayout) -> tuple[int, int]:
+    """The number of the row in which a box or tile is, and that of the heading right above, else again of the row."""
     width = (layout.right - layout.left) / layout.unit
-    rows = _tile_rows(form, width) if _has_files(form) else _box_rows(form, width)
-    return next(number for number, row in enumerate(rows) if not isinstance(row, str) and item in row)
+    rows = list(_tile_rows(form, width) if _has_files(form) else _box_rows(form, width))
+    row = next(number for number, row in enumerate(rows) if not isinstance(row, str) and item in row)
+    return row, row - 1 if row and isinstance(rows[row - 1], str) else row
 
 
 # --- rows --------------------------------------------------------------------------------------------

@@ -13,6 +13,7 @@ from components.field import same
 from components.particle import Particle
 from components.tags import Selected
 from game import Session
+from game.scenes.form import FormScene
 from game.scenes.properties import Properties
 from game.scripts.script import Recorder, Script
 from systems.render.form_layout import FormLayout
@@ -555,3 +556,36 @@ def test_the_window_keeps_its_size_and_the_model_is_seen_beside(session: Session
     pixels = beside.camera.to_pixels(session.particles.position)
     assert (pixels[:, 0] >= beside.camera.viewport.left).all()
     assert (pixels[:, 0] <= beside.camera.viewport.left + widths[0]).all()
+
+
+def test_typing_brings_back_a_box_that_was_scrolled_away(session: Session) -> None:
+    session.resize(640, 480)
+    session.press("return")
+    scene = session.scenes.active
+    assert isinstance(scene, FormScene)
+    box = next(iter(scene.form.boxes))
+    session.click_box(box.title)
+    for _ in range(10):
+        session.press("wheel down")
+    assert scene.layout(session).place_of(box) is None
+    session.type("1")
+    assert scene.layout(session).place_of(box) is not None
+
+
+def test_page_keys_scroll_by_pages_and_tab_brings_back_the_section(session: Session) -> None:
+    session.resize(640, 480)
+    session.press("ctrl+a")
+    session.press("return")
+    scene = session.scenes.active
+    assert isinstance(scene, FormScene)
+    shown = scene.layout(session).shown
+    assert shown > 3
+    session.press("page down")
+    assert scene.layout(session).first == shown - 1
+    for _ in range(20):
+        session.press("page down")
+    layout = scene.layout(session)
+    assert layout.first + layout.shown == layout.count
+    session.press("tab")
+    assert scene.form.selected is scene.form.boxes[0]
+    assert scene.layout(session).first == 0
