@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import weakref
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
@@ -219,7 +219,7 @@ class Table(Generic[H]):
             first = last
         return found[:count]
 
-    def taken(self, names: Sequence[str]) -> set[str]:
+    def taken(self, names: Collection[str]) -> set[str]:
         """Those of these names that entities have."""
         return self._by_name.keys() & names
 

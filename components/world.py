@@ -223,7 +223,8 @@ class World:
         """Raise FieldError unless the names are not empty and, after a renaming, unique in the table."""
         noun = table.kind.noun
         given, free = set[str](), set(instead_of)
-        if all(map(str.strip, names)) and len(set(names)) == len(names) and table.taken(names) <= free:
+        unique = set(names)
+        if all(map(str.strip, names)) and len(unique) == len(names) and table.taken(unique) <= free:
             return
         for name in names:
             if not name.strip():

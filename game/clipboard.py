@@ -64,7 +64,7 @@ def chosen(model: Model) -> Chosen:
 def written(model: Model, rows: Chosen) -> str:
     """These rows as the text of a model document. Raises Refusal if they cannot be written."""
     try:
-        return laid_out(document_of(model, rows), depth=2)
+        return laid_out(document_of(model, rows), depth=2, spaced=False)
     except ModelError as error:
         raise Refusal(f"This cannot be copied: {error}") from None
 

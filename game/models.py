@@ -203,19 +203,26 @@ def replace(path: Path, content: bytes) -> None:
         temporary.unlink(missing_ok=True)
 
 
-def laid_out(value: Any, depth: int, indent: str = "") -> str:
-    """JSON text whose outermost `depth` levels have one entry a line, indented by 2 spaces."""
+def laid_out(value: Any, depth: int, indent: str = "", *, spaced: bool = True) -> str:
+    """JSON text whose outermost `depth` levels have one entry a line, indented by 2 spaces.
+
+    spaced: also a space after every comma and colon, for people; else it is written sooner.
+    """
     if depth == 0 or not isinstance(value, dict | list) or not value:
         return msgspec.json.format(msgspec.json.encode(value), indent=0).decode()
     inner = indent + "  "
     if isinstance(value, dict):
-        entries = [f"{laid_out(key, 0)}: {laid_out(item, depth - 1, inner)}" for key, item in value.items()]
+        entries = [
+            f"{laid_out(key, 0)}: {laid_out(item, depth - 1, inner, spaced=spaced)}"
+            for key, item in value.items()
+        ]
         opening, closing = "{", "}"
     elif depth == 1:  # quicker than one by one
-        lines = _ENCODER.encode_lines(value).splitlines()
-        entries = [msgspec.json.format(line, indent=0).decode() for line in lines]
+        entries = _ENCODER.encode_lines(value).decode().removesuffix("\n").split("\n")
+        if spaced:
+            entries = [msgspec.json.format(entry, indent=0) for entry in entries]
         opening, closing = "[", "]"
     else:
-        entries = [laid_out(item, depth - 1, inner) for item in value]
+        entries = [laid_out(item, depth - 1, inner, spaced=spaced) for item in value]
         opening, closing = "[", "]"
     return f"{opening}\n{inner}" + f",\n{inner}".join(entries) + f"\n{indent}{closing}"

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from components.obstacles import any_obstacles
 from components.rod import nodes
+from game.catalogue import DRIVERS
 from game.collisions.encounter_kernels import has_encounters
 from game.collisions.encounters import load_encounters
 from game.collisions.flight_kernels import EVENTS, PILES, WINDOWS, has_parts
@@ -20,7 +21,7 @@ from game.mods import MODS
 from game.prepare import ENCOUNTERS, FLIGHT, PILING, RASTER
 from game.program.cache import is_blank, load_compiler
 from game.program.program import has_program
-from game.program.writer import form_of
+from game.program.writer import form_of, read_sources
 from game.raster_program import has_raster, load_raster
 from systems.base import Phase, StepSystem, System
 from systems.collision.system import Collision, Support, contacts_of
@@ -184,6 +185,7 @@ def _load_libraries() -> None:
     load_compiler()
     for is_compiled in AHEAD.values():  # imports kernels, which takes several frames
         is_compiled()
+    read_sources(tuple(DRIVERS.values()))
     importlib.import_module("systems.plasticity.kernels")
     importlib.import_module("scipy.spatial")
 

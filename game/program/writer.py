@@ -507,6 +507,14 @@ class Writer:
         )
 
 
+def read_sources(drivers: Iterable[Driver]) -> None:
+    """Find the sources of drivers ahead of need; those of one take some frames."""
+    for driver in drivers:
+        for part in (driver.kernel, driver.begins, driver.ends, driver.entry, *driver.parts):
+            if isinstance(part, str) and part:
+                _source_of(find(part.partition("=")[0], driver.name))
+
+
 @cache
 def _source_of(function: Callable[..., Any]) -> str:
     """Its source, which takes a millisecond to find."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +32,14 @@ def symbol_parts(symbol: str, size: float, unit: float) -> Parts:
     The size of an icon is how many pixels the unit of its square takes.
     """
     if symbol in ICONS:
-        return [("ink", polygon * size) for part in ICONS[symbol] for polygon in _icon_part(*part)]
+        return [("ink", polygon * size) for polygon in _icon(symbol)]
     return _SYMBOLS[symbol](size, unit)
+
+
+@cache
+def _icon(symbol: str) -> list[Polygon]:
+    """The polygons of an icon in the units of its square; every colour of it needs them."""
+    return [polygon for part in ICONS[symbol] for polygon in _icon_part(*part)]
 
 
 def _icon_part(kind: str, numbers: tuple[float, ...]) -> list[Polygon]:
