@@ -47,31 +47,41 @@ WINDOWS = {
 
 def drawn(name: str, window: Window) -> pygame.Surface:
     """The picture of that name; a large one as seen from a distance, so that its file is small."""
+    surface = painted(pictures(name, window), window)
+    return surface if window.width < LARGE else pygame.transform.smoothscale_by(surface, 0.25)
+
+
+def painted(shown: list[Picture], window: Window) -> pygame.Surface:
+    """Pictures, one above the other."""
     surface = pygame.Surface((window.width, window.height), depth=32)
     canvas = Canvas()
-    for picture in pictures(name, window):
+    for picture in shown:
         canvas.draw(surface, picture)
-    return surface if window.width < LARGE else pygame.transform.smoothscale_by(surface, 0.25)
+    return surface
 
 
 def pictures(name: str, window: Window) -> list[Picture]:
     """What it consists of, one above the other."""
     with data_in(NOWHERE):
-        session = SCENES[name](window)
-        session.update_view()
-        theme = load_theme(session.view.theme)
-        return [compose(shown, view, theme) for shown, view in session.stages]
+        return composed(SCENES[name](window))
 
 
-def _opened(window: Window, source: object = "isostatic") -> Session:
+def composed(session: Session) -> list[Picture]:
+    """What a session shows now."""
+    session.update_view()
+    theme = load_theme(session.view.theme)
+    return [compose(shown, view, theme) for shown, view in session.stages]
+
+
+def opened(window: Window, source: object = "isostatic") -> Session:
     session = Session.open(source)  # type: ignore[arg-type]
     session.resize(window.width, window.height, window.ratio)
     session.view.fit(session.model)
     return session
 
 
-def _pressed(window: Window, *keys: str, source: object = "isostatic", theme: str = "light") -> Session:
-    session = _opened(window, source)
+def pressed(window: Window, *keys: str, source: object = "isostatic", theme: str = "light") -> Session:
+    session = opened(window, source)
     session.view.theme = theme
     for key in keys:
         session.press(key)
@@ -79,7 +89,7 @@ def _pressed(window: Window, *keys: str, source: object = "isostatic", theme: st
 
 
 def _simulation_at_rest(window: Window) -> Session:
-    session = _opened(window)
+    session = opened(window)
     session.settings.displacement_scale = 50.0
     session.press("i")
     session.press("space")
@@ -88,21 +98,21 @@ def _simulation_at_rest(window: Window) -> Session:
 
 
 def _properties(window: Window) -> Session:
-    session = _opened(window)
+    session = opened(window)
     session.click(*session.particles["B"].position)
     session.press("return")
     return session
 
 
 def _save(window: Window) -> Session:
-    session = _pressed(window, "s")
+    session = pressed(window, "s")
     session.type("my bridge")
     return session
 
 
 def _load(window: Window) -> Session:
     """Narrowed down to few examples, so that a new one need not change the picture."""
-    session = _pressed(window, "d")
+    session = pressed(window, "d")
     session.type("hyperstatic")
     for _ in session.scenes.active.stages(session)[0][0].tiles:  # type: ignore[union-attr]
         session.scenes.active.advance(session, 0.0)
@@ -111,7 +121,7 @@ def _load(window: Window) -> Session:
 
 def _drawing_a_force(window: Window) -> Session:
     """A selected rod, a tool in hand and what it is about to draw."""
-    session = _opened(window, "hyperstatic")
+    session = opened(window, "hyperstatic")
     session.click(0.75, 1.5)
     session.press("f", session.point(*session.particles["B"].position))
     session.point(0.4, 1.2)
@@ -120,7 +130,7 @@ def _drawing_a_force(window: Window) -> Session:
 
 def _drawing_a_wall(window: Window) -> Session:
     """From the foot of the stairs, with the floor selected."""
-    session = _opened(window, "staircase")
+    session = opened(window, "staircase")
     session.select(session.table("walls")["floor"])
     session.point(2.0, 0.0)
     session.press("w")
@@ -132,7 +142,7 @@ def _force_method(*keys: str) -> Scene:
     """The guide with this pressed; a click picks BD, away from where AC crosses it."""
 
     def scene(window: Window) -> Session:
-        session = _pressed(window, "k", source="hyperstatic")
+        session = pressed(window, "k", source="hyperstatic")
         for key in keys:
             if key == "click":
                 model, _ = session.focus
@@ -148,14 +158,14 @@ def _force_method(*keys: str) -> Scene:
 
 def _mechanism_refused(window: Window) -> Session:
     """An isostatic structure without one of its rods moves."""
-    session = _pressed(window, "k", "k")
+    session = pressed(window, "k", "k")
     session.click(0.5, 0.5)
     return session
 
 
 def _panels(window: Window) -> Session:
     """Theory, energies and a plot beside a selected rod that yields."""
-    session = _opened(window, "hyperstatic_yield")
+    session = opened(window, "hyperstatic_yield")
     session.select(session.rods["CD"])
     for key in ("o", "m", "j", "i"):
         session.press(key)
@@ -164,23 +174,23 @@ def _panels(window: Window) -> Session:
 
 
 def _all_properties(window: Window) -> Session:
-    return _pressed(window, "ctrl+a", "return", source="hyperstatic")
+    return pressed(window, "ctrl+a", "return", source="hyperstatic")
 
 
 def _notice(window: Window) -> Session:
     """A long sentence above the status line."""
-    session = _pressed(window, "e", source="isostatic_collapse")
+    session = pressed(window, "e", source="isostatic_collapse")
     session.select(session.particles["B"])
     return session
 
 
 PICKED = ("k", "click")
 SCENES: dict[str, Scene] = {
-    "empty": lambda window: _pressed(window, source=EMPTY),
-    "pause": _pressed,
-    "pause-dark": lambda window: _pressed(window, "i", "e", source="hyperstatic", theme="dark"),
-    "pause-colour-blind": lambda window: _pressed(window, "i", "e", source="hyperstatic", theme="colour-blind"),
-    "pause-colour-blind-dark": lambda window: _pressed(
+    "empty": lambda window: pressed(window, source=EMPTY),
+    "pause": pressed,
+    "pause-dark": lambda window: pressed(window, "i", "e", source="hyperstatic", theme="dark"),
+    "pause-colour-blind": lambda window: pressed(window, "i", "e", source="hyperstatic", theme="colour-blind"),
+    "pause-colour-blind-dark": lambda window: pressed(
         window, "i", "e", source="hyperstatic", theme="colour-blind-dark"
     ),
     "drawing-a-force": _drawing_a_force,
@@ -200,7 +210,7 @@ SCENES: dict[str, Scene] = {
     "force-method-5": _force_method(*PICKED, "k", "k"),
     "force-method-6": _force_method(*PICKED, "k", "k", "k"),
     "force-method": _force_method(*PICKED, "k", "k", "k", "k"),
-    "help": lambda window: _pressed(window, "f1"),
+    "help": lambda window: pressed(window, "f1"),
 }
 ALONE_IN_LAYOUT = {
     "notice",
