@@ -170,11 +170,9 @@ class View:
 
     def follow(self, model: Model) -> None:
         """Fit the model anew if it has left the picture, unless somebody looks closer."""
-        pixels = self.camera.to_pixels(drawn_places(model))
-        pixels = pixels[np.isfinite(pixels).all(axis=1)]
-        low = np.array([self.room.left, self.room.top])
-        high = low + (self.room.width, self.room.height)
-        if self.fitted and not ((pixels >= low) & (pixels <= high)).all():
+        room, (x, y) = self.room, self.camera.to_pixels(drawn_places(model)).T
+        across = (x >= room.left) & (x <= room.left + room.width)
+        if self.fitted and not (across & (y >= room.top) & (y <= room.top + room.height)).all():
             self.fit(model)
 
     def share(self, model: Model, *, shares: bool) -> None:
