@@ -20,7 +20,7 @@ COMFORTABLE = 1080.0  # points: on displays higher than this, type and symbols g
 COMFORTABLE_HEIGHT, LEAST_HEIGHT = 480.0, 240.0  # points that are left in a window by itself, and at all
 BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
-COLUMN, COLUMN_SHARE, WIDEST_COLUMN = 294.0, 0.34, 340.0  # points, share of the canvas: the column of panels
+COLUMN, COLUMN_SHARE, WIDEST_COLUMN = 306.0, 0.34, 340.0  # points, share of the canvas: the column of panels
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
 
 
