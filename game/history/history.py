@@ -146,7 +146,8 @@ class History:
             self._simulation.resume(entry.before)
             title = "run"
         else:
-            now = self._simulation.moment("clock")
+            # Where a run went before that no time passed in, but that moved discs apart, all of the state counts.
+            now = self._simulation.moment(*(() if entry.clock.whole else ("clock",)))
             target.push(Edit(self._model.apply(entry.inverse), now, entry.key))
             self._simulation.resume(entry.clock)
             title = _title(entry.inverse)

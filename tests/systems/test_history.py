@@ -11,9 +11,10 @@ from components.field import FieldError
 from components.particle import Particle
 from components.rod import Rod
 from game import Session
+from tests.properties.soundness import contents
 from tests.reference import bits
 from tests.reference.elements import Model
-from tests.reference.models import square
+from tests.reference.models import model, particle, square
 from tests.reference.sessions import put_states_aside, states_put_aside
 
 Step = tuple[str, Any]
@@ -208,3 +209,24 @@ def test_what_a_script_deletes_is_undone_by_name() -> None:
     session.model.delete([session.rods["AB"]])
     assert session.undo() == "delete"
     assert session.redo() == "delete"
+
+
+def test_what_was_moved_apart_before_an_edit_is_so_again_when_that_is_redone() -> None:
+    """A run that no time passed in, but that parted discs, is undone and redone with the edit that followed."""
+    discs = [particle("A", 0.0, 0.0), particle("B", 0.06, 0.0), particle("C", 1.0, 0.0)]
+    session = Session.open(model(discs, []))
+    session.press("space")
+    session.press("u")  # any key accounts for edits, as a frame does
+    session.select(session.particles["C"])
+    session.press("c", (0.0, 0.0))
+    session.press("space")
+    assert session.particles["B"].displacement[0] > 0.0
+    assert session.model.clock.steps == 0
+    after = contents(session.model)
+    assert session.undo()
+    assert session.particles["B"].displacement[0] == 0.0
+    before = contents(session.model)
+    assert session.redo()
+    assert contents(session.model) == after
+    assert session.undo()
+    assert contents(session.model) == before
