@@ -54,10 +54,11 @@ def derive_constant_force(world: World) -> None:
     """Own force, environment's force, mass × accelerations (kN) and constant loads."""
     particles, loads = world.tables["particles"], world.tables["loads"]
     environment = world.tables["environment"]
-    acceleration = particles.acceleration + environment.acceleration
-    force = particles.force + environment.force + particles.mass[:, None] * acceleration / 1000.0
     constant = [row for row, history in enumerate(loads.history) if history["kind"] == CONSTANT["kind"]]
-    np.add.at(force, loads.on[constant], loads.force[constant])
+    with np.errstate(over="ignore", invalid="ignore"):  # who computes with what is too large says so
+        acceleration = particles.acceleration + environment.acceleration
+        force = particles.force + environment.force + particles.mass[:, None] * acceleration / 1000.0
+        np.add.at(force, loads.on[constant], loads.force[constant])
     world.writable("particles.constant_force")[...] = force
 
 

@@ -20,6 +20,13 @@ from systems.near import Floats, Rows, near_pairs, nearest
 FAR = 0.5  # of its radius, within which of a particle others are listed at least
 OVERLAP = 1e-9  # of the reach of two nodes; more at the start of a step is from before they ever parted
 LEAST = 1e-300  # m/s; no motion is that slow
+
+
+def _any_force() -> np.errstate:
+    """Forces of mods and people may be too large to compute with; others say so."""
+    return np.errstate(over="ignore", invalid="ignore")
+
+
 WATCHED, LEFT_ALONE, LASTING = 0, 1, 2  # kinds of pairs
 
 
@@ -143,7 +150,8 @@ class Vicinity:
         """True if since `clear_time` was asked anything gained more speed than that reckoned with."""
         speed, _ = self._vigour()
         passed = self.model.clock.time - self._since
-        return bool((speed > (self._speed + passed * self._pull) * (1.0 + 1e-6)).any())
+        with _any_force():
+            return bool((speed > (self._speed + passed * self._pull) * (1.0 + 1e-6)).any())
 
     def _time_apart(self, displacement: Floats) -> float:
         """For how long (s) none of the listed pairs can meet, or part if they are nodes that overlap."""
@@ -161,7 +169,7 @@ class Vicinity:
 
     def _travel(self, time: float) -> Floats:
         """How far (m) particles can get in a time (s)."""
-        with np.errstate(over="ignore", invalid="ignore"):  # forces of mods may be anything
+        with _any_force():
             return time * (self._speed + 0.5 * time * self._pull)
 
     def _vigour(self) -> tuple[Floats, Floats]:
@@ -172,9 +180,9 @@ class Vicinity:
         """
         particles, rods, count = self.model.particles, self.model.rods, int(self._island.max(initial=0)) + 1
         awake = self._moves[: self._count] & ~particles.asleep
-        stored = 1000.0 * rods.axial_force**2 * rods.rest_length / rods.stiffness
         of_rods = self._island[rods.between].max(axis=1, initial=0)
-        with np.errstate(over="ignore", invalid="ignore"):
+        with _any_force():
+            stored = 1000.0 * rods.axial_force**2 * rods.rest_length / rods.stiffness
             pull = particles.mass * ((particles.mobility * particles.applied_force) ** 2).sum(axis=1)
             twice = np.bincount(self._island, particles.mass * (particles.velocity**2).sum(axis=1), count)
             twice += np.bincount(of_rods, stored, count)

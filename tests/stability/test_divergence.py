@@ -411,3 +411,28 @@ def test_a_rod_without_length_that_wants_one_stays_finite(apart: float) -> None:
     assert_finite(session)
     assert session.rods["AB"].axial_force == pytest.approx(1.0, rel=1e-6)
     assert session.rods["AB"].length == pytest.approx(1.001, rel=1e-6)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    "properties",
+    [
+        {"force": [1e300, 0.0]},
+        {"force": [1e300, 0.0], "mass": 1e-9},
+        {"acceleration": [1e300, 0.0], "mass": 1e300},
+        {"velocity": [1e300, 0.0]},
+    ],
+)
+def test_numbers_that_are_too_large_are_said_in_the_window_only(properties: dict[str, Any]) -> None:
+    """Nothing is written on standard error, not even while a hand pulls."""
+    session = Session.open(model([particle("A", 0.0, 0.0, **properties), particle("B", 1.0, 0.0)], []))
+    for key in ("j", "i", "space"):
+        session.press(key)
+    session.frame(0.01)
+    session.grab(0.0, 0.0)
+    session.drag_to(0.5, 0.5)
+    session.frame(0.01)
+    session.drop()
+    session.frame(0.01)
+    assert np.isfinite(session.particles.velocity).all()
+    assert "too large" in session.view.status.problem
