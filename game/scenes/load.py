@@ -118,7 +118,9 @@ class Load(FileScene):
         self.form.heading.first = 0
 
     def hint(self, session: Session) -> str:
-        return "Click a picture     Arrows choose     Return open     Type to search     Esc back"
+        layout = self.layout(session)
+        more = "Wheel shows more     " if layout.shown < layout.count else ""
+        return f"Click a picture     {more}Arrows choose     Return open     Type to search     Esc back"
 
 
 def _left_behind(session: Session) -> list[dict[str, Any]]:

@@ -116,7 +116,8 @@ def _has_files(form: Form) -> bool:
 def _with_rows(form: Form, layout: FormLayout, fixed: list[Place]) -> FormLayout:
     u, room, width = layout.unit, layout.bottom - layout.top, layout.right - layout.left
     rows = list(_tile_rows(form, width / u) if _has_files(form) else _box_rows(form, width / u))
-    heights = [_height(row, width, room, u) for row in rows]
+    picture = _picture_height(rows, width, room, u)
+    heights = [_height(row, picture, u) for row in rows]
     first = min(form.heading.first, _last_first(heights, room))
     places, top, shown = list(fixed), layout.top, 0
     for row, height in zip(rows[first:], heights[first:], strict=True):
@@ -191,18 +192,22 @@ def tile_columns(width: float) -> int:
     return max(int((width + TILE_GAP) / (min(TILE, 0.45 * width) + TILE_GAP)), 1)
 
 
-def _height(row: Row, width: float, room: float, u: float) -> float:
+def _height(row: Row, picture: float, u: float) -> float:
     if isinstance(row, str):
         return SECTION * u
-    if isinstance(row[0], Box):
-        return (TITLE + BOX + BELOW) * u
-    below = (CAPTION + TILE_GAP) * u
-    high = _tile_width(width, u) * PROPORTION
-    room -= SECTION * u
-    if room < LOWEST * high + below:
-        return max(room - below, 40.0 * u) + below
-    two = room / 2.0 - below  # rather two lower rows than one
-    return (min(high, room - below) if two < LOWEST * high else min(high, two)) + below
+    return (TITLE + BOX + BELOW) * u if isinstance(row[0], Box) else picture + (CAPTION + TILE_GAP) * u
+
+
+def _picture_height(rows: Sequence[Row], width: float, room: float, u: float) -> float:
+    """How high the pictures of tiles are: lower than they might be where one more row is seen then."""
+    sections = sum(isinstance(row, str) for row in rows)
+    below, high = (CAPTION + TILE_GAP) * u, _tile_width(width, u) * PROPORTION
+    for seen in range(len(rows) - sections, 0, -1):
+        headings = min(sections, max(seen - 1, 1)) * SECTION * u  # of few rows rather the first section's only
+        each = (room - headings) / seen - below
+        if each >= LOWEST * high or seen == 1:
+            return max(min(each, high), 40.0 * u)
+    return high
 
 
 def _tile_width(width: float, u: float) -> float:
