@@ -18,6 +18,7 @@ _EDGE = 14.0  # points between overlays and the edges of the viewport
 _HEADING = 20.0  # points, size of its type
 _SMALL = 300.0  # points: in a viewport less high, what is not needed is left out
 _FEW_LINES = 3  # of a notice
+_NOISE = 1e-6  # pixels; smaller displacements are not meant
 BAR = 28.0  # points, height of the status bar
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
@@ -361,9 +362,18 @@ def _ruler(sheet: Sheet, x: int, y: int, length: int) -> list[Mark]:
 
 
 def _notes(sheet: Sheet) -> list[str]:
-    scale = sheet.model.settings.displacement_scale
-    exaggeration = [f"displacements ×{scale:g}"] if scale != 1.0 else []
-    return exaggeration + sheet.notes
+    return _displacements(sheet) + sheet.notes
+
+
+def _displacements(sheet: Sheet) -> list[str]:
+    """By how much they are exaggerated; that they should be where a structure seems not to move at all."""
+    model, scale = sheet.model, sheet.model.settings.displacement_scale
+    if scale != 1.0:
+        return [f"displacements ×{scale:g}"]
+    largest = float(np.abs(model.particles.displacement).max(initial=0.0)) if model.rods.count else 0.0
+    if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
+        return []
+    return [f"displacements up to {written_length(float(f'{largest:.1e}'))}: Return, displacement scale"]
 
 
 # --- nothing to see --------------------------------------------------------------------------------

@@ -48,6 +48,16 @@ def test_a_problem_is_told_in_full() -> None:
     assert problem in " ".join(texts)
 
 
+@pytest.mark.parametrize(("displacement", "told"), [(4.3e-4, True), (0.0, False), (0.05, False)])
+def test_displacements_too_small_to_be_seen_are_told(displacement: float, told: bool) -> None:
+    model = triangle()
+    model.particles["B"].displacement = (displacement, 0.0)
+    said = "displacements up to 430 µm: Return, displacement scale"
+    assert (said in " ".join(picture_of(model, width=900).texts)) == told
+    model.settings.displacement_scale = 100.0
+    assert said not in " ".join(picture_of(model, width=900).texts)
+
+
 def test_legend_names_only_what_occurs() -> None:
     meanings = {"tension (kN)", "compression (kN)", "yielding", "external force (kN)"}
     model = triangle()
