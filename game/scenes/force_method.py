@@ -139,7 +139,7 @@ class ForceMethod(Scene):
     def _lay_out(self, session: Session) -> list[tuple[Model, View]]:
         """Place everything in the window; returns what stands in the middle."""
         guide, ratio, whole = self.shown_guide, session.view.pixel_ratio, session.view.canvas
-        self._head.heading = self._told
+        self._head.heading = session.notice or self._told
         part = f"Part {guide.part} of {PARTS}" if guide else "Not possible"
         if self._work is not None:
             self._head.heading, part = self._work.text, "Working"

@@ -220,6 +220,7 @@ def test_the_degree_says_how_often() -> None:
     assert not guide.can_release_another
     session.press("n")
     assert "Every unknown is released" in session.notice
+    assert session.scenes.active.stages(session)[0][1].heading == session.notice  # type: ignore[union-attr]
     assert "1 unknown to release" in words._degree(1)
 
 
