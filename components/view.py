@@ -123,7 +123,8 @@ class View:
     """How one model is shown in one viewport.
 
     heading: the word top left in red ("Pause"), or "". all_diagrams: force diagrams of all elements.
-    legend: show the meaning of colours. help: show what can be pressed (`keys`: (key, meaning)).
+    legend: show the meaning of colours. help: which page of what can be pressed is shown, from 1; 0: none. keys: its
+    lines (key, meaning); more_keys: there is another page.
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
     forces_known: False while what computes forces is not there yet; then none are shown.
     caption: lines at the top: what this is, and facts about it. page: text that is shown instead.
@@ -143,10 +144,11 @@ class View:
     all_diagrams: bool = False
     forces_known: bool = True
     legend: bool = True
-    help: bool = False
+    help: int = 0
     pixel_ratio: float = 1.0
     status: Status = field(default_factory=Status)
     keys: list[tuple[str, str]] = field(default_factory=list)
+    more_keys: bool = False
     pointer: Vector | None = None
     tool: str = ""
     preview: Preview | None = None

@@ -15,6 +15,7 @@ from game.registry import PANELS
 from systems.base import StopReason
 from systems.edit.refusal import Refusal
 from systems.input.bindings import LIVE, help_lines
+from systems.render.help import help_pages
 
 if TYPE_CHECKING:
     from game.session import Session
@@ -33,7 +34,8 @@ def show(session: Session) -> None:
     view.flashes = _flashes(session)
     view.heading = scene.heading
     view.shape = session.desk.shapes.shown
-    view.keys = help_lines(scene.name) if view.help else []
+    pages = pages_of_help(session) if view.help else []
+    view.keys, view.more_keys = pages[view.help - 1] if pages else [], view.help < len(pages)
     _show_readouts(session)
     view.status = Status(
         time=session.time,
@@ -43,6 +45,14 @@ def show(session: Session) -> None:
         problem=_problem(session),
         notice=said or " ".join(remark.message for remark in session.remarks),
     )
+
+
+def pages_of_help(session: Session) -> list[list[tuple[str, str]]]:
+    """What can be pressed in the active scene; the page that is shown is one of them."""
+    scene, view = session.scenes.active, session.view
+    pages = help_pages(help_lines(scene.name), scene.helped(session), view.pixel_ratio)
+    view.help = min(view.help, len(pages))
+    return pages
 
 
 def _show_readouts(session: Session) -> None:

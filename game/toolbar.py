@@ -67,7 +67,7 @@ _PRESSED: dict[str, Condition] = {
     "toggle diagrams of sets": _shows_diagrams,
     "toggle theory": lambda session: session.view.theory,
     "toggle energy": lambda session: session.view.energy,
-    "toggle help": lambda session: session.view.help,
+    "toggle help": lambda session: session.view.help > 0,
 }
 # What must be there for an action to do something.
 _NEEDS: dict[str, Condition] = {

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from components.field import Vector
 from game.actions.registry import Action, action
 from game.shapes import NoShape
+from game.showing import pages_of_help
 from systems.edit.refusal import Refusal
 from systems.render.theme import load_theme
 
@@ -69,7 +70,8 @@ def _next_theme(session: Session, pixel: Vector) -> None:
 
 @action("toggle help", while_drawing=True)
 def _toggle_help(session: Session, pixel: Vector) -> None:
-    session.view.help = not session.view.help
+    """The next page; after the last, none."""
+    session.view.help = (session.view.help + 1) % (len(pages_of_help(session)) + 1)
 
 
 @action("pan", while_drawing=True)

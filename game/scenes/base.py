@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 if TYPE_CHECKING:
+    from components.camera import Viewport
     from components.field import Vector
     from components.form import Form
     from components.model import Model
@@ -63,6 +64,10 @@ class Scene:
     def fit(self, session: Session) -> None:
         """Show everything."""
         session.view.fit(session.model)
+
+    def helped(self, session: Session) -> Viewport:
+        """The part of the window in which its keys are shown."""
+        return session.view.canvas
 
     def resized(self, session: Session) -> None:
         """The window has another size."""

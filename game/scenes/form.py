@@ -64,6 +64,9 @@ class FormScene(Scene):
         """The part of the window that the form takes."""
         return session.view.camera.viewport
 
+    def helped(self, session: Session) -> Viewport:
+        return self.viewport(session)
+
     def move(self, session: Session, direction: str) -> None:
         """An arrow key: "left", "right", "up" or "down"."""
         box = self.form.selected

@@ -373,7 +373,9 @@ def _displacements(sheet: Sheet) -> list[str]:
     largest = float(np.abs(model.particles.displacement).max(initial=0.0)) if model.rods.count else 0.0
     if not _NOISE < largest * sheet.view.camera.scale < sheet.unit:
         return []
-    return [f"displacements up to {written_length(float(f'{largest:.1e}'))}, too small to see; Return sets their scale"]
+    return [
+        f"displacements up to {written_length(float(f'{largest:.1e}'))}, too small to see; Return sets their scale"
+    ]
 
 
 # --- nothing to see --------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from components.box import WORD, Box
 from components.camera import Camera, Viewport
 from components.form import Form, Tile
 from components.model import Model
-from components.view import View, drawn_places
+from components.view import BETWEEN, View, drawn_places
 from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.form_layout import CAPTION, LOW, FormLayout, Place, lay_out
 from systems.render.help import draw_help
@@ -72,7 +72,7 @@ class _Writer:
         """What the selected box or tile is about, and the next possible step."""
         layout, size, v = self.layout, self.font(12.0), self.layout.viewport
         width, bottom = layout.right - layout.left, v.top + v.height
-        hint = shortened(self.view.status.hint, width, size)
+        hint = _steps(self.view.status.hint, width, size)
         marks: list[Mark] = [Text(hint, layout.left, bottom - 13.0 * self.unit, size, self.theme.form_muted)]
         if v.height >= LOW * self.unit:
             lines = wrapped(self._explanation(), width, size)
@@ -196,6 +196,14 @@ class _Writer:
             caption = shortened(tile.caption, width, small)
             marks.append(Text(caption, left, top + 28.0 * u, small, theme.form_muted))
         return marks
+
+
+def _steps(hint: str, width: float, size: int) -> str:
+    """The next possible steps, as many as there is room for; the last says how to leave."""
+    steps = hint.split(BETWEEN)
+    while len(steps) > 2 and text_width(BETWEEN.join(steps), size) > width:
+        del steps[-2]
+    return shortened(BETWEEN.join(steps), width, size)
 
 
 def _at_most(lines: list[str], most: int, width: float, size: int, weight: str = "regular") -> list[str]:

@@ -7,9 +7,11 @@ from itertools import combinations
 
 import pytest
 
+from game import Session
+from systems.input.bindings import help_lines
 from systems.render.marks import Panel, Picture, Text
 from systems.render.typography import capital_height
-from tests.golden.scenes import SCENES, WINDOWS, Window
+from tests.golden.scenes import SCENES, WINDOWS, Window, composed
 from tests.golden.states import STATES, seen
 from tests.reference.boxes import Box, overlap, text_box
 
@@ -26,7 +28,7 @@ SIZES = {
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("name", [*SCENES, *STATES])
 def test_texts_are_whole_in_the_window_and_clear_of_one_another(name: str, size: str) -> None:
-    """Whole but in a window that is narrower than 640 points, which the keys' help is too large for."""
+    """Whole but in a window that is narrower than 640 points."""
     window = SIZES[size]
     read = list(texts(seen(name, window)))
     for text, (left, top, right, bottom) in read:
@@ -52,3 +54,27 @@ def texts(shown: list[Picture]) -> Iterator[tuple[str, Box]]:
 
 def box_of(panel: Panel) -> Box:
     return panel.left, panel.top, panel.left + panel.width, panel.top + panel.height
+
+
+@pytest.mark.parametrize("size", [(320, 240), (480, 800), (640, 480), (1000, 720), (1920, 1080)])
+@pytest.mark.parametrize("key", ["", "space", "return", "s", "d", "k"])
+def test_every_key_is_explained_in_a_window_of_any_size(key: str, size: tuple[int, int]) -> None:
+    """On as many pages as that takes; F1 goes through them and closes the last."""
+    session = Session.open("hyperstatic")
+    session.resize(*size)
+    session.press("i")
+    if key:
+        session.press(key)
+    told: set[str] = set()
+    for _ in range(len(help_lines(session.scene))):
+        session.press("f1")
+        shown = list(texts(composed(session))) if session.view.help else []
+        if not shown:
+            break
+        told |= {text for text, _ in shown}
+        card = [(text, box) for text, box in shown if text in told and not text.endswith("…")]
+        assert all(
+            left >= 0.0 and right <= size[0] and bottom <= size[1] for _, (left, _, right, bottom) in card
+        )
+    assert session.view.help == 0
+    assert {title for _, title in help_lines(session.scene)} <= told
