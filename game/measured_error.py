@@ -49,7 +49,7 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     met = clock.collisions > then["clock.collisions"][0] or clock.paths is not None
     if met or not isinstance(program, Program) or not clock.time > then["clock.time"][0]:
         return None
-    reached, size, target = model.particles.displacement.copy(), clock.step_size, clock.time
+    reached, size, target = model.particles.displacement.copy(), clock.step_size, simulation.moved_until
     yielded = clock.dissipated_plastic > then["clock.dissipated_plastic"][0]
     with simulation.aside(beginning):
         if program.tolerance > 0.0:

@@ -73,6 +73,7 @@ class Simulation:
         self.reason = StopReason.DONE
         self.message = ""
         self.note = ""
+        self._rested = 0.0  # s, when it came to rest last
         self.impacts = Impacts(model)
         self._sleep = Sleep(model)
         self._step_size = StepSize(model, self._sleep, lambda: self.driver)
@@ -389,7 +390,8 @@ class Simulation:
         if reason is StopReason.DONE:
             return
         if reason is StopReason.REST:
-            self.message = at_rest_since(self.model.clock.time)
+            self._rested = self.model.clock.time
+            self.message = at_rest_since(self._rested)
         elif reason is StopReason.UNRESOLVED:
             self.reason = StopReason.DIVERGED
             if not self._go_on_without_mod():
@@ -551,6 +553,12 @@ class Simulation:
     def energy(self) -> Energy:
         """The energy account now."""
         return self._account.energy(edited=not self._armed)
+
+    @property
+    def moved_until(self) -> float:
+        """The time (s) up to which steps were taken; at rest, time may pass without any."""
+        now = self.model.clock.time
+        return min(self._rested, now) if self.reason is StopReason.REST else now
 
     @property
     def residual(self) -> float:

@@ -144,3 +144,12 @@ def test_the_error_is_in_the_energy_panel_while_nothing_moves() -> None:
     assert session.busy
     (readout,) = own_readouts(session)
     assert readout.rows[-1][0] == "imbalance"
+
+
+def test_at_rest_time_that_passes_without_steps_is_not_run_again(capsys: pytest.CaptureFixture[str]) -> None:
+    estimates = []
+    for how in (["--until-rest"], ["--at", "20"]):
+        assert main(["run", "isostatic", *how, "--format", "json"]) == 0
+        estimates.append(json.loads(capsys.readouterr().out)["error_estimate"])
+    assert estimates[0]["relative"] > 0.0
+    assert estimates[0] == estimates[1]
