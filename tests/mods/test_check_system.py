@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
@@ -29,6 +30,7 @@ from systems.input.pygame_input import PygameInput
 from systems.kernels import compiled
 from systems.physics.drivers import VelocityVerlet
 from systems.render.pygame_render import PygameRender
+from tests.mods.conftest import Write
 
 CABLES = EVERYTHING | {"rods": [rod | {"tension_only": True} for rod in EVERYTHING["rods"]]}
 OURS = {system.name: system for system in [*step_systems(), *(make() for make in SYSTEMS)]}
@@ -102,6 +104,53 @@ def test_our_frame_systems_pass(tmp_path: Path) -> None:
     ]
     for make in frames:
         assert check_system(make, [EVERYTHING, BODIES]).needed == 2
+
+
+def test_an_integrator_is_checked_where_it_takes_the_steps() -> None:
+    assert check_system(VelocityVerlet, [BODIES, ELASTIC]).needed == 1
+    with pytest.raises(SystemCheckError, match=r"No model needs physics.velocity_verlet; .* with rods or drag"):
+        check_system(VelocityVerlet, [BODIES])
+
+
+AGEING = """
+from components import Component, Field, Rod, Role
+from numba import njit
+from systems.base import Commit, Law
+
+class Age(Component):
+    of = Rod
+    age: Field[float] = Field("s", title="age", doc="Grows with time.", role=Role.STATE)
+
+@njit
+def older(rods_aged_age, dt):
+    return rods_aged_age + dt, 0.0
+
+@njit
+def weak(rods_aged_age):
+    return 0.001 * rods_aged_age
+
+class Ageing(Commit):
+    name = "aged.ageing"
+    kernel = older
+    writes = ("rods.aged_age",)
+
+class Weak(Law):
+    name = "aged.weak"
+    kernel = weak
+    reads = ("rods.aged_age",)
+
+def plugin(app):
+    app.component(Age)
+    app.system(Ageing)
+    app.system(Weak)
+"""
+
+
+def test_what_another_system_of_the_mod_writes_is_not_held_against_a_law(write_mod: Write) -> None:
+    Session.open("isostatic", mods=[write_mod("aged", AGEING)])
+    aged = sys.modules["aged"]
+    assert check_system(aged.Weak, [ELASTIC]).needed == 1
+    assert check_system(aged.Ageing, [ELASTIC]).needed == 1
 
 
 def test_an_integrator_that_depends_on_chance_is_found_out() -> None:
