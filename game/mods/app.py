@@ -30,7 +30,15 @@ from game.mods.mod import Mod, ModError
 from game.scenes import Scene, all_scenes
 from systems.base import Driver, System
 from systems.edit.refusal import Refusal
-from systems.input.bindings import LIVE, Binding, add_binding, add_tool, remove_binding, remove_tool
+from systems.input.bindings import (
+    LIVE,
+    Binding,
+    add_binding,
+    add_tool,
+    key_named,
+    remove_binding,
+    remove_tool,
+)
 from systems.render.icons import ICONS, Part
 from systems.render.layers import ABOVE, BELOW, Layer
 
@@ -193,6 +201,7 @@ class App:
         """
         if name not in ACTIONS:
             raise ModError(f"The key '{key}' is for an action '{name}' that is not registered.")
+        key = _checked_key(key)
         binding = Binding(key, name, tuple(scenes), title or name)
         self._undo.append(lambda: remove_binding(binding))
         for other in add_binding(binding):
@@ -256,6 +265,17 @@ class App:
                 mod.fail(f"the action '{name}'", error)
 
         return act
+
+
+def _checked_key(key: str) -> str:
+    """What bindings call a key. Raises ModError."""
+    try:
+        named = key_named(key)
+    except ValueError as error:
+        raise ModError(f"{error} Names of keys are like 'w', 'ctrl+w', 'page up' or 'f5'.") from None
+    if "shift" in key.lower() and "shift" not in named:
+        raise ModError(f"The key '{key}' is the same as '{named}'; take that, or 'ctrl+shift+{named}'.")
+    return named
 
 
 def _as_list(draw: Layer) -> Callable[[Any], list[Any]]:

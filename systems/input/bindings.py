@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cache
 
+from components.spelling import missing
+
 SIMULATION, PAUSE = "simulation", "pause"
 PROPERTIES, SAVE, LOAD, FORCE_METHOD = "properties", "save", "load", "force method"
 LIVE = (SIMULATION, PAUSE)
@@ -12,6 +14,11 @@ FORMS = (PROPERTIES, SAVE, LOAD)
 EVERY = (*LIVE, *FORMS, FORCE_METHOD)
 
 TEXT = "text "  # what begins the "key" that is typed text, such as "text a"
+
+MODIFIERS = {"ctrl+": "ctrl+", "control+": "ctrl+", "cmd+": "ctrl+", "shift+": "shift+"}
+ALSO_CALLED = {"esc": "escape", "enter": "return", "del": "delete", "spacebar": "space", " ": "space"}
+ALSO_CALLED |= {"pageup": "page up", "pagedown": "page down"}
+UNBOUND = ("insert", "caps lock", "print screen", "menu", *(f"f{number}" for number in range(1, 13)))
 
 
 @dataclass(frozen=True)
@@ -213,6 +220,26 @@ def action_for(scene: str, key: str) -> str | None:
     """The action that a key performs in a scene, or None."""
     binding = _binding(scene, key)
     return binding.action if binding else None
+
+
+def key_named(text: str) -> str:
+    """The key that a person means, as bindings call it: "K", "Esc", "Ctrl+Z". Raises ValueError if there is none.
+
+    Shift alone makes no other key of one with a character: on some keyboards "+" needs it, on others not.
+    """
+    if text.startswith(TEXT):
+        return text
+    name, held = text.lower(), set()
+    while modifier := next((m for m in MODIFIERS if name.startswith(m) and len(name) > len(m)), None):
+        held.add(MODIFIERS[modifier])
+        name = name.removeprefix(modifier)
+    name = ALSO_CALLED.get(name, name)
+    known = {binding.key.removeprefix("ctrl+").removeprefix("shift+") for binding in BINDINGS} | {*UNBOUND}
+    if len(name) != 1 and name not in known:
+        raise ValueError(missing("keys", text, sorted(key for key in known if len(key) > 1)))
+    if len(name) == 1 and "ctrl+" not in held:
+        held.clear()
+    return "".join(sorted(held)) + name  # ctrl comes before shift
 
 
 def repeats(scene: str, key: str) -> bool:

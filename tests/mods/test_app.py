@@ -85,6 +85,14 @@ def test_a_key_can_be_given_to_an_action_that_is_there(write_mod: Write) -> None
     assert session.view.all_diagrams
 
 
+@pytest.mark.parametrize(
+    ("key", "said"), [("shift+j", "is the same as 'j'"), ("pgdown", "did you mean 'page down'")]
+)
+def test_a_key_that_no_keyboard_can_send_is_refused(write_mod: Write, key: str, said: str) -> None:
+    with pytest.raises(mods.ModError, match=said):
+        opened(write_mod, f"app.key({key!r}, 'toggle diagrams')")
+
+
 class Rename:
     """A command of a mod's own: the model's title is in no table."""
 

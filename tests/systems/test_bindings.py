@@ -14,7 +14,17 @@ from game import Session
 from game.saved.library import DATA_VARIABLE, models_folder
 from game.scenes.force_method import ForceMethod
 from game.scenes.form import FormScene
-from systems.input.bindings import BINDINGS, FORCE_METHOD, LOAD, PAUSE, PROPERTIES, SAVE, SIMULATION, Binding
+from systems.input.bindings import (
+    BINDINGS,
+    FORCE_METHOD,
+    LOAD,
+    PAUSE,
+    PROPERTIES,
+    SAVE,
+    SIMULATION,
+    Binding,
+    key_named,
+)
 from tests.properties.soundness import contents
 
 CASES = [(scene, binding) for binding in BINDINGS for scene in binding.scenes]
@@ -224,3 +234,31 @@ def test_every_key_does_something_in_every_scene_that_it_names(scene: str, bindi
     before = seen(session)
     session.press(binding.key, (7.0, 9.0) if binding.key == "drag middle" else None)
     assert seen(session) != before
+
+
+@pytest.mark.parametrize(
+    ("said", "meant"),
+    [
+        ("K", "k"),
+        ("Esc", "escape"),
+        ("Enter", "return"),
+        ("Shift+Ctrl+Z", "ctrl+shift+z"),
+        ("ctrl++", "ctrl++"),
+        ("shift++", "+"),
+        ("Shift+Left", "shift+left"),
+        ("F9", "f9"),
+        ("text Esc", "text Esc"),
+    ],
+)
+def test_keys_are_known_by_the_names_that_people_use(said: str, meant: str) -> None:
+    assert key_named(said) == meant
+
+
+def test_every_bound_key_is_called_as_it_is() -> None:
+    assert [binding.key for binding in BINDINGS] == [key_named(binding.key) for binding in BINDINGS]
+
+
+@pytest.mark.parametrize("text", ["", "spacebarr", "ctrl+", "alt+x", "undo"])
+def test_what_no_key_is_called_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="among the keys"):
+        Session.open("isostatic").press(text)
