@@ -17,7 +17,7 @@ class Clock(Handle):
     __slots__ = ()
     table, noun, single = "clock", "clock", True
 
-    time: Field[float] = Field("s", role=Role.STATE, title="time", doc="Simulated time.")
+    time: Field[float] = Field("s", role=Role.STATE, minimum=0.0, title="time", doc="Simulated time.")
     step_size: Field[float] = Field(
         "s", role=Role.STATE, title="step size", doc="Present fixed step; 0: not yet chosen."
     )

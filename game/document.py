@@ -77,15 +77,18 @@ def _fail(path: str, problem: str) -> NoReturn:
 
 @dataclass(frozen=True)
 class _Section:
-    """The elements of one kind in a document, and what to call them in messages."""
+    """The elements of one kind in a document, or a component's part of each, and what to call them in messages."""
 
     path: str
     kind: type[Handle]
     elements: Sequence[Mapping[str, Any]]
     keys: Set[Any]  # that any element has
+    whole: _Section | None = None  # that these are parts of
 
     def where(self, row: int, key: str = "") -> str:
         """The path of an element or of one of its keys, and the element's name if it has one."""
+        if self.whole is not None:
+            return self.whole.where(row, f"{self.path}.{key}")
         element = self.elements[row]
         path = self.path if self.kind.single else f"{self.path}[{row}]"
         name = element.get("name")
@@ -375,8 +378,7 @@ def _refuse_misspelt(name: str, known: Collection[str], where: str) -> None:
 def _component_section(section: _Section, component: str) -> _Section:
     """What the elements of a section hold for one component."""
     parts = [element.get(FOREIGN, {}).get(component, {}) for element in section.elements]
-    path = f"{section.path}: {component}" if section.kind.single else section.path
-    return _Section(path, section.kind, parts, set().union(*parts))
+    return _Section(f"{FOREIGN}.{component}", section.kind, parts, set().union(*parts), whole=section)
 
 
 def _keep_foreign(model: Model, section: _Section, handles: Sequence[Handle]) -> None:

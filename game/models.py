@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import gc
 import json
 import math
@@ -70,6 +71,8 @@ def load(source: str | Path | Mapping[str, Any]) -> Model:
         raise ModelError(f"{source!r} is no model; give a file, a bundled model's name or a document.")
     try:
         raw = _found(source).read_bytes()
+    except IsADirectoryError:
+        raise ModelError(f"'{source}' is a folder; name a model file in it.") from None
     except FileNotFoundError:
         raise _missing(source) from None
     except (OSError, ValueError) as error:
@@ -114,7 +117,8 @@ def _reason(error: Exception) -> str:
 
 def _decoded(raw: bytes, source: str) -> Any:
     """What JSON bytes say. Raises ModelError if they are not JSON or an object repeats a key."""
-    raw = raw.removeprefix(b"\xef\xbb\xbf")
+    _check_encoding(raw, source)
+    raw = raw.removeprefix(codecs.BOM_UTF8)
     try:
         content = msgspec.json.decode(raw)
         # The decoder keeps the last of repeated keys only, and with the others some texts are gone.
@@ -152,12 +156,25 @@ def _decoded_strictly(raw: bytes, source: str) -> Any:
         return json.loads(
             raw, object_pairs_hook=_Pairs, parse_constant=refuse, parse_float=finite, parse_int=finite
         )
-    except (json.JSONDecodeError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
+        line = 1 + raw[: error.start].count(b"\n")
+        raise ModelError(
+            f"{source} has a character in line {line} that is not UTF-8; save it in UTF-8."
+        ) from None
+    except json.JSONDecodeError as error:
         raise _not_json(source, error) from None
 
 
 def _not_json(source: str, error: Exception) -> ModelError:
     return ModelError(f"{source} is not a JSON file ({error}); correct it or save the model anew.")
+
+
+def _check_encoding(raw: bytes, source: str) -> None:
+    """Raise ModelError for what editors and shells write besides UTF-8, or if there is nothing."""
+    if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        raise ModelError(f"{source} is written in UTF-16; save it in UTF-8.")
+    if not raw.strip():
+        raise ModelError(f"{source} is empty; save the model anew.")
 
 
 def _refuse_repeated_keys(value: Any, path: str) -> None:

@@ -110,7 +110,7 @@ def documents(draw: st.DrawFn) -> dict[str, Any]:
         settings=objects(
             {}, restitution=st.floats(0, 1), time_step=st.none() | positive, plasticity=st.booleans()
         ),
-        state=objects({}, time=finite, steps=st.integers(-(2**63) + 1, 2**63 - 1), work=finite),
+        state=objects({}, time=finite.map(abs), steps=st.integers(-(2**63) + 1, 2**63 - 1), work=finite),
     )
     return document | draw(rest)
 

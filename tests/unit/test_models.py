@@ -17,6 +17,7 @@ from components.load import Load
 from components.model import Model
 from game import document as documents
 from game import models
+from game.cli import main
 from game.models import ModelError
 from tests.reference.models import model, particle, rod, square, triangle
 
@@ -279,7 +280,7 @@ def test_an_unknown_name_gets_a_suggestion(source: str) -> None:
 
 
 def test_an_unreadable_file_is_explained(tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match=r"cannot be read: .* Check its path"):
+    with pytest.raises(ModelError, match=r"is a folder; name a model file in it"):
         models.load(tmp_path)
     with pytest.raises(ModelError, match="cannot be read: embedded null byte"):
         models.load("a\0b.json")
@@ -287,10 +288,11 @@ def test_an_unreadable_file_is_explained(tmp_path: Path) -> None:
 
 HEAD = b'{"format": "pinjoint model", "version": 1, '
 MALFORMED = {
-    "empty": (b"", "is not a JSON file"),
+    "empty": (b" \n", "is empty; save the model anew"),
+    "UTF-16": ('{"format": "pinjoint model"}'.encode("utf-16"), "written in UTF-16; save it in UTF-8"),
     "cut off": (HEAD + b'"rods": [', "line 1 column"),
     "trailing comma": (HEAD + b'"rods": [],\n}', "line 2 column 1"),
-    "bytes": (HEAD + b'"title": "\xff"}', "is not a JSON file"),
+    "Latin-1": (HEAD + b'\n"title": "\xe9"}', "has a character in line 2 that is not UTF-8; save it in UTF-8"),
     "nan": (HEAD + b'"environment": {"drag": NaN}}', "contains NaN; every number must be finite"),
     "infinity": (HEAD + b'"environment": {"drag": -Infinity}}', "contains -Infinity"),
     "out of range": (HEAD + b'"environment": {"drag": 1e999}}', "contains 1e999; every number must be finite"),
@@ -414,6 +416,14 @@ def test_components_of_absent_mods_survive(tmp_path: Path) -> None:
     foreign["wind.Sail"]["area"] = 2.0
     assert again.foreign == {again.rods["BC"].entity: foreign, again.environment.entity: foreign}
     assert '"n": 2,' in (tmp_path / "foreign.json").read_text(encoding="utf-8")
+
+
+def test_a_command_says_which_data_have_no_effect(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    document = triangle()
+    document["rods"][0] |= {"components": {"wind.Sail": {"area": 2.0}}}
+    models.save(models.parse(document), tmp_path / "windy.json")
+    assert main(["run", str(tmp_path / "windy.json"), "--static"]) == 0
+    assert "mods that are not loaded: wind" in capsys.readouterr().err
 
 
 def test_components_of_deleted_elements_are_not_written() -> None:
