@@ -28,7 +28,8 @@ def derive_lengths(world: World) -> None:
 def derive_masses(world: World) -> None:
     """Lumped masses (half of each attached rod's density × rest length) and mobilities."""
     particles, rods = world.tables["particles"], world.tables["rods"]
-    half = 0.5 * rods.density * rods.rest_length
+    with np.errstate(over="ignore"):  # what is too large is told before it is computed with
+        half = 0.5 * rods.density * rods.rest_length
     lumped = np.bincount(rods.between.ravel(), np.repeat(half, 2), particles.count)
     lumped[lumped == 0.0] = DEFAULT_MASS
     prescribed = particles.prescribed_mass

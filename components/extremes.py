@@ -13,7 +13,7 @@ LARGEST, SMALLEST = 1e30, 1e-30  # in the units inside; SMALLEST of what must be
 
 _TABLES = ("particles", "rods", "loads", "environment", "settings")
 _FOLLOWING = ("rest_length", "mass")  # derived, but from positions that may be too near or too far
-_MOVING = ("displacement", "velocity")  # state that a person can type
+_MOVING = ("displacement", "velocity", "plastic_strain")  # state that a person can type
 
 
 def incomputable(model: Model) -> str:

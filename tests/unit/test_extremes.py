@@ -57,3 +57,14 @@ def test_no_analysis_computes_with_them(capsys: pytest.CaptureFixture[str], tmp_
     session.save(tmp_path / "huge.json")
     assert main(["run", str(tmp_path / "huge.json"), "--format", "json"]) == 1
     assert json.loads(capsys.readouterr().out)["status"] == "diverged"
+
+
+def test_strains_can_be_too_large_and_no_warning_comes_first(recwarn: pytest.WarningsRecorder) -> None:
+    session = Session.open("isostatic")
+    session.rods["AB"].rest_length = 1e308
+    assert "Rod AB: rest length is 1e+308 m, too large" in incomputable(session.model)
+    session.undo()
+    session.rods["AB"].plastic_strain = 1e308
+    with pytest.raises(FieldError, match="Rod AB: plastic strain is 1e\\+308, too large"):
+        session.settle()
+    assert not recwarn.list
