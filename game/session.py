@@ -45,10 +45,10 @@ from game.showing import make_room, show
 from game.simulation import FREE_FLIGHT, Simulation
 from game.surroundings import Autosaves, Prepares, Window
 from game.toolbar import toolbar_of
-from systems.base import Law, Phase, StopReason, System
+from systems.base import Phase, StopReason, System
 from systems.edit.pull import Pull
 from systems.edit.refusal import Refusal
-from systems.input.bindings import FORMS, TEXT, action_for
+from systems.input.bindings import FORMS, TEXT, action_for, key_named
 from systems.physics.pace import natural_pace
 
 if TYPE_CHECKING:
@@ -152,8 +152,9 @@ class Session:
         self.simulation.account_for_edits()
         models.save(self.model, Path(path))
 
-    def save_as(self, path: Path) -> None:
+    def save_as(self, path: str | Path) -> None:
         """Write the model to a file that is its own from now on. Raises ModelError."""
+        path = Path(path)
         self.save(path)
         self.desk.file = ModelFile.at(path)
         self.desk.saved = self.model.revision
@@ -273,7 +274,7 @@ class Session:
         said = (
             self.fault
             or self.scenes.active.message
-            or simulation.message
+            or (simulation.message if simulation.armed else "")  # else it is about what was before an edit
             or simulation.warning
             or simulation.note
             or self.notice
@@ -353,11 +354,7 @@ class Session:
                 f"{len(yielded)} rods have" if len(yielded) > 1 else f"{self.name(self.rods[yielded[0]])} has"
             )
             self.notice += f" {named} yielded at once."
-        laws = [
-            system for system in self.schedule.step_plan(self.model) if isinstance(system, Law) and system.mod
-        ]
-        if left_out := ", ".join(law.name for law in laws if law.each != "loads"):
-            self.notice += f" Settling leaves out the laws of mods: {left_out}."
+        self.notice = " ".join(filter(None, [self.notice, self.schedule.left_out_of_statics(self.model)]))
         return found.status
 
     def compare(self) -> Comparison:
@@ -377,6 +374,8 @@ class Session:
         """
         from systems.statics.path import load_path
 
+        if points < 2:
+            raise ValueError(f"points is {points}; a curve has at least 2.")
         return load_path(self.model, goal_of(self.model, factor, until), points=points)
 
     def restart(self) -> None:
@@ -531,7 +530,13 @@ class Session:
         return self.view.pointer or self.view.camera.middle
 
     def press(self, key: str, pixel: Vector | None = None) -> None:
-        """Press a key, such as "k", "escape" or "ctrl+z"; one that means nothing in this scene does nothing."""
+        """Press a key, such as "k", "escape" or "ctrl+z"; one that means nothing in this scene does nothing.
+
+        Raises ValueError if no key is called so.
+        """
+        self._press(key_named(key), pixel)
+
+    def _press(self, key: str, pixel: Vector | None) -> None:
         if key.startswith(TEXT):
             self.type(key.removeprefix(TEXT))
             return
@@ -634,7 +639,7 @@ class Session:
                 self._keyed = self.scene
             elif self._keyed != self.scene:  # the key that led here; it is not meant for a box
                 continue
-            self.press(key, pixel)
+            self._press(key, pixel)  # whatever keys there are
         self.scenes.apply(self)
         self._phase(Phase.EDIT, frame)
         if not (self.performing and self.scene == "simulation"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
@@ -19,8 +20,11 @@ _NUMBERS = ("force", "delta_real", "delta_base", "delta_unit")  # of the force m
 _SETS = ("real", "base", "superposed")
 
 _EXPECTATION = re.compile(
-    r"^(?P<path>.+?)\s*(?P<relation>≈|~|=|<|>)\s*(?P<value>.+?)(?:\s*(?:±|\+-)\s*(?P<slack>\S+))?\s*$"
+    r"^(?P<path>.+?)\s*(?P<relation>[≈~=<>!]+)\s*(?P<value>.+?)(?:\s*(?:±|\+/?-)\s*(?P<slack>\S+))?\s*$"
 )
+_ORDERS = {"<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge}
+_SAMENESS = ("=", "≈", "~")
+_NOTHING = ("none", "null")  # what may be written for no value
 
 
 class ExpectationError(AssertionError):
@@ -44,22 +48,30 @@ def check(session: Session, text: str) -> Iterator[tuple[str, Any]]:
 
 
 def _holds(got: Any, relation: str, value: str, slack: str | None) -> bool:
+    if relation not in (*_SAMENESS, *_ORDERS):
+        raise ValueError(f"'{relation}' is no relation; write one of {', '.join((*_SAMENESS, *_ORDERS))}.")
     if isinstance(got, bool | str) or got is None:
-        if relation in "<>":
+        if relation in _ORDERS:
             raise ValueError(
                 f"it is {got!r}, which is neither more nor less; write = or, for a part of a text, ≈."
             )
         said, wanted_text = str(got).lower(), value.strip("\"'").lower()
+        if got is None:
+            return wanted_text in _NOTHING
         return said == wanted_text if relation == "=" else isinstance(got, str) and wanted_text in said
     if isinstance(got, tuple):
         raise ValueError(f"it has two components, {got}; ask for .x or .y.")
+    if value.lower() in _NOTHING:
+        return False
     try:
         wanted, within = float(value), float(slack or 0.0)
     except ValueError:
         said = f"{value} ± {slack}" if slack else value
         raise ValueError(f"it is {got}, which cannot be compared with '{said}'; write a number.") from None
-    if relation in "<>":
-        return bool(got < wanted if relation == "<" else got > wanted)
+    if not within >= 0.0:
+        raise ValueError(f"± {slack}: nothing is as near as that; write a number of at least 0.")
+    if relation in _ORDERS:
+        return bool(_ORDERS[relation](got, wanted))
     tolerance = within if slack is not None or relation == "=" else 1e-9 * abs(wanted)
     return math.isfinite(got) and abs(got - wanted) <= tolerance
 

@@ -12,7 +12,8 @@ a "description". Every further line does one thing:
     {"action": "undo"}                          a named action
     {"run": "rest"}   {"run": 0.5}              until at rest; or by seconds
     {"steps": 128}                              by fixed steps
-    {"expect": "rods.AB.axial_force ≈ -28.34 ± 0.01"}   also =, <, >; scene, time, count.rods, energy.…
+    {"expect": "rods.AB.axial_force ≈ -28.34 ± 0.01"}   also =, <, >, <=, >=; scene, time, count.rods, energy.…
+    {"expect": "clock.collisions = 3"}          how many impacts there were
     {"expect": "message ≈ not found"}           what the window tells; of a text, ≈ asks for a part
     {"input": "click", "pixel": [512, 300]}     what a window recorded
     {"resize": [1280, 800, 2]}                  the window's pixels, and pixels per point
@@ -37,6 +38,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from components.field import Vector
 from components.spelling import remedy
+from game.document import ModelError
 from game.overrides import apply_override
 from game.scripts.expectation import check
 
@@ -135,10 +137,13 @@ class Script:
         return beside if beside is not None and beside.is_file() else source
 
     def open(self) -> Session:
-        """The session that the header asks for. Raises ModelError."""
+        """The session that the header asks for. Raises ScriptError."""
         from game.session import Session  # whose scenes know scripts
 
-        return Session.open(self.source)
+        try:
+            return Session.open(self.source)
+        except ModelError as error:
+            raise ScriptError(f"{self.path} line {self.lines[0][0]}: {error}") from None
 
     def play(self, session: Session) -> list[Failure]:
         """Play all lines; returns the expectations that did not hold. Raises ScriptError."""

@@ -105,11 +105,39 @@ def test_a_load_path_and_a_pointer_need_finite_numbers(session: Session) -> None
         ("count.beams = 1", "no 'beams' among the tables"),
         ("rods.axial_force = 0", "names no rod; write rods.NAME.axial_force"),
         ("rods.AB.axial_force ≈ 1 ± x", "cannot be compared with '1 ± x'"),
+        ("rods.AB.axial_force ≈ 1 ± -1", "at least 0"),
+        ("rods.AB.axial_force ≈ 1 ± nan", "at least 0"),
+        ("rods.AB.axial_force == 1", "'==' is no relation; write one of =, ≈"),
+        ("rods.AB.axial_force != 1", "'!=' is no relation"),
     ],
 )
 def test_an_expectation_of_nothing_says_so(session: Session, text: str, words: str) -> None:
     with pytest.raises((LookupError, ValueError), match=words):
         session.expect(text)
+
+
+def test_what_is_expected_holds_or_does_not(session: Session) -> None:
+    for text in (
+        "time <= 0",
+        "time >= 0",
+        "time ≈ 0 +/- 1e-9",
+        "settings.time_step = null",
+        "clock.collisions = 0",
+    ):
+        session.expect(text)
+    for text in ("time <= -1", "rods.AB.tensile_strength = none", "settings.time_step = 1"):
+        with pytest.raises(AssertionError):
+            session.expect(text)
+
+
+def test_after_an_edit_or_settling_nothing_is_said_of_the_run_before(session: Session) -> None:
+    session.run(until="rest")
+    assert session.message.startswith("At rest since")
+    session.particles["B"].force = (1.0, 0.0)
+    assert session.message == ""
+    session.run(until="rest")
+    assert session.settle(1e6) == "collapse"
+    assert "Plastic collapse" in session.message
 
 
 def test_spaces_around_an_expectation_do_not_matter(session: Session) -> None:
