@@ -120,6 +120,12 @@ class Schedule:
             if isinstance(system, StepSystem) and not isinstance(system, Driver) and system.needs(model)
         ]
 
+    def left_out_of_statics(self, model: Model) -> str:
+        """The sentence that names the laws of mods that a model needs and statics does not know; "" if there are none."""
+        laws = (law for law in self.step_plan(model) if isinstance(law, Law) and law.mod is not None)
+        names = ", ".join(law.name for law in laws if law.each != "loads")
+        return f"Settling leaves out the laws of mods: {names}." if names else ""
+
     def named(self, names: Iterable[str]) -> list[StepSystem]:
         """The step systems with these names, in order. Raises KeyError if one is not there."""
         by_name = {s.name: s for s in self._ordered[Phase.STEP] if isinstance(s, StepSystem)}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 from collections.abc import Sequence
 from functools import partial
 
@@ -44,6 +45,8 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 def session_of(options: argparse.Namespace) -> Session:
     """A session with the model of `add_model`. Raises ModelError, OverrideError, FieldError."""
     session = Session.open(options.model)
+    if session.notice:  # data of mods that are not loaded, which would change the result
+        print(f"pinjoint: {session.notice}", file=sys.stderr)
     for override in options.set:
         apply_override(session.model, override)
     if options.integrator is not None:

@@ -217,13 +217,13 @@ def _heading(probe: Probe) -> str:
 def run(words: list[str]) -> int:
     """`pinjoint plot MODEL --of QUANTITY --until T --output FILE`."""
     from game.arguments import Parser, UsageError, count, positive, writable
+    from game.cli.options import add_model, session_of
     from game.quantities import QuantityError
-    from game.session import Session
 
     parser = Parser(
         prog="pinjoint plot", description="Run a model and write quantities against time or another."
     )
-    parser.add_argument("model", help="a model file, or the name of a bundled model")
+    add_model(parser)
     parser.add_argument(
         "--of", action="append", required=True, metavar="PATH", help="such as rods.AB.axial_force"
     )
@@ -232,7 +232,7 @@ def run(words: list[str]) -> int:
     parser.add_argument("--samples", type=count, default=500, metavar="N", help="at least; default 500")
     parser.add_argument("--output", type=writable, required=True, metavar="FILE", help=".csv or .png")
     options = parser.parse_args(words)
-    session = Session.open(options.model)
+    session = session_of(options)
     try:
         probe = probes_of(session).add(session, options.of, options.against)
     except QuantityError as error:

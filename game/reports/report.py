@@ -100,12 +100,13 @@ def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> R
     """Settle at each load factor in turn; the history (yielding) is kept from one to the next."""
     from systems.statics.settle import settle
 
+    left_out = simulation.schedule.left_out_of_statics(simulation.model)
     started = time.perf_counter()
     settlement = settle(simulation.model, factors)
     seconds = time.perf_counter() - started
     states = [_static_state(simulation, found) for found in settlement.states]
     return _run(simulation, name, settlement.status, states) | {
-        "message": settlement.message,
+        "message": " ".join(filter(None, [settlement.message, left_out])),
         "wall_seconds": seconds,
         "time_step": None,
         "integrator": None,

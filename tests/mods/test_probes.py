@@ -138,6 +138,9 @@ def test_plot_is_a_command_too(tmp_path: Path, capsys: pytest.CaptureFixture[str
     words = ["plot", "pendulum", "--of", "particles.bob.velocity.x", "--until", "0.01", "--output", str(out)]
     assert main([*words, "--against", "particles.bob.displacement.x"]) == 0
     assert out.read_text(encoding="utf-8").startswith("time (s),displacement x of particle bob (cm),")
+    still = out.read_bytes()
+    assert main([*words, "--set", "environment.acceleration=0,-1.6"]) == 0
+    assert out.read_bytes() != still
     assert main([*words, "--of", "rods.none.strain"]) == 2
     assert "There is no 'none' among the rods" in capsys.readouterr().err
 
