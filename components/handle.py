@@ -40,8 +40,10 @@ class Handle:
 
         def __getattr__(self, name: str) -> Any:
             """Tell what was meant by a name that is not there."""
-            facts = [known for known in dir(type(self)) if not known.startswith("_")]
-            raise AttributeError(missing(f"facts of a {self.noun}", name, facts))
+            inner = {*dir(Handle), *Handle.__annotations__}
+            facts = [known for known in dir(type(self)) if known not in inner and not known.startswith("_")]
+            of = self.noun if self.single else f"a {self.noun}"
+            raise AttributeError(missing(f"facts of {of}", name, facts))
 
         def __setattr__(self, name: str, value: Any) -> None:
             """Set a Field; a misspelt one is refused, in kinds without __slots__ too."""

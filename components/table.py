@@ -111,15 +111,21 @@ class Table(Generic[H]):
     def __iter__(self) -> Iterator[H]:
         return iter(tuple(self.handles))
 
-    def __contains__(self, name: object) -> bool:
-        return name in self._by_name
+    def __contains__(self, element: object) -> bool:
+        """Whether there is an element of that name, or that element."""
+        if isinstance(element, str):
+            return element in self._by_name
+        return isinstance(element, self.kind) and element.exists and element.world is self.world
 
     def __getitem__(self, key: str | int) -> H:
         if isinstance(key, str):
             if key not in self._by_name:
                 raise KeyError(missing(self.name, key, self._by_name))
             return self._by_name[key]
-        return self.handles[key]
+        try:
+            return self.handles[key]
+        except IndexError:
+            raise IndexError(f"There is no row {key}; there are {self.count} {self.name}.") from None
 
     def __getattr__(self, name: str) -> Column:
         if name in _OWN or name.startswith("_"):

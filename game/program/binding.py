@@ -107,9 +107,7 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     function = find(getattr(system, kernel), system.name)
     plain = getattr(function, "py_func", None)
     if plain is None:
-        raise ProgramError(
-            f"The kernel of {system.name} is not compiled; put `@compiled` of systems.kernels above it."
-        )
+        raise ProgramError(f"The kernel of {system.name} is not compiled; put `@njit` of numba above it.")
     parameters = tuple(inspect.signature(plain).parameters)
     arrays = {name: read_only(array) for name, array in system.arrays(model).items()}
     bound = Bound(system, function, parameters, arrays, kernel)

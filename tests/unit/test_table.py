@@ -52,6 +52,21 @@ def beads(count: int) -> tuple[World, Table[Bead]]:
 # --- reading -----------------------------------------------------------------------------------------
 
 
+def test_a_table_tells_what_it_holds() -> None:
+    world, table = beads(2)
+    first = table[0]
+    assert first in table
+    assert "bead 1" in table
+    other, elsewhere = beads(2)
+    assert first.world is not other
+    assert first not in elsewhere
+    assert 0 not in table
+    world.delete([first])
+    assert first not in table
+    with pytest.raises(IndexError, match="There is no row 2; there are 1 beads"):
+        table[2]
+
+
 def test_a_table_is_read_by_row_by_name_and_in_order_of_creation() -> None:
     _, table = beads(20)
     assert len(table) == 20
