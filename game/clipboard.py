@@ -139,5 +139,5 @@ def _columns(model: Model, kind: Kind, rows: Rows, place: Rows) -> dict[str, Any
 def _free_names(table: Table[Any], names: list[str]) -> list[str]:
     """The names, those that are taken replaced by new ones."""
     taken = table.taken(names)
-    fresh = iter(table.free_names(len(taken), besides=names))
+    fresh = iter(table.free_names(len(taken), besides=set(names) - taken))
     return [next(fresh) if name in taken else name for name in names]

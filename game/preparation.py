@@ -55,6 +55,7 @@ class Preparation(System):
     def __init__(self) -> None:
         self._frames = 0
         self._seen = -1  # the model's revision in the last frame
+        self._structure = -1  # when anything was made or deleted last, as of the last frame
         self._compiler = threading.Thread(target=_load_libraries, daemon=True)
         self._blank = is_blank()  # then it is known without the compiler that nothing is compiled
         self._loaded = False  # the program was, in the last frame
@@ -69,6 +70,9 @@ class Preparation(System):
         if self._frames == 2:  # the first picture comes first
             self._compiler.start()
         simulation = frame.session.simulation
+        before, self._structure = self._structure, simulation.model.structure
+        if before != self._structure:  # what was made or deleted is seen first
+            return
         loaded, self._loaded = self._loaded, simulation.ready
         if loaded and simulation.ready and self._waits_for_meetings(simulation) is None:
             self._load_encounters(simulation)
