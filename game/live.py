@@ -17,11 +17,16 @@ class Live:
         self.clock = FrameClock()
         self._pace_revision = -1
         self._pace_size = 0
+        self._waited = False  # for a picture
 
     def frame(self, elapsed: float) -> None:
         """Take the steps of one frame that comes `elapsed` seconds after the last."""
         simulation, clock = self.simulation, self.clock
         if simulation.halted:
+            return
+        waited, self._waited = self._waited, False
+        if self._large and not simulation.armed and not waited:
+            self._waited = True  # a picture shows the edit before anything is got ready
             return
         revision = simulation.armed_revision
         simulation.advance(0)
