@@ -10,17 +10,17 @@ from systems.render.marks import Mark, Panel, Text
 from systems.render.plots import Box, draw_plot
 from systems.render.sheet import Sheet
 from systems.render.theme import faded
-from systems.render.typography import line_height, shortened, text_width
+from systems.render.typography import line_height, shortened, text_width, wrapped
 
 _EDGE, _PAD, _GAP = 10.0, 9.0, 16.0  # points: to the edges, inside a panel, between name and value
 _BETWEEN = 6.0  # points between panels
-_PLOT, _LEAST_PLOT = 150.0, 96.0  # points, height of a plot with its axes, and where there is little room
+_PLOT, _LEAST_PLOT = 150.0, 84.0  # points, height of a plot with its axes, and where there is little room
 
 
 def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     """The panels between `room`'s top and bottom; none where they are hidden.
 
-    Where there is not room for all, plots are lower, and those that are there longest keep but their titles.
+    Where there is not room for all, plots are lower, and of those that are there longest one panel tells the titles.
     """
     readouts = sheet.view.readouts if sheet.view.legend else ()
     place, u = sheet.view.panels, sheet.unit
@@ -30,29 +30,57 @@ def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
         width = min(max((_width(sheet, readout) for readout in readouts), default=0.0), width)
     left = place.left + place.width - _EDGE * u - width
     marks: list[Mark] = []
-    for readout, height in zip(readouts, _heights(sheet, readouts, bottom - top), strict=True):
-        if height:
-            marks += _panel(sheet, readout, (left, top, width, height))
-            top += height + _BETWEEN * u
-    return marks
+    heights = _heights(sheet, readouts, width, bottom - top)
+    for index, height in sorted(heights.items()):
+        marks += _panel(sheet, readouts[index], (left, top, width, height))
+        top += height + _BETWEEN * u
+    folded = _folded(sheet, [r for index, r in enumerate(readouts) if index not in heights], width)
+    return marks + (_titles(sheet, folded, (left, top, width, _height_of(sheet, folded))) if folded else [])
 
 
-def _heights(sheet: Sheet, readouts: Sequence[Readout], room: float) -> list[float]:
-    """Pixels that each panel takes of so many; 0: none."""
-    u = sheet.unit
-    title, gap = _line(sheet) + _PAD * u, _BETWEEN * u
+def _heights(sheet: Sheet, readouts: Sequence[Readout], width: float, room: float) -> dict[int, float]:
+    """Pixels that the panels take for which there is room, by their places among all; the newest come first."""
     since = [sheet.view.since.get(readout.title, 0) for readout in readouts]
     newest = sorted(range(len(readouts)), key=since.__getitem__, reverse=True)
-    shown = newest[: max(int((room + gap) / (title + gap)), 0)]
-    heights = [title if index in shown else 0.0 for index in range(len(readouts))]
-    left = room - len(shown) * (title + gap) + gap
-    for plot in (_LEAST_PLOT, _PLOT):  # the lowest that all of them may be, then as high as there is room for
-        for index in shown:
-            wanted = _height(sheet, readouts[index], plot)
-            if heights[index] < wanted <= heights[index] + left:
-                left -= wanted - heights[index]
-                heights[index] = wanted
-    return heights
+    gap, shown = _BETWEEN * sheet.unit, dict[int, float]()
+    left = room
+    for index in newest:
+        height = _height(sheet, readouts[index], _LEAST_PLOT)
+        others = [r for other, r in enumerate(readouts) if other != index and other not in shown]
+        folded = _height_of(sheet, _folded(sheet, others, width)) + gap if others else 0.0
+        if height + folded <= left:
+            shown[index] = height
+            left -= height + gap
+            spare = left - folded
+    for index in shown:
+        grown = min(_height(sheet, readouts[index], _PLOT), shown[index] + spare)
+        spare -= grown - shown[index]
+        shown[index] = grown
+    return shown
+
+
+def _folded(sheet: Sheet, readouts: Sequence[Readout], width: float) -> list[str]:
+    """Titles of panels for which there is no room, in lines."""
+    titles = ", ".join(readout.title for readout in readouts)
+    return wrapped(titles, width - 2 * _PAD * sheet.unit, sheet.font(12.0)) if titles else []
+
+
+def _height_of(sheet: Sheet, lines: Sequence[str]) -> float:
+    return len(lines) * _line(sheet) + _PAD * sheet.unit
+
+
+def _titles(sheet: Sheet, lines: Sequence[str], box: Box) -> list[Mark]:
+    """A panel that only tells these titles."""
+    u, theme, (left, top, _, _) = sheet.unit, sheet.theme, box
+    sheet.occupancy.block(*box)
+    first = top + (_PAD * u + _line(sheet)) / 2
+    return [
+        Panel(*box, 6.0 * u, faded(theme.panel, 0.94), theme.line),
+        *(
+            Text(line, left + _PAD * u, first + number * _line(sheet), sheet.font(12.0), theme.muted)
+            for number, line in enumerate(lines)
+        ),
+    ]
 
 
 def _line(sheet: Sheet) -> float:
@@ -74,20 +102,16 @@ def _width(sheet: Sheet, readout: Readout) -> float:
 
 
 def _panel(sheet: Sheet, readout: Readout, box: Box) -> list[Mark]:
-    """A panel, or only its title where there is no room for more."""
     u, theme, size = sheet.unit, sheet.theme, sheet.font(12.0)
     left, top, width, height = box
     sheet.occupancy.block(*box)
     inner, room = left + _PAD * u, width - 2 * _PAD * u
-    folded = height < _height(sheet, readout, _LEAST_PLOT)
-    y = top + (height if folded else _line(sheet) + 2 * _PAD * u) / 2
+    y = top + _PAD * u + _line(sheet) / 2
     heading = shortened(readout.title, room, size, "semibold")
     marks: list[Mark] = [
         Panel(*box, 6.0 * u, faded(theme.panel, 0.94), theme.line),
-        Text(heading, inner, y, size, theme.muted if folded else theme.text, "semibold"),
+        Text(heading, inner, y, size, theme.text, "semibold"),
     ]
-    if folded:
-        return marks
     for name, value in readout.rows:
         y += _line(sheet)
         value = shortened(value, room, size, "semibold")
