@@ -76,13 +76,13 @@ class FileScene(FormScene):
             self.reveal(session, tile)
 
     def _neighbour(self, session: Session, direction: str) -> Tile | None:
-        """The tile next to the chosen one; the first if none is chosen yet."""
+        """The tile next to the chosen one; the first that is seen if none is chosen yet."""
         layout = self.layout(session)
         columns = tile_columns((layout.right - layout.left) / layout.unit)
         tiles = [tile for tile in self.form.tiles if not tile.hidden]
         chosen = self.form.chosen
         if chosen is None or not tiles:
-            return tiles[0] if tiles else None
+            return next((place.item for place in layout.places if isinstance(place.item, Tile)), None)
         at = tiles.index(chosen) + {"left": -1, "right": 1, "up": -columns, "down": columns}[direction]
         return tiles[min(max(at, 0), len(tiles) - 1)]
 

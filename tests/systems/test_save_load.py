@@ -517,3 +517,15 @@ def test_examples_are_pictured_and_said_what_they_are(session: Session) -> None:
     assert len({tile.title for tile in examples}) == len(examples)
     first = [tile.source for tile in itertools.islice(examples, 2)]
     assert first == ["isostatic", "hyperstatic"]
+
+
+def test_arrows_begin_where_one_has_scrolled_to(session: Session) -> None:
+    session.resize(640, 480)
+    session.press("d")
+    for _ in range(3):
+        session.press("wheel down")
+    scene = scene_of(session)
+    seen = [place.item for place in scene.layout(session).places if isinstance(place.item, Tile)]
+    assert seen[0] is not scene.form.tiles[0]
+    session.press("down")
+    assert scene.form.chosen is seen[0]
