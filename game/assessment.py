@@ -89,18 +89,19 @@ class Assessment:
             self._remarks = key, tuple(remarks(self._model, self.theories))
         return self._remarks[1]
 
-    def error(self, *, at_any_cost: bool = False) -> MeasuredError | None:
+    def error(self, most_work: float | None = None) -> MeasuredError | None:
         """How far the displacements are from the exact motion; None where that is not known.
 
-        at_any_cost: also if it takes long to measure; else only if it does not, or has been measured.
+        most_work: evaluations of the forces of rods that measuring it may take; None: as many as no frame
+        would notice. What was measured before is known at once.
         """
-        from game.measured_error import is_quick, measure_error
+        from game.measured_error import IN_A_FRAME, measure_error, work
 
         key = (self._simulation.armed_revision, self._model.clock.steps)
         if self._error is not None and self._error[0] == key:
             return self._error[1]
-        begun = self._begun
-        if begun is None or not self.undisturbed or not (at_any_cost or is_quick(self._simulation)):
+        begun, most_work = self._begun, IN_A_FRAME if most_work is None else most_work
+        if begun is None or not self.undisturbed or work(self._simulation) > most_work:
             return None
         self._error = key, measure_error(self._simulation, begun)
         return self._error[1]

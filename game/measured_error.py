@@ -16,7 +16,8 @@ from game.simulation import Simulation
 FINER_TOLERANCE = 1e-2  # of the run's, by which it is taken again where the error is controlled
 FINEST_TOLERANCE = 1e-13
 PIECES = 64  # of a run, at whose ends it is looked how far particles have moved
-MOST_WORK = 5_000_000  # steps × rods up to which the error is measured without being asked for: about 0.2 s
+# Evaluations of the forces of rods up to which the error is measured without being asked for:
+IN_A_FRAME, IN_A_COMMAND = 5_000_000, 60_000_000  # about 0.2 s and 3 s
 
 
 @dataclass(frozen=True)
@@ -30,9 +31,10 @@ class MeasuredError:
     relative: float
 
 
-def is_quick(simulation: Simulation) -> bool:
-    """True if the error can be measured without a noticeable wait."""
-    return simulation.model.clock.steps * max(simulation.model.rods.count, 1) <= MOST_WORK
+def work(simulation: Simulation) -> int:
+    """How many times the run evaluated the force of a rod, which running it again takes at least."""
+    stages: int = simulation.driver.constants.get("STAGES", 1)
+    return simulation.model.clock.steps * max(simulation.model.rods.count, 1) * stages
 
 
 def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from components.model import Model
+from game.measured_error import IN_A_COMMAND
 from game.reports.results import ENERGIES, ResultError, Run, State, state
 from game.session import DEFAULT_LIMIT
 from game.simulation import Simulation
@@ -54,7 +56,7 @@ class Analysis:
             return self.run(session.simulation, name)
         session.run(steps=0)  # the beginning is noted, for theory beside the run
         found = self.run(session.simulation, name)
-        error = session.desk.assessment.error(at_any_cost=self.measures_error)
+        error = session.desk.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
         return {
             **found,
             "message": session.message,

@@ -118,6 +118,15 @@ def test_there_is_no_error_to_be_known_of_what_was_edited_or_has_not_begun() -> 
     assert session.desk.assessment.error() is None
 
 
+def test_no_frame_waits_for_the_error_of_a_long_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    session = Session.open(triangle(stiffness=164640))
+    session.run(steps=100)
+    evaluations = session.model.clock.steps * 3 * 12  # the stages of dop853
+    monkeypatch.setattr("game.measured_error.IN_A_FRAME", evaluations - 1)
+    assert session.desk.assessment.error() is None
+    assert session.desk.assessment.error(evaluations) is not None
+
+
 def test_there_is_none_below_what_a_tolerance_can_tell() -> None:
     session = _run(under_damped(), integrator="dop853", tolerance=2 * FINEST_TOLERANCE)
     assert session.desk.assessment.error() is None
