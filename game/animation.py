@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Iterator
 from itertools import pairwise
@@ -11,6 +12,7 @@ import numpy as np
 
 from components.snapshot import Snapshot
 from components.view import drawn_places
+from game.models import replace
 
 if TYPE_CHECKING:
     from game.session import Session
@@ -40,7 +42,9 @@ def render_gif(
         image = Image.fromarray(picture(session, size, theme, around))
         images.append(image.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE))
     durations = [round(1000 * FRAME)] * (len(images) - 1) + [round(1000 * HELD)]
-    images[0].save(path, "GIF", save_all=True, append_images=images[1:], duration=durations, loop=0)
+    made = io.BytesIO()
+    images[0].save(made, "GIF", save_all=True, append_images=images[1:], duration=durations, loop=0)
+    replace(path, made.getvalue())
     return status
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import io
 import os
 import sys
 import time
@@ -19,6 +20,7 @@ from components.field import Vector
 from components.model import Model
 from components.toolbar import Toolbar
 from components.view import MAGNIFICATIONS, MARGIN, Plot, View, drawn_places, magnified
+from game import models
 from game.desk import Desk, ModelFile
 from game.preparation import Preparation
 from game.raster_program import load_raster
@@ -277,9 +279,15 @@ class App:
     def screenshot(self) -> str:
         """Save what the window shows as a PNG in the working folder; returns its path. Raises OSError."""
         path = _unused(Path.cwd() / "pinjoint.png")
-        with open(path, "wb") as file:
-            pygame.image.save(self.render.surface, file, ".png")
+        _save(self.render.surface, path)
         return str(path)
+
+
+def _save(surface: pygame.Surface, path: Path) -> None:
+    """Write a picture as what its suffix says, as a whole or not at all. Raises OSError."""
+    made = io.BytesIO()
+    pygame.image.save(surface, made, path.suffix)
+    models.replace(path, made.getvalue())
 
 
 def _unused(path: Path) -> Path:
@@ -294,8 +302,7 @@ def _unused(path: Path) -> Path:
 def render_png(session: Session, path: str, size: tuple[int, int], theme: str = "light") -> None:
     """Draw a session to a PNG file, without a display. Raises OSError if it cannot be written."""
     surface = _drawn(session, size, theme, drawn_places(session.model))
-    with open(path, "wb") as file:
-        pygame.image.save(surface, file, Path(path).suffix)
+    _save(surface, Path(path))
 
 
 def picture(session: Session, size: tuple[int, int], theme: str, around: Points) -> Colours:
@@ -321,5 +328,4 @@ def plot_png(plot: Plot, path: Path, theme: str = "light", size: tuple[int, int]
     box = 16.0 * unit, 8.0 * unit, size[0] - 32.0 * unit, size[1] - 16.0 * unit
     marks = draw_plot(plot, box, colours, unit, None)
     Canvas(load_raster).draw(surface, Picture(Viewport(0, 0, *size), colours.background, marks))
-    with open(path, "wb") as file:
-        pygame.image.save(surface, file, ".png")
+    _save(surface, path)

@@ -10,6 +10,8 @@ import sys
 from pathlib import Path
 from typing import Any, NoReturn
 
+from game.models import replace
+
 BAD_INPUT = 2
 
 
@@ -99,13 +101,13 @@ def writable(text: str) -> str:
 
 
 def write(text: str, path: str | None) -> None:
-    """Write a result to a file, or to standard output if None. Raises UsageError."""
+    """Write a result to a file, as a whole or not at all, or to standard output if None. Raises UsageError."""
     try:
         if path is None:
             sys.stdout.write(text)
             sys.stdout.flush()
         else:
-            Path(path).write_text(text, encoding="utf-8")
+            replace(path, text.encode())
     except BrokenPipeError:
         raise
     except OSError as error:

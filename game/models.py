@@ -197,7 +197,7 @@ def save(model: Model, path: str | Path) -> None:
     """Write a model to a file, one element a line, as a whole or not at all. Raises ModelError."""
     content = document(model)
     try:
-        replace(Path(os.path.realpath(path)), laid_out(content, depth=2).encode() + b"\n")
+        replace(path, laid_out(content, depth=2).encode() + b"\n")
     except (OSError, ValueError) as error:
         raise ModelError(
             f"{path} was not saved: {_reason(error)}. What it held is unchanged; choose another folder"
@@ -205,8 +205,15 @@ def save(model: Model, path: str | Path) -> None:
         ) from None
 
 
-def replace(path: Path, content: bytes) -> None:
-    """Give a file new content; at every moment it has either the old or the new one."""
+def replace(path: str | Path, content: bytes) -> None:
+    """Give a file new content; at every moment it has either the old or the new one. Raises OSError, ValueError.
+
+    What is no file but a device or a pipe, and a file in whose folder nothing new can be made, is written into.
+    """
+    path = Path(os.path.realpath(path))
+    if path.exists() and not (path.is_file() and os.access(path.parent, os.W_OK)):
+        path.write_bytes(content)
+        return
     temporary = path.with_name(f".{uuid.uuid4().hex}.tmp")
     try:
         with temporary.open("xb") as file:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import weakref
 from array import array
 from collections.abc import Iterable, Sequence
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from components import Model, Particle, Plot, Readout, Rod, Vector
+from game.models import replace
 from game.quantities import TIME, Quantity, quantity
 from systems.base import Phase, System
 from systems.edit.refusal import Refusal
@@ -190,10 +192,11 @@ def write_csv(probe: Probe, path: Path) -> None:
     """One sample a line: the time and what was read, in the units of the headings."""
     against = [] if probe.against.path == TIME else [1]
     heads = ["time (s)", *([probe.against.title] if against else []), *(read.title for read in probe.read)]
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(heads)
-        writer.writerows(probe.table[:, [0, *against, *range(2, 2 + len(probe.read))]].tolist())
+    text = io.StringIO()
+    writer = csv.writer(text)
+    writer.writerow(heads)
+    writer.writerows(probe.table[:, [0, *against, *range(2, 2 + len(probe.read))]].tolist())
+    replace(path, text.getvalue().encode())
 
 
 def write_png(probe: Probe, path: Path, theme: str = "light") -> None:

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -141,3 +142,30 @@ def test_a_full_disk_is_said_in_one_line(command: str) -> None:
         )
     assert found.returncode == 2
     assert re.fullmatch(r"pinjoint: Standard output cannot be \w+: No space left on device\..*\n", found.stderr)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "run isostatic --static --output {}.csv",
+        "render isostatic --output {}.png",
+        "plot isostatic --of time --until 0.001 --output {}.csv",
+        "plot isostatic --of time --until 0.001 --output {}.png",
+    ],
+)
+def test_a_result_that_cannot_be_written_leaves_the_old_one(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def fail(*_: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    words = command.format(tmp_path / "result").split()
+    path = Path(words[-1])
+    path.write_text("old", encoding="utf-8")
+    monkeypatch.setattr(os, "fsync", fail)
+    assert main(words) == 2
+    assert re.fullmatch(
+        r"pinjoint: .* cannot be written: No space left on device\. Choose .*\n", capfd.readouterr().err
+    )
+    assert path.read_text(encoding="utf-8") == "old"
+    assert list(tmp_path.iterdir()) == [path]

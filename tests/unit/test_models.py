@@ -472,6 +472,19 @@ def test_a_missing_folder_is_explained(tmp_path: Path) -> None:
         models.save(models.parse(BASE), tmp_path / "nowhere" / "model.json")
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
+def test_what_is_no_plain_file_is_written_into_and_stays_what_it_is(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)  # who waits for nobody
+    try:
+        models.replace(pipe, b"text")
+        assert os.read(reader, 100) == b"text"
+    finally:
+        os.close(reader)
+    assert pipe.is_fifo()
+
+
 @pytest.mark.skipif(os.name != "posix", reason="permissions and links as on POSIX systems")
 def test_saving_keeps_permissions_and_follows_links(tmp_path: Path) -> None:
     path, link = tmp_path / "model.json", tmp_path / "link.json"
