@@ -2,8 +2,9 @@
 
 Those that only other kernels call are parts. numba makes machine code of every function by itself, after optimising
 it with all that it calls, although of a program only the outermost one is ever entered. A part stays what it was
-before that, and is optimised and made machine code of as a piece of what it is linked into: that compiles a large
-program in a fraction of the time.
+before that, and is optimised and made machine code of as a piece of what it is linked into, an entry: that compiles
+a large program in a fraction of the time. An entry knows that nobody else calls its parts, which are handed only the
+arguments that they use: of an array there are nine, and steps of a few rods spend a third of their time on others.
 """
 
 
@@ -75,6 +76,24 @@ class _Compiler(Compiler):
         super().__init__(typing, target, library or _Code(target.codegen(), "part"), *rest)
 
 
+class _Whole(JITCodeLibrary):
+    """What an entry consists of: parts that are its own."""
+
+    def _optimize_final_module(self) -> None:
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage.name == "linkonce_odr":
+                function.linkage = "internal"
+        super()._optimize_final_module()
+
+
+class _EntryCompiler(Compiler):
+    def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
+        if library is None:
+            library = _Whole(target.codegen(), "entry")
+            library.enable_object_caching()
+        super().__init__(typing, target, library, *rest)
+
+
 class _Part(CPUDispatcher):
     def get_call_template(self, given: Any, named: Any) -> Any:
         """Of one that is given the constant 3, as of one that is given any integer: no others are compiled."""
@@ -96,3 +115,8 @@ def part(**options: Any) -> Callable[[Callable[..., Any]], Any]:
         "no_cfunc_wrapper": True,
     }
     return partial(_Part, locals={}, targetoptions=chosen | options, pipeline_class=_Compiler)
+
+
+def entry(**options: Any) -> Any:
+    """A decorator like `compiled`, with further options, for functions by which Python enters what parts make up."""
+    return njit(error_model="numpy", cache=True, pipeline_class=_EntryCompiler, **options)

@@ -33,7 +33,7 @@ class BlockWriter(Writer):
 
     def _constants(self) -> str:
         return super()._constants() + (
-            "from numba import prange\n"
+            "from numba import njit, prange\n"
             'parallel = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, parallel=True)\n'
         )
 

@@ -128,7 +128,7 @@ class Writer:
             self._observe(),
             *(self._pasted(part, "inlined") for part in self.driver.parts),
             self._integrate(),
-            self._pasted(f"{self.driver.entry}=advance", "entry"),
+            self._pasted(f"{self.driver.entry}=advance", "entered"),
             *([self._commit()] if self.commits else []),
         ]
         return "\n\n".join(parts) + "\n"
@@ -150,13 +150,12 @@ class Writer:
             import math
 
             import numpy as np
-            from numba import njit
 
-            from systems.kernels import part
+            from systems.kernels import entry, part
 
             compiled = part()
             inlined = part(forceinline=True)
-            entry = njit(error_model="numpy", cache=True)
+            entered = entry(_nrt={self._may_allocate})
             RATES = {self.rates}
             POWERS = {self.powers}
             LOADS = {bool(self.loads)}
@@ -165,6 +164,12 @@ class Writer:
             REVIEW_INTERVAL = {REVIEW_INTERVAL}
             '''
         ) + "".join(f"{name} = {_literal(value)}\n" for name, value in self.driver.constants.items())
+
+    @property
+    def _may_allocate(self) -> bool:
+        """True if it may ask for memory, as stages do and kernels of mods may; to be ready for it costs a call 2 µs."""
+        own = all(str(kernel.__module__).startswith("systems.") for kernel in self.kernels.values())
+        return self.form != FEW or not own
 
     def _columns_text(self) -> str:
         return ", ".join(self.columns)
@@ -490,12 +495,12 @@ class Writer:
             " measures, rods_axial_force, rods_length, rods_strain, yielding, fixed, tension, compression, yields,"
             f" {columns}):"
         )
-        return "\n".join(["@entry", head, *indented(body)])
+        return "\n".join(["@entered", head, *indented(body)])
 
     def _commit(self) -> str:
         """The commits at a state that no step has led to."""
         arguments = f"{FORCED}, account, {self._columns_text()}"
-        return f"@entry\ndef commit({arguments}):\n    accept({arguments})"
+        return f"@entered\ndef commit({arguments}):\n    accept({arguments})"
 
     def _pasted(self, where: str, decorator: str) -> str:
         """A driver's source, "module:function" or with "=new name", the model's columns for *columns."""

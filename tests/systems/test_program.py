@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 import pytest
+from numba import njit
 
 from components.field import Field, Role
 from game import Session, models
@@ -197,6 +198,34 @@ def test_a_law_of_particles_changes_the_frequency_and_balances_the_energy() -> N
     turned = 2 * np.arcsin(both * size / 2)
     assert session.particles["B"].displacement[0] == pytest.approx(0.01 * np.cos(turned * 700), abs=1e-12)
     assert abs(session.energy.imbalance) <= (both * size) ** 2 * session.energy.initial
+
+
+@njit
+def tied_by_memory(particles_displacement):
+    pulls = np.zeros(2)
+    for axis in range(2):
+        pulls[axis] = -50.0 * particles_displacement[axis]
+    return pulls[0], pulls[1]
+
+
+class TiesByMemory(Law):
+    """The same force as that of Ties, from a kernel that asks for memory."""
+
+    name = "test.ties_by_memory"
+    each = "particles"
+    kernel = staticmethod(tied_by_memory)
+    reads = ("particles.displacement",)
+    adds = ("particles.force",)
+
+
+def test_the_kernel_of_a_mod_may_ask_for_memory() -> None:
+    """Programs of our kernels alone do without, which makes their calls shorter."""
+    by_hand, by_memory = (
+        Session.open(oscillator(2.0, velocity=[0.1, 0.0]), [law]) for law in (Ties(), TiesByMemory())
+    )
+    for session in (by_hand, by_memory):
+        session.run(time=0.3)
+    assert (by_memory.particles.displacement == by_hand.particles.displacement).all()
 
 
 @compiled
