@@ -63,7 +63,7 @@ class Snapshot:
             table = world.tables[name]
             as_now = len(group) > 1 or self._has_rows_of_now(world, name)
             table.storage(*group)[...] = array if as_now else self.column(world, f"{name}.{group[0]}")
-            table.mark(group, Role.STATE)
+            table.mark(group[:1], Role.STATE)
 
     def _has_rows_of_now(self, world: World, table: str) -> bool:
         """True if the rows of a table belong to the same entities as then."""

@@ -41,6 +41,7 @@ class Table(Generic[H]):
         "_by_name",
         "_by_role",
         "_columns",
+        "_first_of",
         "_lowest_number",
         "_versions",
         "_world",
@@ -64,7 +65,8 @@ class Table(Generic[H]):
         self.entity: NDArray[np.int64] = np.empty(1 if kind.single else _SMALLEST_CAPACITY, dtype=np.int64)
         self.handles: list[H] = []
         self._columns: dict[str, Column] = {}
-        self._versions: dict[str, int] = {}
+        self._first_of: dict[str, str] = {}  # by column, the first of those that lie in one array with it
+        self._versions: dict[str, int] = {}  # by the first of such columns: they change together
         self._by_name: dict[str, H] = {}
         self._lowest_number = 1  # no "rod n" below it is free
         for field in fields_of(kind):
@@ -82,6 +84,7 @@ class Table(Generic[H]):
             blocks[tuple(names)] = block = np.concatenate([self._columns[name] for name in names])
             for place, name in enumerate(names):
                 self._columns[name] = block[place : place + 1]
+                self._first_of[name] = names[0]
         return blocks
 
     @property
@@ -101,6 +104,7 @@ class Table(Generic[H]):
         self._by_role.clear()
         self.world.forget_layouts()
         self._columns[field.name] = field.allocate(len(self.entity))
+        self._first_of[field.name] = field.name
         self._versions[field.name] = 0
 
     # --- reading ---------------------------------------------------------------------------------
@@ -173,8 +177,8 @@ class Table(Generic[H]):
         return [str(name) for name in self._columns["name"][: self.count]]
 
     def version(self, name: str) -> int:
-        """The revision at which the column last changed, creations and deletions included."""
-        return max(self._versions[name], self.structure)
+        """The revision at which the column, or one stored with it, last changed; creations and deletions included."""
+        return max(self._versions[self._first_of[name]], self.structure)
 
     def fields_in(self, *roles: Role) -> list[Field[Any]]:
         """The fields with one of these roles, in order of declaration."""
@@ -186,7 +190,7 @@ class Table(Generic[H]):
 
     def writable(self, name: str) -> Column:
         """The column as a writable view, shape (count, ...), marked as changed now."""
-        self._versions[name] = self.world.next_revision(self.fields[name].role)
+        self._versions[self._first_of[name]] = self.world.next_revision(self.fields[name].role)
         return self._columns[name][: self.count]
 
     def storage(self, *group: str) -> Column:
@@ -205,10 +209,14 @@ class Table(Generic[H]):
         raise ValueError(f"{', '.join(names)} of {self.name} are not declared one after the other.")
 
     def mark(self, names: Iterable[str], role: Role) -> None:
-        """Mark columns, all with this role, as changed now."""
-        versions, revision = self._versions, self.world.next_revision(role)
+        """Mark columns, all with this role, and those stored with them as changed now."""
+        versions, first_of, revision = self._versions, self._first_of, self.world.next_revision(role)
         for name in names:  # quicker than an update
-            versions[name] = revision
+            versions[first_of[name]] = revision
+
+    def arrays_of(self, names: Iterable[str]) -> list[str]:
+        """Of these columns one for each array that they lie in: who marks it marks them all."""
+        return list(dict.fromkeys(self._first_of[name] for name in names))
 
     def free_names(self, count: int, besides: Iterable[str] = ()) -> list[str]:
         """The `count` names of the form "rod n" with the smallest n that neither are used nor among `besides`."""

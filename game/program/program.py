@@ -295,11 +295,11 @@ class Program:
 
 
 def _by_table_and_role(model: Model, written: Iterable[str]) -> list[tuple[str, list[str], Role]]:
-    """What steps change, besides what commits write: columns of one table and role together."""
+    """What steps change, besides what commits write: arrays of one table and role, by a column in each."""
     paths = [f"clock.{name}" for name in (*CONTROL, *_ORIGIN, *_COUNTS, *ACCOUNT)]
     paths += [*(f"particles.{name}" for name in _OF_PARTICLES), *written]
     found: dict[tuple[str, Role], list[str]] = {}
     for path in dict.fromkeys(paths):
         table, _, name = path.partition(".")
         found.setdefault((table, model.tables[table].fields[name].role), []).append(name)
-    return [(table, names, role) for (table, role), names in found.items()]
+    return [(table, model.tables[table].arrays_of(names), role) for (table, role), names in found.items()]
