@@ -10,6 +10,7 @@ from components.box import Box
 from components.camera import Rectangle, Viewport
 from components.field import Vector
 from components.form import Form, Tile
+from systems.render.typography import wrapped
 
 SIDE = 400.0  # points, width of the properties beside the model
 LEAST_MODEL = 240.0  # points that the model keeps beside them, or they cover it
@@ -18,6 +19,7 @@ EDGE = 16.0  # points around everything
 LOW = 330.0  # points: a viewport less high does without explanations
 
 TITLE, BOX, BELOW = 18.0, 26.0, 16.0  # points: title above a box, the box, what is said below it
+MESSAGE, MESSAGE_LINE = 12.0, 16.0  # points, size of its type and distance of its lines
 SECTION = 28.0
 COLUMN_GAP = 14.0
 HEADING = 104.0  # points, where a low viewport has the box beside the heading
@@ -45,7 +47,7 @@ class FormLayout:
 
     unit: pixels per point. left, right: of all that is written. header, heading_width: the middle of the
     heading's line, and the room for it.
-    message, top, bottom: the middle of the message's line; between which the rows are; footer: the upper
+    message, top, bottom: the middle of the message's first line; between which the rows are; footer: the upper
     end of what is said at the bottom. first, shown, count: rows of which the first is shown, how many
     are, and there are.
     """
@@ -104,8 +106,15 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         top += (BOX + 22.0) * u
     shares_line = low and bool(fixed)
     heading_width = (HEADING - 8.0) * u if shares_line else width
-    layout = FormLayout(v, u, left, left + width, header, heading_width, top - 11.0 * u, top, bottom)
+    message, lines = top - 11.0 * u, message_lines(form, width, u)
+    top += max(len(lines) - 1, 0) * MESSAGE_LINE * u
+    layout = FormLayout(v, u, left, left + width, header, heading_width, message, top, bottom)
     return _with_rows(form, layout, fixed)
+
+
+def message_lines(form: Form, width: float, u: float) -> list[str]:
+    """What is wrong or asked, in as many lines as it takes."""
+    return wrapped(form.heading.message, width, max(round(MESSAGE * u), 7)) if form.heading.message else []
 
 
 def _has_files(form: Form) -> bool:

@@ -13,7 +13,16 @@ from components.form import Form, Tile
 from components.model import Model
 from components.view import BETWEEN, View, drawn_places
 from systems.render.arrows import draw_loads, draw_velocities
-from systems.render.form_layout import CAPTION, LOW, FormLayout, Place, lay_out
+from systems.render.form_layout import (
+    CAPTION,
+    LOW,
+    MESSAGE,
+    MESSAGE_LINE,
+    FormLayout,
+    Place,
+    lay_out,
+    message_lines,
+)
 from systems.render.help import draw_help
 from systems.render.layers import BELOW
 from systems.render.marks import Fills, Mark, Panel, Picture, Rectangles, Text
@@ -59,13 +68,12 @@ class _Writer:
     def header(self) -> list[Mark]:
         """The heading, and the message below the boxes that stay."""
         layout, heading = self.layout, self.form.heading
-        size, small = self.font(19.0), self.font(12.0)
-        room = layout.right - layout.left
+        size, small, u = self.font(19.0), self.font(MESSAGE), self.unit
         text = shortened(heading.text, layout.heading_width, size, "semibold")
         marks: list[Mark] = [Text(text, layout.left, layout.header, size, self.theme.form_text, "semibold")]
-        if heading.message:
-            message = shortened(heading.message, room, small)
-            marks.append(Text(message, layout.left, layout.message, small, self.theme.form_problem))
+        for number, line in enumerate(message_lines(self.form, layout.right - layout.left, u)):
+            y = layout.message + number * MESSAGE_LINE * u
+            marks.append(Text(line, layout.left, y, small, self.theme.form_problem))
         return marks
 
     def footer(self) -> list[Mark]:

@@ -529,3 +529,14 @@ def test_arrows_begin_where_one_has_scrolled_to(session: Session) -> None:
     assert seen[0] is not scene.form.tiles[0]
     session.press("down")
     assert scene.form.chosen is seen[0]
+
+
+def test_what_is_asked_is_read_in_full_in_a_small_window(session: Session) -> None:
+    saved_as(session, "bridge")
+    session.resize(320, 240)
+    saved_as(session, "bridge")
+    session.update_view()
+    form, view = session.stages[0]
+    said = " ".join(mark.text for mark in compose(form, view, load_theme()).marks if isinstance(mark, Text))
+    assert message_of(session) in said
+    assert "Return again replaces it; Esc does not." in said
