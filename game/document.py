@@ -467,8 +467,10 @@ def _differs_from_default(field: Field[Any], column: Column) -> NDArray[np.bool_
     """Which rows do not hold the default's very bits, so that -0.0 is not taken for 0.0; shape (n,)."""
     if column.dtype == np.dtype(object):
         return np.array([value != field.default for value in column], dtype=bool)
-    default = field.allocate(1).view(np.uint8).ravel()
-    bits = column.view(np.uint8).reshape(len(column), len(default))
+    default = field.allocate(1)
+    word = np.uint64 if default.nbytes % 8 == 0 else np.uint8
+    default = default.view(word).ravel()
+    bits = column.view(word).reshape(len(column), len(default))
     differs: NDArray[np.bool_] = (bits != default).any(axis=1)
     return differs
 
