@@ -26,7 +26,7 @@ _CONTROLLED = (
 )
 
 _CONTROL = ("TIME", "STEP", "ERROR", "LARGEST_X", "LARGEST_V")
-_SEARCH = ("NEAR", "FAR", "NEAR_GAP", "FAR_GAP", "MOVED", "ENDED", "LENGTH", "TRIAL_X", "TRIAL_V")
+_SEARCH = ("NEAR", "FAR", "NEAR_GAP", "FAR_GAP", "MOVED", "ENDED", "LENGTH", "TRIAL_X", "TRIAL_V", "LONGEST")
 SEARCH = len(_SEARCH)
 _PLACES = {name: place for names in (_CONTROL, _SEARCH) for place, name in enumerate(names)}
 
@@ -118,7 +118,7 @@ def runge_kutta_constants(tableau: Tableau, proportional: float = 0.0, lengthen:
             "BEYOND": 1e300,  # the error of a step that has no result
             "PROPORTIONAL": proportional,
             "ROUND_OFF_X": 1e-15,  # of the largest displacement: errors below it are not chased
-            "ROUND_OFF_V": 1e-13,  # the same per step, for velocities
+            "ROUND_OFF_V": 1e-13,  # the same per longest step, for velocities
             "FIXED_TOLERANCE": 1e-10,  # of implicit stages where nothing else says how exact they must be
             "SMALLEST_SHARE": 1e-12,  # of the step to try, below which the run is given up
             "EVENT_FLOOR": 1e-11,  # share of a strength within which an event is located

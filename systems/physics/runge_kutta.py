@@ -15,7 +15,8 @@ and the tableau's constants (see tableaus.py), EVENTS (some rod has branches) an
 `work` has rows of shape (particles, 2): the accelerations of the stages, the trial displacement and
 velocity, then what the stages need; `marks` one row per rod. `control` is the state of the controller: time
 (s), step to try next (s), last error (1 is the tolerance), largest ‖displacement‖ (m) and ‖velocity‖ (m/s).
-`search` is that of the search for one step: see narrow(), and the largest norms if it is accepted.
+`search` is that of the search for one step: see narrow(), the largest norms if it is accepted, and how long
+steps may be (s).
 """
 
 # ruff: noqa: F821
@@ -80,6 +81,8 @@ def combine(dt, tolerance, displacement, velocity, work, control, search):
 
     The norms are Euclidean over all particles, of displacement and velocity each relative to the largest so
     far: a driver that kept each component relative to itself would chase the round-off of what stands still.
+    Round-off of displacements x is one of accelerations ω²x, so that in steps shorter than what is stable, some
+    6/ω, velocities have less of it: a force that jumps, as the damper of a cable does, is crossed by such steps.
     """
     trial, speed = work[STAGES], work[STAGES + 1]
     size_x = 0.0
@@ -119,7 +122,10 @@ def combine(dt, tolerance, displacement, velocity, work, control, search):
     search[TRIAL_X] = max(control[LARGEST_X], math.sqrt(size_x))
     search[TRIAL_V] = max(control[LARGEST_V], math.sqrt(size_v))
     allowed_x = tolerance * search[TRIAL_X] + ROUND_OFF_X * search[TRIAL_X]
-    allowed_v = tolerance * search[TRIAL_V] + ROUND_OFF_V * search[TRIAL_X] / dt
+    round_off = ROUND_OFF_V * search[TRIAL_X] / dt
+    if EXPLICIT and dt < search[LONGEST] < math.inf:
+        round_off *= (dt / search[LONGEST]) ** 2
+    allowed_v = tolerance * search[TRIAL_V] + round_off
     if ESTIMATES == 0 or tolerance == 0.0:
         return 0.0 * (size_x + size_v)  # not a number if something overflowed
     if not (allowed_x > 0.0 and allowed_v > 0.0):
@@ -278,6 +284,7 @@ def controlled(
     that is interrupted goes on to its end in pieces.
     """
     time = control[TIME]
+    search[LONGEST] = limit
     taken = 0
     coming = 0
     while taken < steps:

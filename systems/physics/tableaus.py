@@ -48,6 +48,7 @@ class Tableau:
         weights = [self._row(self.weights), *(self._row(error) for error in self.errors)]
         return {
             "STAGES": len(self.stages),
+            "EXPLICIT": not any(stage in row for stage, row in enumerate(self.stages)),
             "ESTIMATES": len(self.errors),
             "EXPONENT": 1.0 / self.estimate_order if self.errors else 0.0,
             "NODES": self.matrix.sum(axis=1),

@@ -103,12 +103,12 @@ def test_the_ball_on_the_truss_comes_to_rest_where_it_settles() -> None:
 
 
 def test_the_ball_on_the_truss_moves_alike_in_one_run_and_in_many() -> None:
-    """To within what the bounce that ends in contact leaves open: begun 1e-11 higher, it changes by 2e-4 m/s."""
+    """To within the error of first order of steps in contact, which end at other times: up to 2e-4 m/s."""
     whole, parts = Session.open("ball_on_truss"), Session.open("ball_on_truss")
     whole.run(time=1.0)
     for _ in range(10):
         parts.run(time=0.1)
-    assert whole.particles["ball"].velocity == pytest.approx(parts.particles["ball"].velocity, abs=5e-4)
+    assert whole.particles["ball"].velocity == pytest.approx(parts.particles["ball"].velocity, abs=2e-4)
 
 
 def test_a_ball_without_a_guide_rolls_off_its_node() -> None:
