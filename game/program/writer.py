@@ -391,7 +391,8 @@ class Writer:
     def _body_of(self, where: str) -> list[str]:
         function = ast.parse(_source_of(find(where, self.driver.name))).body[0]
         assert isinstance(function, ast.FunctionDef)
-        return ast.unparse(function.body[1:]).splitlines()  # type: ignore[arg-type]
+        told = ast.get_docstring(function) is not None
+        return ast.unparse(function.body[told:]).splitlines()  # type: ignore[arg-type]
 
     def _enter_loads(self) -> list[str]:
         """The work of varying loads, their mean force times the displacement of the step."""

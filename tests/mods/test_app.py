@@ -60,9 +60,16 @@ def test_a_command_gets_its_words_and_a_failing_one_ends_with_a_reason(
 def test_an_integrator_can_be_chosen(write_mod: Write) -> None:
     head = """
 from systems.physics.drivers import VelocityVerlet
+def begins(i, dt, displacement, velocity, force, resisting, predicted, *columns):
+    for d in range(2):
+        a = (force[i, d] + resisting[i, d] if RATES else force[i, d]) * particles_mobility[i, d]
+        if RATES:
+            predicted[i, d] = velocity[i, d] + dt * a
+        velocity[i, d] += 0.5 * dt * a
+        displacement[i, d] += dt * velocity[i, d]
 class Mine(VelocityVerlet):
-    '''Like Verlet's.'''
     name = "apple.mine"
+    begins = "apple:begins"
 """
     session = opened(write_mod, "app.integrator(Mine)", head)
     session.settings.integrator = "mine"
