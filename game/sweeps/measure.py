@@ -17,9 +17,12 @@ from game.sweeps.variation import SweepError
 from game.target import EVERY, PathError, locate
 
 _OF_THE_RUN = ("residual", "collisions")
+_ANYWAY = ("time", "load_factor")  # columns that every result has
 _TABLES = ("particles", "rods")
 _SECTIONS = (*_TABLES, "energy")
-_BETWEEN = re.compile(rf",(?=\s*(?:(?:{'|'.join(_SECTIONS)})\.|(?:{'|'.join(_OF_THE_RUN)})\s*(?:,|$)))")
+_BETWEEN = re.compile(
+    rf",(?=\s*(?:(?:{'|'.join(_SECTIONS)})\.|(?:{'|'.join((*_OF_THE_RUN, *_ANYWAY))})\s*(?:,|$)))"
+)
 _FORM = "write it like rods.CD.axial_force, rods.*.strain, particles.C.displacement.y or energy.elastic"
 
 
@@ -55,6 +58,8 @@ def read_measures(model: Model, texts: Iterable[str]) -> tuple[Measure, ...]:
 
 def _read(model: Model, path: str) -> list[Measure]:
     section, _, rest = path.partition(".")
+    if path in _ANYWAY:
+        return []
     if path in _OF_THE_RUN:
         return [Measure(path, (path,), path, "")]
     if section == "energy" and rest in ENERGIES:

@@ -399,3 +399,10 @@ def test_an_output_that_cannot_be_written(tmp_path: Path, capsys: pytest.Capture
     words = ["sweep", "isostatic", "--vary", f"{STIFFNESS}=1,2", "--measure", "residual", "--workers", "1"]
     assert main([*words, "--output", str(tmp_path / "results.csv")]) == 2
     assert "results.csv.journal cannot be written: Is a directory" in capsys.readouterr().err
+
+
+def test_what_every_result_has_may_be_asked_for() -> None:
+    found = sweep(MODEL, {STIFFNESS: [1e5]}, ["energy.elastic,time,load_factor,residual"], STATIC)
+    assert [measure.column for measure in found.plan.measures] == ["energy.elastic", "residual"]
+    with pytest.raises(SweepError, match="Nothing is measured"):
+        sweep(MODEL, {STIFFNESS: [1e5]}, ["time"], STATIC)
