@@ -20,20 +20,12 @@ TIGHTLY = 1e-10  # the same, where a tolerance of 1e-12 is asked for
 @given(trusses(full=True, damped=True), decimals(2.0, 40.0))
 def test_random_trusses_by_default_and_by_a_tight_tolerance(document: Document, turns: float) -> None:
     """Yielding, damped, dragged, supported and loaded ever differently, for some radians of the fastest motion."""
-    assume(_has_strengths(document))
     document = document | {"settings": {"collisions": False}}
     duration = turns / _fastest(document)
     expected, largest = follow(document, duration)
     assume(_shortest(document, expected) > SHORTEST)
     assert _error(document, duration, expected) <= WITHIN * largest
     assert _error(document, duration, expected, tolerance=1e-12) <= TIGHTLY * largest
-
-
-def _has_strengths(document: Document) -> bool:
-    """False where a rod yields from nothing on: at rest it is on no branch that the reference could follow."""
-    return all(
-        0.0 not in (rod.get("tensile_strength"), rod.get("compressive_strength")) for rod in document["rods"]
-    )
 
 
 def _fastest(document: Document) -> float:
@@ -64,7 +56,6 @@ def test_the_shown_error_of_verlet_is_within_a_factor_3_of_the_true_one(
     document: Document, turns: float, share: float
 ) -> None:
     """Where some ten steps or more lead to the end; after fewer, as long as is stable, it was up to 5 times."""
-    assume(_has_strengths(document))
     document = document | {"settings": {"collisions": False, "integrator": "velocity_verlet"}}
     duration = turns / _fastest(document)
     expected, largest = follow(document, duration)
