@@ -110,9 +110,9 @@ class Path:
         return self.force + t * self.change
 
     def start(self, displacement: Array, plastic_strain: Array) -> Point:
-        """The point at t = 0 in this state."""
-        response = self.structure.respond(displacement, plastic_strain)
-        return Point(displacement, plastic_strain, 0.0, response, 0.0)
+        """The point at t = 0 in this state; what is beyond a strength has yielded."""
+        yielded = self.structure.respond(displacement, plastic_strain).plastic_strain
+        return Point(displacement, yielded, 0.0, self.structure.respond(displacement, yielded), 0.0)
 
     def after(self, start: Point, displacement: Array, t: float) -> Point:
         """The point with these displacements and t, yielding from an earlier one."""

@@ -32,6 +32,7 @@ ROUGH = 1e-9  # of the largest force, unbalanced: worth a note
 UNBALANCED = 1e-6  # of the largest force: more is no equilibrium
 UNCHANGED = 1e-12  # of the load: a change of it that is round-off
 MOST_DISCS = 250  # without rods; more would take minutes
+HELD = 1e-3  # of the forces that hold a state: if no more differs from the load, it is what holds it
 UNSTRESSED = 1e-9  # of the largest force: what holds the present state counts as nothing
 
 
@@ -189,7 +190,7 @@ class _Settling:
         self.point = at_rest.start(start.displacement, start.plastic_strain)
         self.largest = float(np.abs(self.point.response.axial_force).max(initial=0.0))
         self.load = self._holding()
-        self.factor = self._held_factor() if start.displacement.any() else 0.0
+        self.factor = self._held_factor()
         self.slack = at_rest.branches(self.point.response).slack
 
     @property
@@ -204,12 +205,12 @@ class _Settling:
         return held if np.abs(held).max(initial=0.0) > UNSTRESSED * largest else self._nothing
 
     def _held_factor(self) -> float:
-        """How much of what load factors multiply holds the present state; 0 where accelerations act as well."""
+        """How much of what load factors multiply holds the present state; 0 where anything else does."""
         scaled = np.where(self.structure.unknown, self.external.scaled, 0.0)
         size = float((scaled * scaled).sum())
-        return (
-            float((self.load * scaled).sum()) / size if size > 0.0 and not self.external.steady.any() else 0.0
-        )
+        factor = float((self.load * scaled).sum()) / size if size > 0.0 else 0.0
+        other = np.abs(self.load - factor * scaled).max(initial=0.0)
+        return factor if other <= HELD * np.abs(self.load).max(initial=0.0) else 0.0
 
     def through(self, factors: Sequence[float]) -> Settlement:
         """The states at these load factors in turn, up to the first that is no equilibrium."""

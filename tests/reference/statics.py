@@ -142,6 +142,7 @@ class _Path:
         self.u = np.array([particle.displacement for particle in self.elements.particles]).ravel()
         self.plastic_strain = [rod.plastic_strain for rod in self.elements.rods]
         self.largest_move = LARGEST_MOVE * min(rod.rest_length for rod in self.elements.rods)
+        self.plastic_strain = self.respond(self.u).plastic_strain  # what begins beyond its strength has yielded
         holding = np.where(self.free, self.respond(self.u).internal, 0.0)
         scaled = _scaled_forces(self.elements).ravel()
         self.patterns = np.array([scaled, _acceleration_forces(self.elements).ravel(), holding])

@@ -86,6 +86,28 @@ def test_elastic_trusses_against_an_independent_newton_method(seed: int, redunda
     agree(found.final.reaction, expected["reaction"])
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_trusses_that_yield_before_they_are_loaded(seed: int) -> None:
+    """What misfits or hangs on a moved support by more than its strength bears yields at the load factor 0.
+
+    Settling lost its way there, passed an unstable position that was none, and told of load factors far from it.
+    """
+    document = trusses.random_truss(seed, nodes=6, redundant=4, load=20.0)
+    document["particles"][0]["displacement"] = [0.0, 0.01]
+    for number, each in enumerate(document["rods"]):
+        each |= {"tensile_strength": 150.0, "compressive_strength": 200.0}
+        if number % 2:
+            each["temperature_change"] = 50.0 * (-1.0) ** (number // 2)
+    found = settle(models.load(document), [0.0, 1.0])
+    assert found.status == "equilibrium"
+    assert {event.kind for event in found.events} <= {"yield", "plastic mechanism"}
+    assert {event.load_factor for event in found.states[0].events} <= {0.0}
+    assert all(0.0 <= event.load_factor <= 1.0 for event in found.events)
+    for state, expected in zip(found.states, statics.solve(document, [0.0, 1.0]), strict=True):
+        agree(state.axial_force, expected["axial_force"])
+        agree(state.plastic_strain, expected["plastic_strain"])
+
+
 def sawtooth(rods: int, span: tuple[float, float], stiffness: float, weight: float) -> Document:
     """A chain of rods of length 1 from (0, 0) to `span`, laid to one side and the other of the chord."""
     chord = np.array(span) / rods
