@@ -15,3 +15,4 @@ SYSTEMS: list[Callable[[], System]] = []  # frame systems, laws and commits; mad
 SCENES: list[Callable[[], Scene]] = []  # made anew for every session
 PANELS: list[Callable[[Session], Sequence[Readout]]] = []  # what stands beside the model now
 COMMANDS: dict[str, Callable[[list[str]], int]] = {}  # of the command line, Pinjoint's own (game/cli) too
+ABOUT: dict[str, str] = {}  # what a command does, for --help

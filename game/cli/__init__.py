@@ -15,7 +15,7 @@ from game.mods import ModError
 from game.mods.command import load_as_asked
 from game.mods.command import run as run_mods
 from game.overrides import OverrideError
-from game.registry import COMMANDS
+from game.registry import ABOUT, COMMANDS
 from game.reports.report import AnalysisError
 from game.reports.results import ResultError
 from game.scripts.script import ScriptError
@@ -83,4 +83,17 @@ COMMANDS |= {
     "force-method": force_method.command,
     "mods": _mods,
     "sweep": sweep.command,
+}
+
+ABOUT |= {
+    "open": "show a model in the window, as without a command",
+    "run": "compute a model without a window, and print what came of it",
+    "verify": "simulation beside linear and exact theory; influence lines",
+    "curve": "load–displacement curve, through limit points",
+    "force-method": "hyperstatic forces by the force method",
+    "sweep": "compute many variants of a model",
+    "render": "draw a model, or its run, without a display",
+    "play": "play a scripted session or a lesson",
+    "mods": "list, check and begin extensions",
+    "bench": "measure speed and accuracy",
 }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import textwrap
+from argparse import RawDescriptionHelpFormatter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -13,7 +15,7 @@ from game.arguments import Parser, UsageError, writable
 from game.cli.options import ANSWERED, NO_DISPLAY
 from game.desk import ModelFile, file_of
 from game.mods.safety import in_use
-from game.registry import COMMANDS
+from game.registry import ABOUT, COMMANDS
 from game.scripts import script
 from game.version import __version__
 from systems.render.theme import theme_names
@@ -26,6 +28,23 @@ def _refuse_misspelt(word: str) -> None:
         raise UsageError(f"There is no command '{word}'; did you mean '{near}'?")
 
 
+def _epilog() -> str:
+    """The commands, the options that all have, and the bundled models."""
+    width = max(map(len, COMMANDS))
+    paragraphs = [
+        "Every command takes --mods DIR, for mods in a folder, --no-mods, to leave yours out, and --cores N, to use"
+        " no more.",
+        f"Bundled models: {', '.join(models.bundled())}",
+    ]
+    return "\n".join(
+        [
+            "commands (each with --help):",
+            *(f"  {name.ljust(width)}  {ABOUT.get(name, '')}".rstrip() for name in sorted(COMMANDS)),
+            *(f"\n{textwrap.fill(paragraph, 78)}" for paragraph in paragraphs),
+        ]
+    )
+
+
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     if words:
@@ -33,9 +52,8 @@ def command(words: Sequence[str]) -> int:
     parser = Parser(
         prog="pinjoint",
         description="A laboratory for particles and pin-jointed structures.",
-        epilog=f"commands: {', '.join(sorted(COMMANDS))} (each with --help). Every command takes --mods DIR, for mods"
-        " in a folder, --no-mods, to leave yours out, and --cores N, to use no more. Bundled models: "
-        + ", ".join(models.bundled()),
+        epilog=_epilog(),
+        formatter_class=RawDescriptionHelpFormatter,
     )
     parser.add_argument("model", nargs="?", help="a model file, or the name of a bundled model")
     parser.add_argument(

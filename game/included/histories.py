@@ -157,4 +157,4 @@ def plugin(app: App) -> None:
     """Register them."""
     for kind in (SINE, PULSE, TABLE, RECORD):
         app.history(kind)
-    app.command("shake", run)
+    app.command("shake", run, "give a model the loads of a recorded base acceleration")

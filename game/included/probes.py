@@ -267,7 +267,7 @@ def plugin(app: App) -> None:
     """Register the system, its keys, the panels and the command."""
     app.system(Sampling)
     app.panel(panels)
-    app.command("plot", run)
+    app.command("plot", run, "write or draw what a run does, against time or another quantity")
     live = ("simulation", "pause")
     app.action("probes.plot", key="o", scenes=live, title="plot of the selection")(plot_next)
     app.action("probes.save", key="ctrl+e", scenes=live, title="plots as CSV and PNG")(save)

@@ -211,7 +211,7 @@ class App:
             )
 
     def command(self, name: str, run: Callable[[list[str]], int], about: str = "") -> None:
-        """Add `pinjoint <name> …`: `run` gets the words after it and returns the exit status.
+        """Add `pinjoint <name> …`: `run` gets the words after it and returns the exit status; --help says what about.
 
         It may raise UsageError, ModelError or FieldError, whose sentence is shown, for what a person did wrong.
         """
@@ -221,7 +221,8 @@ class App:
         commands[name] = lambda words: int(
             call(f"the command '{name}'", run, list(words), otherwise=BAD_INPUT, mistakes=MISTAKES)
         )
-        self._undo.append(lambda: commands.pop(name))
+        registry.ABOUT[name] = about
+        self._undo.append(lambda: (commands.pop(name), registry.ABOUT.pop(name)))
 
     # --- what is seen ------------------------------------------------------------------------------------
 

@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from game.cli import main
+from game.registry import COMMANDS
 
 ROOT = Path(__file__).parents[2]
 
@@ -126,6 +127,18 @@ def test_a_reader_that_has_seen_enough_is_no_error() -> None:
     )
     assert found.returncode in (0, 1)
     assert found.stderr == ""
+
+
+def test_help_says_what_each_command_does(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    lines = capsys.readouterr().out.splitlines()
+    for name in COMMANDS:
+        assert any(re.fullmatch(rf"  {name} +\w.+", line) for line in lines), name
+    assert max(map(len, lines)) <= 80
 
 
 @pytest.mark.parametrize("command", ["run isostatic --static", "mods list"])
