@@ -19,7 +19,8 @@ class Paths(Mapping[str, Any]):
 
     motion: one row per particle, its columns those of systems.collision.arrays.MOVING. contacts: a particle
     and one that it touches, in the order in which they are looked at, shape (k, 2). forces: in them, N.
-    crowd: how far a pile is with its steps, as Discs.paths has it.
+    crowd: how far a pile is with its steps, as Discs.paths has it; of particles that do not fly free, the longest step
+    (s) to begin with, if that is short.
 
     As a mapping it is what a model file holds.
     """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -9,16 +10,22 @@ import numpy as np
 from components.model import Model
 from components.paths import Paths
 from components.snapshot import Snapshot
-from game.collisions.strikes import NO_CROWD, NO_MOTION
+from game.collisions.encounter_kernels import kernels
+from game.collisions.strikes import CROWD, CROWD_HEIGHT, NO_CROWD, NO_MOTION
+from game.collisions.vicinity import Vicinity
 from game.program.program import Program
 from systems.base import StopReason
-from systems.collision.complementarity import complementary
 from systems.collision.system import Support, contacts_of, support_forces
-from systems.collision.vicinity import Vicinity
 from systems.near import Floats, Rows
 
 HELD = 1e-13  # of the smaller radius, within which particles in contact are kept
-MOST_TRIES = 60  # of the forces in a step
+GIVES = 2e-11  # of how far forces move what they push: at least this much of it contacts may be off; see FIRM
+HARDLY = (
+    1e-11  # of the same, after a few tries: some gaps follow forces hardly at all, as of a row between walls
+)
+FEW, MOST_TRIES = 3, 8  # tries of the forces in a step
+CUT = 0.25  # of a step, which is taken instead where its forces are not found
+MOST_CUTS = 30  # until forces no longer matter
 
 
 class Contacts:
@@ -35,49 +42,98 @@ class Contacts:
         take: Callable[[float | None], StopReason],
         until: float | None,
     ) -> StopReason:
-        """One step from a moment before, taken by `take`: a whole one, or up to a time (s).
+        """One step from a moment before, taken by `take`: a whole one, or up to a time (s); or less of it.
 
-        Forces F ≥ 0, constant during the step, are sought by Broyden's method, which begins with the compliance
-        h²/2 Nᵀ M⁻¹ N; contacts whose force is 0 may open. All tries end at the same time: where the error is
-        controlled, other forces would choose another step, and gaps would jump with them.
+        Forces F ≥ 0, constant during the step and along the lines of centres at its start, are such that what they
+        push apart is no farther apart at the end, and nothing is deeper in anything else. As distances are convex,
+        such forces do no work, whatever they are: of contacts that depend on one another, many are possible. A step
+        in which none are found is cut, and the next ones are short at first.
         """
         contacts = contacts_of(self.model)
         if contacts is None:
             _push(program, self.model, 0.0)
             return take(until)
-        pairs, forces = contacts.contacts, contacts.forces
-        start = before.columns["particles.displacement"]
-        _, normal = self._near.gaps(pairs, start)
-        size = self._near.size[pairs].min(axis=1)
-        held = HELD * size
-        slope: Floats | None = None
+        clock, start = self.model.clock, float(before.columns["clock.time"][0])
+        longest = float(contacts.crowd[0]) if len(contacts.crowd) else math.inf
+        if longest < clock.step_size:
+            until = start + longest if until is None else min(until, start + longest)
+        for _ in range(MOST_CUTS):
+            reason, found = self._try(program, before, take, until, contacts)
+            if found:
+                break
+            longest = CUT * (clock.time - start)
+            until = start + longest
+            before.restore(self.model)
+        if clock.time - start > 0.5 * longest:
+            longest *= 2.0
+        if longest < clock.step_size and clock.paths is not None:
+            paths = Paths(NO_MOTION, clock.paths.contacts, clock.paths.forces, np.array([longest]))
+            self.model.writable("clock.paths")[0] = paths
+        return reason
+
+    def _try(
+        self,
+        program: Program,
+        before: Snapshot,
+        take: Callable[[float | None], StopReason],
+        until: float | None,
+        contacts: Paths,
+    ) -> tuple[StopReason, bool]:
+        """Such a step, and True if its forces were found.
+
+        They are sought by Newton's method with the compliance h²/2 N₁ᵀ M⁻¹ N₀ of free particles, N₀ and N₁ being the
+        lines of centres at the start and at the end, and what Broyden's method learns of the rods; with N₀ alone, for
+        which there always are forces, once those have no answer. All tries end at the same time: where the error is
+        controlled, other forces would choose another step, and gaps jump with it.
+        """
+        pairs, forces, near = contacts.contacts, contacts.forces, self._near
+        least, normal = near.gaps(pairs, before.columns["particles.displacement"])
+        least = np.minimum(least, 0.0)
+        size = near.size[pairs].min(axis=1)
+        slope, learnt = np.zeros((2, len(pairs), len(pairs)))
         tried: tuple[Floats, Floats] | None = None
+        is_regular = True
         for turn in range(MOST_TRIES):
             if turn > 0:
                 before.restore(self.model)
             self._note_energy(float((forces * size).sum()))
             _push(program, self.model, support_forces(normal, pairs, forces, self.model.particles.count))
             reason = take(until)
-            h = self.model.clock.time - before.columns["clock.time"][0]
+            h = float(self.model.clock.time - before.columns["clock.time"][0])
             if h == 0.0 or reason is StopReason.DIVERGED:
-                return reason
+                return reason, turn == 0  # the fault is not that of forces that were tried
             if program.driver.controlled:
                 until = self.model.clock.time
-            gap, _ = self._near.gaps(pairs, self.model.particles.displacement)
-            if not (np.where(forces > 0.0, np.abs(gap), -gap) > held).any():
-                break
-            if slope is None:
-                slope = 0.5 * h * h * self._compliance(pairs, normal)
-            elif tried is not None:
-                slope = _improved(slope, forces - tried[0], gap - tried[1])
+            gap, last = near.gaps(pairs, near.displacement)
+            gap -= least
+            allowed = (HELD if turn < FEW else HARDLY) * size + GIVES * (np.abs(slope) @ forces)
+            if (np.where(forces > 0.0, np.abs(gap), -gap) <= allowed).all():
+                self._note(pairs, forces, gap, gap + h * near.rates(pairs, last), size)
+                return reason, True
+            if tried is not None:
+                moved = forces - tried[0]
+                missed = gap - tried[1] - slope @ moved
+                missed[np.abs(missed) <= allowed] = 0.0
+                learnt += np.outer(missed, moved) / float(moved @ moved)
+            free = 0.5 * h * h
             tried = forces, gap
-            forces = complementary(slope, gap, forces)
+            if is_regular:
+                slope = free * near.compliance(pairs, last, normal) + learnt
+                forces, is_regular = complementary(slope, gap, tried[0])
+            if not is_regular:
+                slope = free * near.compliance(pairs, normal, normal)
+                forces, _ = complementary(slope, gap, tried[0])
             if np.array_equal(forces, tried[0]):
                 break
-        lasts = (forces > 0.0) | (gap <= held)
+        return reason, False
+
+    def _note(self, pairs: Rows, forces: Floats, gap: Floats, later: Floats, size: Floats) -> None:
+        """Which contacts last: those that push or touch; in a crowd also those that are hardly open now and later."""
+        lasts = (forces > 0.0) | (gap <= HELD * size)
+        if len(pairs) >= CROWD:
+            lasts |= np.maximum(gap, later) <= CROWD_HEIGHT * size
         paths = Paths(NO_MOTION, pairs[lasts], forces[lasts], NO_CROWD)
         self.model.writable("clock.paths")[0] = paths
-        return reason
 
     def _note_energy(self, energy: float) -> None:
         """Energies (J) are small or large beside what forces in contact would do along the radii of what they hold.
@@ -87,16 +143,6 @@ class Contacts:
         if energy > self.model.clock.energy_scale:
             self.model.writable("clock.energy_scale")[0] = energy
 
-    def _compliance(self, pairs: Rows, normal: Floats) -> Floats:
-        """Nᵀ M⁻¹ N: how fast a unit force in one contact opens another, 1/kg."""
-        columns = np.zeros((len(pairs), len(self._near.position), 2))
-        rows = np.arange(len(pairs))
-        columns[rows, pairs[:, 1]] += normal
-        columns[rows, pairs[:, 0]] -= normal
-        flat = (columns * np.sqrt(self._near.weight)).reshape(len(pairs), -1)
-        product: Floats = flat @ flat.T
-        return product
-
 
 def _push(program: Program, model: Model, force: Floats | float) -> None:
     """Push the particles by these forces (kN) in the next step."""
@@ -105,7 +151,13 @@ def _push(program: Program, model: Model, force: Floats | float) -> None:
             system.push(model, force)
 
 
-def _improved(slope: Floats, moved: Floats, changed: Floats) -> Floats:
-    """Broyden's update of how gaps follow forces."""
-    updated: Floats = slope + np.outer(changed - slope @ moved, moved) / float(moved @ moved)
-    return updated
+def complementary(slope: Floats, gap: Floats, forces: Floats) -> tuple[Floats, bool]:
+    """Forces that leave gaps ≥ 0, where gaps follow forces by `slope`; False if they are none.
+
+    See systems/collision/kernels/complementarity.py.
+    """
+    count = len(gap)
+    found, scale, offset = np.empty((3, count))
+    sides, wrong = np.empty((2, count), dtype=np.int64)
+    room = found, np.empty((count, count + 1)), scale, offset, sides, wrong
+    return found, bool(kernels().forces(slope, gap, forces, *room))

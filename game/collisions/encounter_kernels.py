@@ -1,4 +1,4 @@
-"""The compiled part of encounters: where paths in a step first meet, the joint impact of a group, overlaps."""
+"""The compiled part of encounters: gaps, where paths in a step first meet, joint impacts, forces, overlaps."""
 
 from __future__ import annotations
 
@@ -18,8 +18,33 @@ entry = njit(error_model="numpy", _nrt=False, cache=True)
 
 
 @entry
-def meeting(h, pairs, kinds, position, before, velocity, after, radius, span):
-    return first_meeting(h, pairs, kinds, position, before, velocity, after, radius, span)
+def gaps(pairs, position, displacement, radius, span, gap, normal):
+    measure_gaps(pairs, position, displacement, radius, span, gap, normal)
+
+
+@entry
+def kinds(pairs, contacts, node, position, displacement, radius, span, kinds):
+    tell_kinds(pairs, contacts, node, position, displacement, radius, span, kinds)
+
+
+@entry
+def sway(h, before, velocity, after, later, listed, margin, sway):
+    return bend(h, before, velocity, after, later, listed, margin, sway)
+
+
+@entry
+def meeting(h, pairs, kinds, position, before, velocity, after, radius, span, size, sway):
+    return first_meeting(h, pairs, kinds, position, before, velocity, after, radius, span, size, sway)
+
+
+@entry
+def compliance(pairs, normal, pushed, weight, slope):
+    yield_to_forces(pairs, normal, pushed, weight, slope)
+
+
+@entry
+def forces(slope, gap, forces, found, matrix, scale, offset, sides, wrong):
+    return complementary(slope, gap, forces, found, matrix, scale, offset, sides, wrong)
 
 
 @entry
@@ -34,10 +59,21 @@ def part(first, second, position, displacement, radius, inverse_mass, span, slac
 
 
 def _kernels() -> dict[str, Callable[..., Any]]:
-    from systems.collision.kernels.encounter import first_meeting, strike
+    from systems.collision.kernels import encounter, pairs
+    from systems.collision.kernels.complementarity import complementary
     from systems.collision.kernels.overlap import separate
 
-    return {"first_meeting": first_meeting, "strike": strike, "separate": separate}
+    parts = (
+        pairs.measure_gaps,
+        pairs.tell_kinds,
+        pairs.yield_to_forces,
+        encounter.bend,
+        encounter.first_meeting,
+        encounter.strike,
+        complementary,
+        separate,
+    )
+    return {part.py_func.__name__: part for part in parts}
 
 
 def has_encounters() -> bool:

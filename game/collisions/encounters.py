@@ -18,19 +18,18 @@ from components.particle import Particle
 from components.paths import Paths
 from components.snapshot import Snapshot
 from game.collisions.contacts import Contacts
-from game.collisions.encounter_kernels import kernels, note_encounters
+from game.collisions.encounter_kernels import note_encounters
 from game.collisions.flight import part_overlaps
 from game.collisions.impacts import Impacts
 from game.collisions.strikes import TOUCH, Strikes
+from game.collisions.vicinity import Vicinity
 from game.program.program import Program
 from systems.base import StopReason
+from systems.collision.arrays import WATCHED
 from systems.collision.system import contacts_of
-from systems.collision.vicinity import WATCHED, Vicinity
 
 FEW = 4  # steps; a shorter time is not worth letting pass unwatched
 SOME = 16  # steps that pass unwatched at once, at most, where others than ours decide what pushes particles
-DOUBT = 1e-3  # of a radius, by which a path may differ from a parabola where particles meet
-SWAY = 0.15  # times h |Δv|: by how much a cubic path differs from the parabola through its ends (4/27)
 MOST_TRIES = 60  # of the length of a step that ends at an impact
 
 Take = Callable[[float | None], StopReason]  # takes a step: a whole one, or up to a time (s)
@@ -112,13 +111,13 @@ class Encounters:
             return self._contacts.step(program, before, once, target)
 
         reason = take(until if landing else None)
-        while not self._is_nearly_parabolic(before, held):
+        while math.isnan(after := self._near.meeting(before, held)):
             half = 0.5 * (start + clock.time)
             before.restore(self.model)
             reason = take(half)
         if clock.time == start or reason is StopReason.DIVERGED:
             return clock.steps - steps, reason, program
-        time, resting, tried = self._meeting(before, held), None, clock.time
+        time, resting, tried = start + after, None, clock.time
         if time == start:  # what is pressed together from rest is told from the step that was tried
             resting = self._strikes.rest_speed(before)
             before.restore(self.model)
@@ -133,52 +132,17 @@ class Encounters:
             program = self._rebind()
         return max(clock.steps - steps, 1), reason, program
 
-    # --- where paths meet ----------------------------------------------------------------------------
-
-    def _is_nearly_parabolic(self, before: Snapshot, held: Paths | None) -> bool:
-        """False if a pair comes so near that how its paths differ from parabolas could hide that it meets."""
-        near, particles = self._near, self.model.particles
-        old, speed = before.columns["particles.displacement"], before.columns["particles.velocity"]
-        h = self.model.clock.time - before.columns["clock.time"][0]
-        if h == 0.0:
-            return True
-        moved = particles.displacement - old
-        sway = SWAY * np.hypot(*(h * (particles.velocity + speed) - 2.0 * moved).T)
-        turn = h * np.hypot(*(particles.velocity - speed).T).max(initial=0.0)
-        near.cover(old, float(turn + 4.0 * sway.max(initial=0.0)))
-        doubt = near.everywhere(sway)[near.pairs].sum(axis=1)
-        first, _ = near.gaps(near.pairs, old)
-        last, _ = near.gaps(near.pairs, particles.displacement)
-        unsure = (np.minimum(first, last) < 2.0 * doubt) & (near.kinds(old, held) == WATCHED)
-        return not (unsure & (doubt > DOUBT * near.size[near.pairs].min(axis=1))).any()
-
-    def _meeting(self, before: Snapshot, held: Paths | None) -> float:
-        """When a pair not held in contact first met in the step just taken (s); infinite if none did."""
-        near, particles, start = self._near, self.model.particles, before.columns["clock.time"][0]
-        old, speed = before.columns["particles.displacement"], before.columns["particles.velocity"]
-        s = kernels().meeting(
-            self.model.clock.time - start,
-            near.pairs,
-            near.kinds(old, held),
-            near.position,
-            near.everywhere(old),
-            near.everywhere(speed),
-            near.everywhere(particles.displacement.copy()),
-            near.radius,
-            near.span,
-        )
-        return float(start + s)
-
     def _end_at_meeting(self, before: Snapshot, held: Paths | None, take: Take, time: float) -> StopReason:
         """Take the step again so that it ends where the first pair meets: Newton's method on the gap."""
-        near, particles, start = self._near, self.model.particles, before.columns["clock.time"][0]
-        reason = StopReason.DONE
+        near, start, reason = self._near, float(before.columns["clock.time"][0]), StopReason.DONE
         for _ in range(MOST_TRIES):
             before.restore(self.model)
             reason = take(time)
+            if self.model.clock.time != time:
+                break  # contacts that last let it pass only a part of the step
             pairs = near.pairs[near.kinds(before.columns["particles.displacement"], held) == WATCHED]
-            gap, normal = near.gaps(pairs, particles.displacement)
-            velocity = near.everywhere(particles.velocity)
+            gap, normal = near.gaps(pairs, near.displacement)
+            velocity = near.everywhere(near.velocity)
             relative = velocity[pairs[:, 1]] - velocity[pairs[:, 0]]
             rate = (normal * relative).sum(axis=1)
             with np.errstate(over="ignore"):  # far from each other, nearly at rest: late by for ever
@@ -202,7 +166,7 @@ def load_encounters() -> None:
     before = Snapshot.take(model)
     encounters._near.look_up()
     encounters._near.clear_time()
-    encounters._meeting(before, None)
+    encounters._near.meeting(before, None)
     encounters._strikes.happen(before)
     note_encounters()
 

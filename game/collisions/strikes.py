@@ -11,8 +11,9 @@ from components.paths import Paths
 from components.snapshot import Snapshot
 from game.collisions.encounter_kernels import kernels
 from game.collisions.impacts import Impacts
+from game.collisions.vicinity import Vicinity
+from systems.collision.arrays import LASTING, LEFT_ALONE, WATCHED
 from systems.collision.system import REST_HEIGHT, contacts_of
-from systems.collision.vicinity import LASTING, LEFT_ALONE, WATCHED, Vicinity
 from systems.near import Floats, Rows
 
 TOUCH = 1e-12  # of the reach of two particles: nearer than this they touch
@@ -36,10 +37,10 @@ class Strikes:
         resting: speeds below which pairs stay in contact, if not those that this step tells.
         """
         near, particles = self._near, self.model.particles
-        gap, normal = near.gaps(near.pairs, particles.displacement)
+        gap, normal = near.gaps(near.pairs, near.displacement)
         kinds = near.kinds(before.columns["particles.displacement"], contacts_of(self.model))
         touching = np.flatnonzero((kinds != LEFT_ALONE) & (gap <= 4.0 * TOUCH * near.reach(near.pairs)))
-        rate = self._rates(near.pairs, normal)
+        rate = self._near.rates(near.pairs, normal)
         noise = 1e-14 * np.hypot(*particles.velocity.T).max(initial=0.0)
         if not (rate[touching] < -noise).any() and not (kinds[touching] == WATCHED).any():
             return False
@@ -57,12 +58,6 @@ class Strikes:
         fixed = pairs[:, 1] >= self.model.particles.count
         numbers = len(self._near.position) + np.arange(len(pairs))
         return np.column_stack([pairs[:, 0], np.where(fixed, numbers, pairs[:, 1])])
-
-    def _rates(self, pairs: Rows, normal: Floats) -> Floats:
-        """Speeds (m/s) at which pairs part along their lines of centres."""
-        velocity = self._near.everywhere(self.model.particles.velocity)
-        rates: Floats = (normal * (velocity[pairs[:, 1]] - velocity[pairs[:, 0]])).sum(axis=1)
-        return rates
 
     def rest_speed(self, before: Snapshot) -> Floats:
         """Speed of approach below which pairs stay in contact: √(2 a h), a being the larger acceleration."""
@@ -98,7 +93,7 @@ class Strikes:
         moves = members < len(velocity)
         velocity[members[moves]] = group.motion[moves]
         impulse = group.contacts[:count, IMPULSE]
-        loss = -0.5 * float((impulse * (rate[chosen] + self._rates(pairs, normal[chosen]))).sum())
+        loss = -0.5 * float((impulse * (rate[chosen] + self._near.rates(pairs, normal[chosen]))).sum())
         clock = self.model.clock
         self.model.writable("clock.dissipated_impact")[0] = clock.dissipated_impact + loss
         if fast.any() and impulse.any():
@@ -115,15 +110,16 @@ class Strikes:
 
     def _note_contacts(self, pairs: Rows, normal: Floats, slow: Floats) -> bool:
         """Pairs that touch and part no faster than at rest are in contact from now on."""
-        new = pairs[(self._rates(pairs, normal) <= slow) & (slow > 0.0)]
+        new = pairs[(self._near.rates(pairs, normal) <= slow) & (slow > 0.0)]
         if len(new) == 0:
             return False
         known = contacts_of(self.model)
-        contacts, forces = new, np.zeros(len(new))
+        contacts, forces, crowd = new, np.zeros(len(new)), NO_CROWD
         if known is not None:
             contacts = np.concatenate([known.contacts, contacts])
             forces = np.concatenate([known.forces, forces])
-        self.model.writable("clock.paths")[0] = Paths(NO_MOTION, contacts, forces, NO_CROWD)
+            crowd = known.crowd
+        self.model.writable("clock.paths")[0] = Paths(NO_MOTION, contacts, forces, crowd)
         return True
 
 

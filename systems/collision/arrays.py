@@ -38,6 +38,11 @@ SHARED_START, SHARED_END = 1.0, 2.0
 MOVING = (UX, UY, VX, VY, AX, AY, EPOCH, STEP, NOISE)  # what time changes, as components/paths.py has it
 
 
+# Kinds of pairs of which forces of others drive one, at the start of a step.
+WATCHED, LEFT_ALONE, LASTING = 0, 1, 2
+OVERLAP = 1e-9  # of the reach of two nodes; more at the start of a step is from before they ever parted
+
+
 class Grid(NamedTuple):
     """Boxes around the paths of all discs, and a hash grid of them; see kernels/grid.py.
 

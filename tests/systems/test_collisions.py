@@ -9,8 +9,8 @@ import pytest
 
 from game import Session
 from game.cli import main
+from game.collisions.vicinity import Vicinity
 from game.models import document
-from systems.collision.vicinity import Vicinity
 from systems.edit.pull import hand_on
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
@@ -279,9 +279,9 @@ def sinking(session: Session) -> float:
     """By how much of a radius discs are in one another at most."""
     near = Vicinity(session.model)
     near.look_up()
-    displacement = session.model.particles.displacement
-    near.cover(displacement, 0.0)
-    return float((-near.gaps(near.pairs, displacement)[0] / near.size[near.pairs].min(axis=1)).max(initial=0.0))
+    near._list(near._least, near.displacement)
+    gap, _ = near.gaps(near.pairs, near.displacement)
+    return float((-gap / near.size[near.pairs].min(axis=1)).max(initial=0.0))
 
 
 def test_a_hand_pulls_a_disc_into_others_on_exact_paths() -> None:

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from game import Session
+from game.collisions import vicinity
 from game.collisions.encounters import Encounters
-from systems.collision import vicinity
-from systems.collision.vicinity import Vicinity
+from game.collisions.vicinity import Vicinity
 from systems.near import FEW, near_pairs
 from tests.benchmarks.models import lattice
 from tests.systems.test_encounters import truss
@@ -106,7 +106,7 @@ def test_before_its_time_nothing_meets(seed: int) -> None:
     pairs = np.array([p for p in every if p not in joined and mobile[list(p)].any()])
     for _ in range(20):
         session.run(time=clear / 20)
-        gap, _ = near.gaps(pairs, session.model.particles.displacement)
+        gap, _ = near.gaps(pairs, near.displacement)
         assert gap.min() > 0.0
         assert not near.outran
 

@@ -151,6 +151,28 @@ def test_galperin_counts_the_digits_of_pi(power: int) -> None:
     )
 
 
+@pytest.mark.parametrize("power", range(1, 5))
+def test_thousands_of_reflections_at_one_instant_lose_nothing(power: int) -> None:
+    """Galperin's masses, touching: all contacts happen at once, and the heavy one is sent back as in the plane."""
+    scene = line([0, 0.1, 0.2], [0, 0, -1], [0, 1, 100.0**power])
+    discs, _ = fly(scene, 0.01)
+    count = closed_forms.galperin_contacts(power)
+    assert kinetic_energy(velocities(discs), scene) == pytest.approx(100.0**power / 2, rel=8 * count * EPSILON)
+    small, heavy = velocities(discs)[1:, 0]
+    assert 0.0 <= small <= heavy
+
+
+@pytest.mark.parametrize("restitution", [0.5, 1.0])
+def test_a_row_that_fits_exactly_between_two_held_discs_stops(restitution: float) -> None:
+    """Nothing can open its contacts: reflected, it would bounce for ever at one instant."""
+    places = 0.1 * np.arange(7)
+    discs, impacts = fly(
+        line(places.tolist(), [0, 1, 0, -2, 0, 3, 0], [0, 1, 1, 1, 1, 1, 0]), 0.5, restitution=restitution
+    )
+    assert np.abs(velocities(discs)).max() <= 1e-12
+    assert impacts.loss.sum() == pytest.approx(0.5 * (1 + 4 + 9), rel=1e-12)
+
+
 @pytest.mark.parametrize("gap", [0.0, 1e-6])
 @pytest.mark.parametrize("struck", [1, 2, 3, 4])
 def test_cradle(struck: int, gap: float) -> None:

@@ -7,11 +7,12 @@ Restitution e blends this with the plastic answer, the projection onto all conta
 v = e v_elastic + (1 − e) v_plastic. For a single contact it is Newton's law.
 """
 
-from systems.collision.arrays import ACTIVE, GIVEN, IMPULSE, OPENING
+from systems.collision.arrays import ACTIVE, BIAS, GIVEN, IMPULSE, OPENING
 from systems.collision.kernels import compiled
 from systems.collision.kernels.projection import begin, copy_motion, opening_rate, project, push_apart
 
-MOST_REFLECTIONS = 1000000  # in one impact; after that the rest of it is taken as plastic
+MANY_REFLECTIONS = 256  # in one impact, after which to look whether there ever is an end to them
+MOST_REFLECTIONS = 1000000  # after these, or where there is none, the rest of it is taken as plastic
 
 
 @compiled
@@ -49,7 +50,9 @@ def _respond_alone(restitution, group):
 def _reflect(members, count, group):
     """The elastic impact."""
     contacts, motion, start = group.contacts, group.motion, group.start
-    for _ in range(MOST_REFLECTIONS):
+    for turn in range(MOST_REFLECTIONS):
+        if turn == MANY_REFLECTIONS and _is_jammed(members, count, group):
+            break
         approaching = 0
         for c in range(count):
             contacts[c, GIVEN] = 0.0
@@ -69,6 +72,34 @@ def _reflect(members, count, group):
     _make_plastic(members, count, group)
     for c in range(count):
         contacts[c, IMPULSE] += contacts[c, GIVEN]
+
+
+@compiled
+def _is_jammed(members, count, group):
+    """True if no motion opens all contacts that pushed so far: some of them will approach for ever.
+
+    Such are those of a row of discs between two walls. (Gordan's alternative: impulses that cancel each other
+    everywhere.) The least motion that opens all at the same speed is sought as a projection.
+    """
+    speed, active = 0.0, 0
+    for m in range(members):
+        speed = max(speed, abs(group.motion[m, 0]), abs(group.motion[m, 1]))
+    copy_motion(group.motion, group.other, members)
+    for m in range(members):
+        group.motion[m, 0], group.motion[m, 1] = 0.0, 0.0
+    for c in range(count):
+        if group.contacts[c, IMPULSE] > 0.0:
+            group.contacts[c, BIAS], group.contacts[c, GIVEN] = -speed, 0.0
+            group.marks[ACTIVE, active] = c
+            active += 1
+    project(members, active, 0.0, group)
+    jammed = False
+    for k in range(active):
+        c = group.marks[ACTIVE, k]
+        jammed = jammed or opening_rate(c, group.motion, group) < -0.5 * speed
+        group.contacts[c, BIAS] = 0.0
+    copy_motion(group.other, group.motion, members)
+    return jammed
 
 
 @compiled

@@ -13,21 +13,21 @@ from components.model import Model
 from components.obstacles import obstacles
 from components.paths import Paths
 from components.rod import nodes
+from components.snapshot import Snapshot
+from game.collisions.encounter_kernels import kernels
+from systems.collision.arrays import LEFT_ALONE
 from systems.collision.system import contacts_of
 from systems.islands import islands
-from systems.near import Floats, Rows, near_pairs, nearest
+from systems.near import Floats, Rows, near_pairs
 
 FAR = 0.5  # of its radius, within which of a particle others are listed at least
-OVERLAP = 1e-9  # of the reach of two nodes; more at the start of a step is from before they ever parted
 LEAST = 1e-300  # m/s; no motion is that slow
+NO_PAIRS = np.zeros((0, 2), dtype=np.int64)
 
 
 def _any_force() -> np.errstate:
     """Forces of mods and people may be too large to compute with; others say so."""
     return np.errstate(over="ignore", invalid="ignore")
-
-
-WATCHED, LEFT_ALONE, LASTING = 0, 1, 2  # kinds of pairs
 
 
 class Vicinity:
@@ -69,6 +69,16 @@ class Vicinity:
         self._margin: Floats = np.full(self._count, -1.0)  # nothing is listed yet
         self._listed: Floats = np.zeros((self._count, 2))
 
+    @property
+    def displacement(self) -> Floats:
+        """Of the particles, now (m); what kernels are given is never a read-only view, for which they are not compiled."""
+        return self.model.tables["particles"].storage("displacement")
+
+    @property
+    def velocity(self) -> Floats:
+        """Of the particles, now (m/s)."""
+        return self.model.tables["particles"].storage("velocity")
+
     def everywhere(self, values: NDArray[Any]) -> NDArray[Any]:
         """What particles have, with zeros for the obstacles, which do not move."""
         if len(self.obstacles) == 0:
@@ -90,14 +100,15 @@ class Vicinity:
 
     def gaps(self, pairs: Rows, displacement: Floats) -> tuple[Floats, Floats]:
         """Distance between the rims of pairs, and unit vectors from the first centres to the second."""
-        first, second = pairs[:, 0], pairs[:, 1]
-        displacement = self.everywhere(displacement)
-        line = (self.position[second] - self.position[first]) + (displacement[second] - displacement[first])
-        if len(self.obstacles):
-            line = nearest(line, self.span[second])
-        distance = lengths(line)
-        normal = line / np.where(distance > 0.0, distance, 1.0)[:, None]
-        return distance - self.reach(pairs), normal
+        gap, normal = np.empty(len(pairs)), np.empty((len(pairs), 2))
+        kernels().gaps(pairs, self.position, displacement, self.radius, self.span, gap, normal)
+        return gap, normal
+
+    def rates(self, pairs: Rows, normal: Floats) -> Floats:
+        """Speeds (m/s) at which pairs part along their lines of centres."""
+        velocity = self.everywhere(self.velocity)
+        rates: Floats = (normal * (velocity[pairs[:, 1]] - velocity[pairs[:, 0]])).sum(axis=1)
+        return rates
 
     def reach(self, pairs: Rows) -> Floats:
         """The sum of the radii of each pair."""
@@ -106,14 +117,17 @@ class Vicinity:
 
     def kinds(self, displacement: Floats, contacts: Paths | None) -> Rows:
         """Of every pair at the start of a step: WATCHED, LEFT_ALONE (nodes that overlap) or LASTING."""
-        gap, _ = self.gaps(self.pairs, displacement)
-        nodes = self._node[self.pairs].all(axis=1)
-        kinds = np.where(nodes & (gap < -OVERLAP * self.reach(self.pairs)), LEFT_ALONE, WATCHED)
-        if contacts is not None:
-            count = len(self.position)
-            lasting = contacts.contacts[:, 0] * count + contacts.contacts[:, 1]
-            kinds[np.isin(self.pairs[:, 0] * count + self.pairs[:, 1], lasting)] = LASTING
+        kinds = np.empty(len(self.pairs), dtype=np.int64)
+        lasting = NO_PAIRS if contacts is None else contacts.contacts
+        where = self.position, displacement, self.radius, self.span
+        kernels().kinds(self.pairs, lasting, self._node, *where, kinds)
         return kinds
+
+    def compliance(self, pairs: Rows, normal: Floats, pushed: Floats) -> Floats:
+        """How fast unit forces in contacts, along `pushed` (columns), open each along `normal` (rows), 1/kg."""
+        slope = np.empty((len(pairs), len(pairs)))
+        kernels().compliance(pairs, normal, pushed, self.weight, slope)
+        return slope
 
     def clear_time(self, enough: float = math.inf) -> float:
         """For how long (s) nothing can meet, whatever forces do; 0 while anything is in contact.
@@ -123,7 +137,7 @@ class Vicinity:
         """
         if contacts_of(self.model) is not None:
             return 0.0
-        displacement = self.model.particles.displacement
+        displacement = self.displacement
         self._since, self._speed, self._pull = self.model.clock.time, *self._vigour()
         covered = self._covered(displacement)
         if covered < 0.0:
@@ -135,15 +149,23 @@ class Vicinity:
             before, covered, apart = covered, self._covered(displacement), self._time_apart(displacement)
         return min(covered, apart)
 
-    def cover(self, start: Floats, swing: float) -> None:
-        """List all pairs that can be near each other in a step from `start` to the present displacement.
+    def meeting(self, before: Snapshot, held: Paths | None) -> float:
+        """When in the step just taken a pair not held in contact first met (s from its start); infinite if none did.
 
-        swing: by how much (m) paths may leave the straight line.
+        NaN if paths are bent too much for the step to tell.
         """
-        displacement = self.model.particles.displacement
-        if (lengths(displacement - self._listed) + swing > self._margin).any():
-            span = float(lengths(displacement - start).max(initial=0.0)) + swing
-            self._list(np.maximum(self._least, 2.0 * span), start)
+        old, velocity = before.columns["particles.displacement"], before.columns["particles.velocity"]
+        h = float(self.model.clock.time - before.columns["clock.time"][0])
+        if h == 0.0:
+            return math.inf
+        after, sway = self.displacement, np.empty(self._count)
+        span = kernels().sway(h, old, velocity, after, self.velocity, self._listed, self._margin, sway)
+        if span > 0.0:
+            self._list(np.maximum(self._least, 2.0 * span), old)
+        pairs, kinds = self.pairs, self.kinds(old, held)
+        of_all = self.radius, self.span, self.size, sway
+        s: float = kernels().meeting(h, pairs, kinds, self.position, old, velocity, after, *of_all)
+        return s if s >= 0.0 else math.nan
 
     @property
     def outran(self) -> bool:

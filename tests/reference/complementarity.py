@@ -1,32 +1,29 @@
-"""Complementarity: which of many contacts push, and how strongly."""
+"""Complementarity: which of many contacts push, and how strongly; plainly, in numpy."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.near import Floats
+from systems.collision.kernels.complementarity import FIRM, MOST_EXCHANGES, PATIENCE, ROUND_OFF
 
-FIRM = 1e-11  # of what a contact yields by itself: forces that gaps leave open change the least then
-ROUND_OFF = 1e-12  # of the largest gap
-PATIENCE = 10  # exchanges of many contacts at once that may fail to leave fewer wrong
-MOST_EXCHANGES = 500
+Floats = NDArray[np.float64]
 
 
 def complementary(slope: Floats, gap: Floats, forces: Floats) -> Floats:
     """Forces F ≥ 0, shape (c,), that leave gaps ≥ 0, either being 0 in each contact.
 
     gap: that with the given forces, and slope: how gaps follow forces, so that they become gap + slope (F − forces).
-    Contacts that are wrong, for they pull or overlap, change sides all at once, or, where that goes round in circles,
-    the last of them (Júdice, Pires, 1994). What cannot yield is not pushed.
+    As systems/collision/kernels/complementarity.py.
     """
     yields = np.sqrt(np.maximum(np.diag(slope), 0.0))
     free = yields > 0.0
     found = np.zeros(len(gap))
     scale = yields[free]
     scaled, before = slope[np.ix_(free, free)] / np.outer(scale, scale), forces[free] * scale
+    offset = gap[free] / scale - scaled @ before
     scaled[np.diag_indices(len(scale))] += FIRM
-    found[free] = _exchanged(scaled, gap[free] / scale - scaled @ before, before > 0.0) / scale
+    found[free] = _exchanged(scaled, offset, before > 0.0) / scale
     return found
 
 

@@ -1,0 +1,116 @@
+"""Complementarity: which of several contacts push, and how strongly."""
+
+import math
+
+from systems.collision.kernels import compiled
+
+FIRM = 1e-11  # of what a contact yields by itself, by which it gives way: what gaps leave open is the least force then
+ROUND_OFF = 1e-12  # of the largest gap
+PATIENCE = 10  # exchanges of many contacts at once that may fail to leave fewer wrong
+MOST_EXCHANGES = 60
+OPEN, PUSHING, FIXED = 0, 1, 2  # sides of a contact; FIXED: what cannot yield is not pushed
+
+
+@compiled
+def complementary(slope, gap, forces, found, matrix, scale, offset, sides, wrong):
+    """Forces F ≥ 0, shape (c,), into `found`, that leave gaps ≥ 0, either being 0 in each contact; False if none are found.
+
+    gap: that with the given forces, and slope: how gaps follow forces, so that they become gap + slope (F − forces).
+    Contacts that are wrong, for they pull or overlap, change sides all at once, or, where that goes round in circles,
+    the last of them (Júdice, Pires, Computers & Operations Research 21, 1994).
+    matrix, shape (c, c + 1), scale, offset, sides and wrong, shape (c,): to work with.
+    """
+    count = gap.shape[0]
+    largest = _prepare(slope, gap, forces, scale, offset, sides)
+    best, patience, number = count + 1, PATIENCE, 0
+    for _ in range(MOST_EXCHANGES):
+        _close(slope, found, matrix, scale, offset, sides)
+        number, last = _find_wrong(slope, ROUND_OFF * largest, found, scale, offset, sides, wrong)
+        if number == 0:
+            break
+        patience = PATIENCE if number < best else patience - 1
+        best = min(best, number)
+        for c in range(count):
+            if wrong[c] and (patience > 0 or c == last):
+                sides[c] = OPEN if sides[c] == PUSHING else PUSHING
+    for c in range(count):
+        found[c] = max(found[c], 0.0) / scale[c] if sides[c] == PUSHING else 0.0
+    return number == 0
+
+
+@compiled
+def _prepare(slope, gap, forces, scale, offset, sides):
+    """Scale every contact by what it yields, and find the gaps without forces; returns the largest of these."""
+    count, largest = gap.shape[0], 0.0
+    for c in range(count):
+        scale[c] = math.sqrt(max(slope[c, c], 0.0))
+        sides[c] = FIXED if scale[c] == 0.0 else (PUSHING if forces[c] > 0.0 else OPEN)
+    for c in range(count):
+        if sides[c] != FIXED:
+            left = gap[c]
+            for d in range(count):
+                if sides[d] != FIXED:
+                    left -= slope[c, d] * forces[d]
+            offset[c] = left / scale[c]
+            largest = max(largest, abs(offset[c]))
+    return largest
+
+
+@compiled
+def _close(slope, found, matrix, scale, offset, sides):
+    """The forces that close the contacts that push, scaled, by elimination with the largest pivots."""
+    count, n = found.shape[0], 0
+    for c in range(count):
+        if sides[c] == PUSHING:
+            m = 0
+            for d in range(count):
+                if sides[d] == PUSHING:
+                    matrix[n, m] = slope[c, d] / (scale[c] * scale[d]) + (FIRM if c == d else 0.0)
+                    m += 1
+            matrix[n, m] = -offset[c]
+            n += 1
+    for k in range(n):
+        _pivot(k, n, matrix)
+        for r in range(k + 1, n):
+            share = matrix[r, k] / matrix[k, k]
+            for m in range(k + 1, n + 1):
+                matrix[r, m] -= share * matrix[k, m]
+    for k in range(n - 1, -1, -1):
+        for m in range(k + 1, n):
+            matrix[k, n] -= matrix[k, m] * matrix[m, n]
+        matrix[k, n] /= matrix[k, k]
+    k = 0
+    for c in range(count):
+        found[c] = 0.0
+        if sides[c] == PUSHING:
+            found[c] = matrix[k, n]
+            k += 1
+
+
+@compiled
+def _pivot(k, n, matrix):
+    """Bring the row with the largest number in column k, from row k on, to row k."""
+    best = k
+    for r in range(k + 1, n):
+        if abs(matrix[r, k]) > abs(matrix[best, k]):
+            best = r
+    if best != k:
+        for m in range(k, n + 1):
+            matrix[k, m], matrix[best, m] = matrix[best, m], matrix[k, m]
+
+
+@compiled
+def _find_wrong(slope, least, found, scale, offset, sides, wrong):
+    """Note which contacts pull, or overlap by more than `least`; returns how many, and the last of them."""
+    number, last = 0, -1
+    for c in range(found.shape[0]):
+        wrong[c] = found[c] < 0.0
+        if sides[c] == OPEN:
+            left = offset[c]
+            for d in range(found.shape[0]):
+                if sides[d] == PUSHING:
+                    left += slope[c, d] / (scale[c] * scale[d]) * found[d]
+            wrong[c] = left < -least
+        if wrong[c]:
+            number, last = number + 1, c
+    return number, last

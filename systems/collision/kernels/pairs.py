@@ -1,0 +1,66 @@
+"""Pairs of particles, or of a particle and an obstacle, that are near each other: their gaps and their kinds.
+
+Obstacles count on after the particles and have no displacement.
+"""
+
+import math
+
+from systems.collision.arrays import LASTING, LEFT_ALONE, OVERLAP, WATCHED
+from systems.collision.kernels import compiled
+from systems.collision.kernels.gap import nearest_of_piece
+
+
+@compiled
+def gap_of(i, j, position, displacement, radius, span):
+    """Distance between the rims of two, and the unit vector from the first centre to the second."""
+    dx, dy = position[j, 0] - position[i, 0], position[j, 1] - position[i, 1]
+    if j < displacement.shape[0]:
+        dx += displacement[j, 0] - displacement[i, 0]
+        dy += displacement[j, 1] - displacement[i, 1]
+    else:
+        dx -= displacement[i, 0]
+        dy -= displacement[i, 1]
+    dx, dy, _ = nearest_of_piece(dx, dy, span[j, 0], span[j, 1])
+    distance = math.hypot(dx, dy)
+    unit = distance if distance > 0.0 else 1.0
+    return distance - (radius[i] + radius[j]), dx / unit, dy / unit
+
+
+@compiled
+def measure_gaps(pairs, position, displacement, radius, span, gap, normal):
+    """Fill in gap and normal of every pair."""
+    for k in range(pairs.shape[0]):
+        i, j = pairs[k, 0], pairs[k, 1]
+        gap[k], normal[k, 0], normal[k, 1] = gap_of(i, j, position, displacement, radius, span)
+
+
+@compiled
+def tell_kinds(pairs, contacts, node, position, displacement, radius, span, kinds):
+    """Fill in the kind of every pair at the start of a step: WATCHED, LEFT_ALONE (nodes that overlap) or LASTING."""
+    for k in range(pairs.shape[0]):
+        i, j = pairs[k, 0], pairs[k, 1]
+        kinds[k] = WATCHED
+        if node[i] and node[j]:
+            gap, _, _ = gap_of(i, j, position, displacement, radius, span)
+            if gap < -OVERLAP * (radius[i] + radius[j]):
+                kinds[k] = LEFT_ALONE
+        for c in range(contacts.shape[0]):
+            if contacts[c, 0] == i and contacts[c, 1] == j:
+                kinds[k] = LASTING
+                break
+
+
+@compiled
+def yield_to_forces(pairs, normal, pushed, weight, slope):
+    """Fill in how fast unit forces along `pushed` in each contact (columns) open each along `normal`, 1/kg."""
+    for c in range(pairs.shape[0]):
+        for d in range(pairs.shape[0]):
+            total = 0.0
+            for p in range(2):
+                for q in range(2):
+                    m = pairs[c, p]
+                    if m == pairs[d, q]:
+                        along = weight[m, 0] * normal[c, 0] * pushed[d, 0]
+                        along += weight[m, 1] * normal[c, 1] * pushed[d, 1]
+                        total += along if p == q else -along
+            slope[c, d] = total
