@@ -20,12 +20,10 @@ from systems.near import Floats, Rows
 
 HELD = 1e-13  # of the smaller radius, within which particles in contact are kept
 GIVES = 2e-11  # of how far forces move what they push: at least this much of it contacts may be off; see FIRM
-HARDLY = (
-    1e-11  # of the same, after a few tries: some gaps follow forces hardly at all, as of a row between walls
-)
+HARDLY = 1e-11  # of the same, after a few tries: gaps in a row between walls hardly follow forces
 FEW, MOST_TRIES = 3, 8  # tries of the forces in a step
 CUT = 0.25  # of a step, which is taken instead where its forces are not found
-MOST_CUTS = 30  # until forces no longer matter
+MOST_CUTS = 12  # until forces no longer matter, and those of the step before are as good as any
 
 
 class Contacts:
@@ -57,13 +55,14 @@ class Contacts:
         longest = float(contacts.crowd[0]) if len(contacts.crowd) else math.inf
         if longest < clock.step_size:
             until = start + longest if until is None else min(until, start + longest)
-        for _ in range(MOST_CUTS):
-            reason, found = self._try(program, before, take, until, contacts)
-            if found:
-                break
-            longest = CUT * (clock.time - start)
-            until = start + longest
+        reason, found = self._try(program, before, take, until, contacts)
+        cuts = 0
+        while not found:
+            cuts, longest = cuts + 1, CUT * (clock.time - start)
             before.restore(self.model)
+            reason, found = self._try(
+                program, before, take, start + longest, contacts, anyhow=cuts == MOST_CUTS
+            )
         if clock.time - start > 0.5 * longest:
             longest *= 2.0
         if longest < clock.step_size and clock.paths is not None:
@@ -78,21 +77,18 @@ class Contacts:
         take: Callable[[float | None], StopReason],
         until: float | None,
         contacts: Paths,
+        *,
+        anyhow: bool = False,
     ) -> tuple[StopReason, bool]:
-        """Such a step, and True if its forces were found.
+        """Such a step, and True if its forces were found; those of the step before are good enough `anyhow`.
 
-        They are sought by Newton's method with the compliance h²/2 N₁ᵀ M⁻¹ N₀ of free particles, N₀ and N₁ being the
-        lines of centres at the start and at the end, and what Broyden's method learns of the rods; with N₀ alone, for
-        which there always are forces, once those have no answer. All tries end at the same time: where the error is
-        controlled, other forces would choose another step, and gaps jump with it.
+        All tries end at the same time: where the error is controlled, other forces would choose another step, and gaps
+        would jump with it.
         """
         pairs, forces, near = contacts.contacts, contacts.forces, self._near
         least, normal = near.gaps(pairs, before.columns["particles.displacement"])
-        least = np.minimum(least, 0.0)
-        size = near.size[pairs].min(axis=1)
-        slope, learnt = np.zeros((2, len(pairs), len(pairs)))
-        tried: tuple[Floats, Floats] | None = None
-        is_regular = True
+        least, size = np.minimum(least, 0.0), near.size[pairs].min(axis=1)
+        search = _Search(near, pairs, normal)
         for turn in range(MOST_TRIES):
             if turn > 0:
                 before.restore(self.model)
@@ -106,25 +102,14 @@ class Contacts:
                 until = self.model.clock.time
             gap, last = near.gaps(pairs, near.displacement)
             gap -= least
-            allowed = (HELD if turn < FEW else HARDLY) * size + GIVES * (np.abs(slope) @ forces)
-            if (np.where(forces > 0.0, np.abs(gap), -gap) <= allowed).all():
+            allowed = (HELD if turn < FEW else HARDLY) * size + search.give(forces)
+            if anyhow or (np.where(forces > 0.0, np.abs(gap), -gap) <= allowed).all():
                 self._note(pairs, forces, gap, gap + h * near.rates(pairs, last), size)
                 return reason, True
-            if tried is not None:
-                moved = forces - tried[0]
-                missed = gap - tried[1] - slope @ moved
-                missed[np.abs(missed) <= allowed] = 0.0
-                learnt += np.outer(missed, moved) / float(moved @ moved)
-            free = 0.5 * h * h
-            tried = forces, gap
-            if is_regular:
-                slope = free * near.compliance(pairs, last, normal) + learnt
-                forces, is_regular = complementary(slope, gap, tried[0])
-            if not is_regular:
-                slope = free * near.compliance(pairs, normal, normal)
-                forces, _ = complementary(slope, gap, tried[0])
-            if np.array_equal(forces, tried[0]):
+            better = search.better(forces, gap, last, h, allowed)
+            if np.array_equal(better, forces):
                 break
+            forces = better
         return reason, False
 
     def _note(self, pairs: Rows, forces: Floats, gap: Floats, later: Floats, size: Floats) -> None:
@@ -142,6 +127,43 @@ class Contacts:
         """
         if energy > self.model.clock.energy_scale:
             self.model.writable("clock.energy_scale")[0] = energy
+
+
+class _Search:
+    """Forces in contacts that close the gaps that push, sought by Newton's method.
+
+    Its slope is h²/2 N₁ᵀ M⁻¹ N₀, as of free particles, N₀ and N₁ being the lines of centres at the start and at the end
+    of the step, and what Broyden's method learns of the rods. Where that leaves no forces it is h²/2 N₀ᵀ M⁻¹ N₀ from
+    then on, for which there always are some.
+    """
+
+    def __init__(self, near: Vicinity, pairs: Rows, normal: Floats) -> None:
+        self._near, self._pairs, self._normal = near, pairs, normal
+        self._slope, self._learnt = np.zeros((2, len(pairs), len(pairs)))
+        self._tried: tuple[Floats, Floats] | None = None
+        self._is_regular = True
+
+    def give(self, forces: Floats) -> Floats:
+        """By how much (m) gaps may be off with these forces."""
+        allowed: Floats = GIVES * (np.abs(self._slope) @ forces)
+        return allowed
+
+    def better(self, forces: Floats, gap: Floats, last: Floats, h: float, allowed: Floats) -> Floats:
+        """What to try after forces that left these gaps and lines of centres at the end of a step of h seconds."""
+        if self._tried is not None:
+            moved = forces - self._tried[0]
+            missed = gap - self._tried[1] - self._slope @ moved
+            missed[np.abs(missed) <= allowed] = 0.0
+            self._learnt += np.outer(missed, moved) / float(moved @ moved)
+        self._tried = forces, gap
+        free, near = 0.5 * h * h, self._near
+        if self._is_regular:
+            self._slope = free * near.compliance(self._pairs, last, self._normal) + self._learnt
+            found, self._is_regular = complementary(self._slope, gap, forces)
+        if not self._is_regular:
+            self._slope = free * near.compliance(self._pairs, self._normal, self._normal)
+            found, _ = complementary(self._slope, gap, forces)
+        return found
 
 
 def _push(program: Program, model: Model, force: Floats | float) -> None:
