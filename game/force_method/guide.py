@@ -299,6 +299,8 @@ def base_structure(model: Model, released: Sequence[Unknown]) -> Model:
 
 def exact_forces(model: Model, unknowns: Sequence[Unknown]) -> list[float] | None:
     """The unknowns' forces (kN) by exact geometry, without yielding; None if there is no equilibrium."""
+    if not unknowns:
+        return []
     final = settle(elastic_copy(model)).final
     if final.status != "equilibrium":
         return None

@@ -6,7 +6,7 @@ the real load, set 3 the base structure under a unit force alone. Superposition 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -188,12 +188,10 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     released = _Linear(model, unknowns) if unknowns else whole
     base = released.under(load, prestressed=True)
     units = tuple(released.under(unit_force(model, unknown), prestressed=False) for unknown in unknowns)
-    delta_real = np.array([_delta(model, unknown, real) for unknown in unknowns])
-    delta_base = np.array([_delta(model, unknown, base) for unknown in unknowns])
-    delta_unit = np.array([[_delta(model, unknown, unit) for unit in units] for unknown in unknowns])
-    delta_unit = delta_unit.reshape(len(unknowns), len(unknowns))
+    delta_real, delta_base, *of_units = _deltas(model, unknowns, (real, base, *units))
+    delta_unit = np.array(of_units).reshape(len(unknowns), len(unknowns)).T
     own, unstrained = _flexibility(model, unknowns)
-    force = np.linalg.solve(delta_unit - np.diag(own), unstrained - delta_base)
+    force: Array = np.linalg.solve(delta_unit - np.diag(own), unstrained - delta_base).astype(np.float64)
     return Solution(tuple(unknowns), delta_real, delta_base, delta_unit, force, real, base, units)
 
 
@@ -236,11 +234,16 @@ def _axis(model: Model, unknown: Unknown) -> Array:
     return axis
 
 
-def _delta(model: Model, unknown: Unknown, state: SetState) -> float:
-    if unknown.axis is not None:
-        return float(state.displacement[unknown.element.row, unknown.axis])
-    first, second = model.rods.between[unknown.element.row]
-    return float((state.displacement[second] - state.displacement[first]) @ _axis(model, unknown))
+def _deltas(model: Model, unknowns: Sequence[Unknown], states: Iterable[SetState]) -> Iterator[Array]:
+    """Δ of all unknowns in each of some states, (unknowns,)."""
+    between, both = model.rods.between, np.eye(2)
+    ends = [between[u.element.row] if u.axis is None else (u.element.row,) * 2 for u in unknowns]
+    first, second = np.array(ends, dtype=np.intp).reshape(-1, 2).T
+    way = np.array([_axis(model, u) if u.axis is None else both[u.axis] for u in unknowns]).reshape(-1, 2)
+    is_rod = np.array([u.axis is None for u in unknowns], dtype=bool)[:, None]
+    for state in states:
+        moved = state.displacement
+        yield ((moved[second] - np.where(is_rod, moved[first], 0.0)) * way).sum(axis=1)
 
 
 def redundants(model: Model) -> list[Unknown]:
