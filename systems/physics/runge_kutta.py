@@ -240,6 +240,9 @@ def attempt(
         elif EVENTS and search[ENDED] == 0.0:
             first = search[FAR] == 0.0
             wanted = narrow(search, h, passed(h, work[STAGES], work[STAGES + 1], marks, first, *columns))
+            if wanted < smallest:  # the event is where the step begins
+                search[ENDED] = 1.0
+                wanted = search[LENGTH]
             if wanted != h:
                 h = wanted
                 continue
