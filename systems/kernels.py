@@ -94,6 +94,14 @@ class _EntryCompiler(Compiler):
         super().__init__(typing, target, library, *rest)
 
 
+class _ApartCompiler(_Compiler):
+    def __init__(
+        self, typing: Any, target: Any, library: Any, given: Any, result: Any, flags: Any, *rest: Any
+    ) -> None:
+        flags.noalias = True
+        super().__init__(typing, target, library, given, result, flags, *rest)
+
+
 class _Part(CPUDispatcher):
     def get_call_template(self, given: Any, named: Any) -> Any:
         """Of one that is given the constant 3, as of one that is given any integer: no others are compiled."""
@@ -105,8 +113,11 @@ class _Part(CPUDispatcher):
         raise TypeError(f"{self.py_func.__qualname__} is a part of programs: call it from a compiled function.")
 
 
-def part(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """A decorator like `compiled`, with further options, for functions that only compiled ones call."""
+def part(*, apart: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """A decorator like `compiled`, with further options, for functions that only compiled ones call.
+
+    apart: no two of the arrays that it is given share memory that it writes to, which is then not made sure of.
+    """
     chosen = {
         "error_model": "numpy",
         "nopython": True,
@@ -114,7 +125,8 @@ def part(**options: Any) -> Callable[[Callable[..., Any]], Any]:
         "no_cpython_wrapper": True,
         "no_cfunc_wrapper": True,
     }
-    return partial(_Part, locals={}, targetoptions=chosen | options, pipeline_class=_Compiler)
+    compiler = _ApartCompiler if apart else _Compiler
+    return partial(_Part, locals={}, targetoptions=chosen | options, pipeline_class=compiler)
 
 
 def entry(**options: Any) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -97,6 +97,21 @@ class Program:
     def columns(self) -> dict[str, Column]:
         """The columns and arrays that its compiled functions end with, by name, in order."""
         return dict(zip(self._writer.columns, self._columns, strict=True))
+
+    @property
+    def source(self) -> str:
+        """What it is compiled from."""
+        return self._writer.source()
+
+    @property
+    def kernels(self) -> Mapping[str, Callable[..., Any]]:
+        """What its source calls, by name."""
+        return self._writer.kernels
+
+    @property
+    def written(self) -> tuple[str, ...]:
+        """The columns that commits write, as its source names them."""
+        return tuple(path.replace(".", "_", 1) for b in self._writer.commits for path in b.system.writes)
 
     @property
     def marks(self) -> int:

@@ -39,7 +39,7 @@ class Batch:
     measures: of each block in the state last observed, as those of Program.
     """
 
-    def __init__(self, stack: Stack, program: BatchProgram, varied_arrays: bool) -> None:
+    def __init__(self, stack: Stack, program: BatchProgram) -> None:
         self.stack = stack
         self.program = program
         self.driver = program.driver
@@ -51,7 +51,7 @@ class Batch:
         self._may_sleep = bool(stack.single("settings.sleeping").any()) and program.program.follows_state
         self._may_sleep &= islands(stack.part(np.zeros(1, dtype=np.intp)).as_model()).max(initial=HELD) > 1
         self.fixed_step = stack.single("settings.time_step")
-        self._columns = program.columns(stack, varied_arrays)
+        self._columns = program.columns(stack)
         self._breaks = np.array([*load_breaks(stack.as_model()), math.inf])
         self._loads_end = loads_end(stack.as_model())
         self._begin()
@@ -183,9 +183,9 @@ class Batch:
         time, size, total = (self.clock(name).copy() for name in ("time", "step_size", "steps"))
         first = total - self.clock("origin_steps")
         wanted = np.full(self.stack.blocks, steps, dtype=np.int64)
-        if until < math.inf and not self.driver.controlled:
-            left = ((until - time) / size * (1.0 + 1e-12)).astype(np.int64)
-            wanted = np.clip(left, 0, steps)
+        if until < math.inf and not self.driver.controlled:  # of the others, steps may have no size
+            left = ((until - time[blocks]) / size[blocks] * (1.0 + 1e-12)).astype(np.int64)
+            wanted[blocks] = np.clip(left, 0, wanted[blocks])
         account, control = self._clocks(ACCOUNT), self._clocks(CONTROL)
         limit = self.clock("step_limit")
         taken, reason = self._call(

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,7 +14,9 @@ from numpy.typing import NDArray
 
 from components.field import Column
 from game.program.cache import compile_module, note_compiled
+from game.program.lanes import lanes_for
 from game.program.program import Program
+from game.sweeps.lane_program import LaneProgram
 from game.sweeps.stack import Stack
 from systems.base import ACCOUNTS
 from systems.physics.drivers import SEARCH
@@ -33,10 +37,17 @@ class BatchProgram:
     """The compiled functions of a step program, called for one block of a stack after the other.
 
     Blocks are independent: they are shared out among threads, and results do not depend on how many.
+
+    varied_arrays: arrays of systems differ between blocks. many: there are so many that those which can take
+    their steps side by side do, for which more must be compiled.
     """
 
-    def __init__(self, program: Program, threads: int) -> None:
+    def __init__(
+        self, program: Program, threads: int, *, varied_arrays: bool = False, many: bool = False
+    ) -> None:
         self.program = program
+        self._varied = varied_arrays
+        self._side_by_side = many and not varied_arrays and bool(program.driver.side_by_side)
         self.driver = program.driver
         self.threads = threads
         self._columns = program.columns
@@ -91,17 +102,17 @@ class BatchProgram:
             ]
         return "\n".join(lines)
 
-    def columns(self, stack: Stack, varied: bool) -> dict[str, Column]:
-        """What the compiled functions end with, by name; varied: arrays of systems differ between blocks."""
+    def columns(self, stack: Stack) -> dict[str, Column]:
+        """What the compiled functions end with, by name."""
         made: dict[str, Column] = {}
         for name, bound in self._columns.items():
             table, _, column = name.partition("_")
             key = f"{table}.{column}"
             if stack.has(key):
                 made[name] = stack[key]
-            elif not varied:
+            elif not self._varied:
                 made[name] = np.repeat(bound[None], stack.blocks, axis=0)
-        if varied:
+        if self._varied:
             made |= self._arrays(stack)
         for name, bound in self._columns.items():
             made[name] = made[name].view()
@@ -126,15 +137,41 @@ class BatchProgram:
         """
         taken, reason = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
 
-        def work(some: NDArray[np.intp]) -> None:
+        def one_by_one(some: NDArray[np.intp]) -> None:
             scratch = {name: np.zeros(shape) for name, shape in self._scratch(entry).items()}
             given = [scratch[p] if p in scratch else arguments[p] for p in self._parameters[entry]]
             getattr(self._module, f"{entry}_each")(some, taken, reason, *given)
 
-        if self.threads == 1 or len(blocks) < 2 * self.threads:
-            work(blocks)
-        else:
-            with ThreadPoolExecutor(self.threads) as pool:
-                list(pool.map(work, np.array_split(blocks, self.threads * _PIECES)))
+        groups: list[NDArray[np.intp]] = []
+        if entry == "advance" and arguments["landing"] == math.inf:  # else most steps are cut short
+            groups, blocks = self._groups(blocks)
+        if groups:
+            lanes = self._lanes
+            self._share_out(lambda group: lanes.advance(group, arguments, taken, reason), groups)
+        pieces = 1 if len(blocks) < 2 * self.threads else self.threads * _PIECES
+        self._share_out(one_by_one, np.array_split(blocks, pieces))
         note_compiled(self._module)
         return taken, reason
+
+    def _groups(self, blocks: NDArray[np.intp]) -> tuple[list[NDArray[np.intp]], NDArray[np.intp]]:
+        """The blocks that take their steps side by side, in groups, and the others, which are too few."""
+        if not self._side_by_side:
+            return [], blocks
+        lanes = lanes_for(self.program.model.particles.count)
+        whole = len(blocks) // lanes + (len(blocks) % lanes >= lanes // 2)
+        return [blocks[k * lanes : (k + 1) * lanes] for k in range(whole)], blocks[whole * lanes :]
+
+    @cached_property
+    def _lanes(self) -> LaneProgram:
+        return LaneProgram(
+            self.program, self._scratch("advance"), lanes_for(self.program.model.particles.count)
+        )
+
+    def _share_out(self, work: Callable[[NDArray[np.intp]], None], pieces: Sequence[NDArray[np.intp]]) -> None:
+        """Let threads do the work on each piece."""
+        if self.threads == 1 or len(pieces) == 1:
+            for piece in pieces:
+                work(piece)
+        else:
+            with ThreadPoolExecutor(self.threads) as pool:
+                list(pool.map(work, pieces))

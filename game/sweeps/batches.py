@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from game.sweeps.specimen import Specimen
 
 MOST_NUMBERS = 2_000_000  # in the largest array of a batch: of stiffness, rods × directions of particles
+MANY = 30_000  # variants × rods from which steps side by side are worth compiling for
 # What makes another model of it, or lets its parts rest by themselves.
 _ALONE = ("particles.name", "particles.fixed", "rods.name", "loads.name", "settings.sleeping")
 _REPORTED = ("particles", "rods")
@@ -47,6 +48,7 @@ class Batches:
             self._base = Stack.of(specimen.model, 1) if self._suits() else None
         self._loads_vary = any(target.table.name == "loads" for target in self._targets)
         rods, particles = specimen.model.rods.count, specimen.model.particles.count
+        self._many = plan.size * rods >= MANY
         most = MOST_NUMBERS // max(2 * rods * particles, 1)
         self.size = max(min(most, 1024), 1) if self._base is not None else 1
 
@@ -80,7 +82,7 @@ class Batches:
         for stack, key, of_stack in self._stacks(numbers):
             program = self._program(key, of_stack[0])
             if program is not None:
-                found |= self._run(Batch(stack, program, self._loads_vary), of_stack)
+                found |= self._run(Batch(stack, program), of_stack)
         return found
 
     def _stacks(self, numbers: Sequence[int]) -> Iterator[tuple[Stack, Hashable, list[int]]]:
@@ -144,7 +146,9 @@ class Batches:
                 simulation = self._specimen.simulation
                 program = simulation.program
                 if isinstance(program, Program) and not simulation.collides:
-                    self._programs[key] = BatchProgram(program, self._threads)
+                    self._programs[key] = BatchProgram(
+                        program, self._threads, varied_arrays=self._loads_vary, many=self._many
+                    )
         return self._programs[key]
 
     # --- running them -----------------------------------------------------------------------------------

@@ -21,7 +21,16 @@ _CONTROLLED = (
     *_CHECKS,
     *(
         f"{_RUNGE_KUTTA}:{part}"
-        for part in ("extrapolate", "accelerate", "combine", "begin_search", "narrow", "follow")
+        for part in (
+            "extrapolate",
+            "accelerate",
+            "error_of",
+            "combine",
+            "begin_search",
+            "narrow",
+            "aim",
+            "follow",
+        )
     ),
 )
 
@@ -142,6 +151,7 @@ class RungeKutta4(Integrator):
         f"{_RUNGE_KUTTA}:explicit_stages=stages",
         f"{_RUNGE_KUTTA}:attempt",
     )
+    side_by_side = "systems.physics.side_by_side"
     order: ClassVar[int] = 4
     controlled = True
     guard = -1.0

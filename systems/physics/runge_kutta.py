@@ -121,15 +121,31 @@ def combine(dt, tolerance, displacement, velocity, work, control, search):
                 also_v += p * p
     search[TRIAL_X] = max(control[LARGEST_X], math.sqrt(size_x))
     search[TRIAL_V] = max(control[LARGEST_V], math.sqrt(size_v))
-    allowed_x = tolerance * search[TRIAL_X] + ROUND_OFF_X * search[TRIAL_X]
-    round_off = ROUND_OFF_V * search[TRIAL_X] / dt
-    if EXPLICIT and dt < search[LONGEST] < math.inf:
-        round_off *= (dt / search[LONGEST]) ** 2
-    allowed_v = tolerance * search[TRIAL_V] + round_off
+    return error_of(
+        dt,
+        tolerance,
+        search[LONGEST],
+        search[TRIAL_X],
+        search[TRIAL_V],
+        size_x + size_v,
+        wrong_x,
+        wrong_v,
+        also_x,
+        also_v,
+    )
+
+
+def error_of(dt, tolerance, longest, largest_x, largest_v, size, wrong_x, wrong_v, also_x, also_v):
+    """The error of a step, by the squared norms of its result (`size`) and of the estimates."""
+    allowed_x = tolerance * largest_x + ROUND_OFF_X * largest_x
+    round_off = ROUND_OFF_V * largest_x / dt
+    if EXPLICIT and dt < longest < math.inf:
+        round_off *= (dt / longest) ** 2
+    allowed_v = tolerance * largest_v + round_off
     if ESTIMATES == 0 or tolerance == 0.0:
-        return 0.0 * (size_x + size_v)  # not a number if something overflowed
+        return 0.0 * size  # not a number if something overflowed
     if not (allowed_x > 0.0 and allowed_v > 0.0):
-        return 0.0 * (size_x + size_v)
+        return 0.0 * size
     scale_x = dt * dt / allowed_x
     scale_v = dt / allowed_v
     wrong = scale_x * scale_x * wrong_x + scale_v * scale_v * wrong_v
@@ -292,11 +308,7 @@ def controlled(
     coming = 0
     while taken < steps:
         step = control[STEP]
-        goal = origin + (first + taken + 1) * step
-        reach = goal
-        if tolerance > 0.0:
-            goal = time + step
-            reach = goal + 0.01 * step
+        goal, reach = aim(time, step, origin, first + taken, tolerance)
         while breaks[coming] <= time:
             coming += 1
         stop = breaks[coming]
@@ -349,6 +361,15 @@ def controlled(
             taken += 1
     control[TIME] = time
     return taken, True
+
+
+def aim(time, step, origin, age, tolerance):
+    """When a step would end, and up to when a break would end it instead: none is left just behind a step."""
+    if tolerance > 0.0:
+        goal = time + step
+        return goal, goal + 0.01 * step
+    goal = origin + (age + 1) * step
+    return goal, goal
 
 
 def follow(control, h, limit, error, rejected):

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from game.reports.report import Analysis
+from game.sweeps import batch_program, batches
+from game.sweeps.lane_program import LaneProgram
 from game.sweeps.plan import Plan, Record
 from game.sweeps.run import plan_of
 from game.sweeps.specimen import Specimen
@@ -35,6 +37,28 @@ def loaded() -> dict[str, Any]:
             {"name": "on", "on": "B", "force": [30, 0], "history": {"kind": "ramp", "start": 1e-4}},
         ]
     }
+
+
+def loaded_cables() -> dict[str, Any]:
+    """That triangle with a cable, which becomes slack and taut."""
+    rods = [
+        rod | {"tension_only": rod["name"] == "CA", "compressive_strength": None} for rod in TRIANGLE["rods"]
+    ]
+    return loaded() | {"rods": rods}
+
+
+class Counted:
+    """Counts the steps that variants take side by side."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.steps = 0
+        own = LaneProgram.advance
+
+        def advance(program: LaneProgram, blocks: Any, arguments: Any, taken: Any, reason: Any) -> None:
+            own(program, blocks, arguments, taken, reason)
+            self.steps += int(taken[blocks].sum())
+
+        monkeypatch.setattr(LaneProgram, "advance", advance)
 
 
 def planned(source: Any, vary: list[str], analysis: Analysis, samples: int | None = None) -> Plan:
@@ -94,6 +118,34 @@ def test_together_they_have_the_bits_of_single_runs(name: str) -> None:
     plan = planned(*CASES[name])
     together = Worker(plan).together(range(plan.size))
     assert together == {number: alone(plan, number) for number in range(plan.size)}
+
+
+SIDE_BY_SIDE: dict[str, tuple[Any, list[str], Analysis]] = {
+    "dop853": (TRIANGLE, ["rods.BC.compressive_strength=150:215:11"], Analysis()),
+    "rk4": (loaded_cables(), ["environment.drag=0.5,10", "rods.AB.stiffness=1e5:2e5:5"], TIMES),
+}
+
+
+@pytest.mark.parametrize("integrator", SIDE_BY_SIDE)
+def test_side_by_side_they_have_the_bits_of_single_runs(
+    integrator: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Four at a time: some steps are rejected or end at events, some lanes end early or are empty."""
+    monkeypatch.setattr(batch_program, "lanes_for", lambda particles: 4)
+    monkeypatch.setattr(batches, "MANY", 1)
+    side_by_side = Counted(monkeypatch)
+    source, vary, analysis = SIDE_BY_SIDE[integrator]
+    plan = plan_of(source, vary, MEASURES, analysis, (f"settings.integrator={integrator}",), None, 1)
+    together = Worker(plan).together(range(plan.size))
+    assert side_by_side.steps > 0
+    assert together == {number: alone(plan, number) for number in range(plan.size)}
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_variant_that_is_left_to_a_run_of_its_own_warns_nobody() -> None:
+    """With steps that are too long it has not begun any."""
+    fixed = ["settings.time_step=3e-6,1", "settings.integrator=velocity_verlet"]
+    assert set(Worker(planned(TRIANGLE, fixed, Analysis())).together(range(2))) == {0}
 
 
 def test_the_number_of_threads_changes_no_bit() -> None:

@@ -1,0 +1,185 @@
+"""Lane programs: a step program for many blocks of a stack side by side; see game/program/lanes.py."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import inspect
+import math
+from collections.abc import Callable, Mapping, Sequence
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import Column
+from game.program.cache import compile_module, note_compiled
+from game.program.lanes import LaneFunction, functions, head, is_common
+from game.program.program import Program
+
+# What is rewritten for lanes, with the numbers that differ between these; `remember` changes some of them only.
+_REWRITTEN = {
+    "evaluate": ("time", "dt"),
+    "extrapolate": ("dt",),
+    "accelerate": (),
+    "combine": ("dt", "tolerance"),
+    "mark": ("dt",),
+    "passed": ("dt",),
+    "measure": (),
+    "remember": ("time", "dt"),
+}
+_CHOSEN = ("remember",)
+_AS_THEY_ARE = ("is_check_due", "error_of", "aim", "follow")
+_NUMBERS = ("steps", "total", "first", "origin", "tolerance", "limit")  # one for each block
+_SHARED = ("breaks", "until", "landing", "loads_end")
+_CARRIED = ("control", "displacement", "velocity", "account")  # what steps change, besides what commits write
+_MEASURES = 16
+_NUMBER = "float64"
+_ROWS = 6  # of numbers that the loop keeps for each lane
+
+
+class LaneProgram:
+    """Lets up to so many blocks take steps at a time, with the bits that `advance` of a step program gives each.
+
+    scratch: shapes of what a step program writes to and nobody else reads.
+    """
+
+    def __init__(self, program: Program, scratch: Mapping[str, tuple[int, ...]], lanes: int) -> None:
+        self._lanes = lanes
+        self._columns = list(program.columns)
+        self._carried = (*_CARRIED, *program.written)
+        self._scratch = {**scratch, "measures": (_MEASURES,)}
+        self._packs = self._packed(program)
+        known = functions(program.source)
+        self._functions = [
+            LaneFunction(known[name], varying, chosen=name in _CHOSEN)
+            for name, varying in _REWRITTEN.items()
+            if name in known
+        ]
+        advance = program.module.advance
+        self._single = [p for p in _parameters(advance.py_func) if p not in (*_NUMBERS, *_SHARED, "fresh")]
+        self._loop = _sources(program.driver.side_by_side)
+        self._parameters = self._parameters_of_loop()
+        source = [head(program.source), f"LANES = {lanes}\napart = part(apart=True)"]
+        source += [ast.unparse(known[name]) for name in _AS_THEY_ARE]
+        source += [function.source for function in self._functions]
+        source += [self._alone(), *self._pasted()]
+        self._module = compile_module("\n\n".join(source) + "\n", {**program.kernels, "single": advance})
+
+    # --- source ---------------------------------------------------------------------------------------
+
+    def _packed(self, program: Program) -> dict[str, list[str]]:
+        """Arrays that lie together, by the name of what they lie in: one copy is quicker, and compiled sooner.
+
+        All of one kind do, of numbers those first that steps change.
+        """
+        packs: dict[str, list[str]] = {f"packed_{_NUMBER}": list(self._carried)}
+        for name, column in program.columns.items():
+            if not (is_common(name) or name in self._carried):
+                packs.setdefault(f"packed_{column.dtype.name}", []).append(name)
+        return packs
+
+    @property
+    def _takes(self) -> list[str]:
+        """What alone() takes at last."""
+        return ["carried", *self._packs, *map(_copied, self._packs), *map(_copied, self._single)]
+
+    def _pasted(self) -> list[str]:
+        """The driver's loop for lanes, with the columns for *columns."""
+        columns, single = ", ".join(self._columns), ", ".join(self._takes)
+        texts = {"*columns": columns, "*single": single, "*everything": f"{columns}, {single}"}
+        parts = []
+        for name, source in self._loop.items():
+            for star, text in texts.items():
+                source = source.replace(star, text)
+            parts.append(f"@{'entry(nogil=True)' if name == 'advance' else 'compiled'}\n{source}")
+        return parts
+
+    def _parameters_of_loop(self) -> list[str]:
+        own = ast.parse(self._loop["advance"]).body[0]
+        assert isinstance(own, ast.FunctionDef)
+        return [*(argument.arg for argument in own.args.args), *self._columns, *self._takes]
+
+    def _alone(self) -> str:
+        """A step of one lane by the program of a single run, on copies of its numbers."""
+        numbers = ("total[lane] + taken[lane]", "first[lane] + taken[lane]", "origin[lane]")
+        given = ("1", "False", *numbers, "tolerance[lane]", "limit[lane]", *_SHARED)
+        taken_over = ("total", "first", "origin", "tolerance", "limit", *_SHARED, "taken")
+        lines = [
+            f"def alone(lane, {', '.join((*taken_over, *self._takes))}):",
+            *(
+                f"    for k in range({pack}.shape[0]):\n        {_copied(pack)}[k] = {pack}[k, lane]"
+                for pack in self._packs
+            ),
+            f"    done, why = single({', '.join((*given, *map(_copied, self._single)))})",
+            "    for k in range(carried):",
+            f"        packed_{_NUMBER}[k, lane] = {_copied(f'packed_{_NUMBER}')}[k]",
+            "    return done, why",
+        ]
+        return "@compiled\n" + "\n".join(lines)
+
+    # --- calling it -----------------------------------------------------------------------------------
+
+    def advance(
+        self,
+        blocks: NDArray[np.intp],
+        arguments: Mapping[str, Any],
+        taken: NDArray[np.int64],
+        reason: NDArray[np.int64],
+    ) -> None:
+        """Let these blocks take steps; `arguments` of all blocks by name, results into the other arrays.
+
+        Some may take fewer than they should although nothing stops them, so that others can join them.
+        """
+        count = self._lanes
+        lanes = np.resize(blocks, count)
+        given = {name: arguments[name] for name in _SHARED} | {n: arguments[n][lanes] for n in _NUMBERS}
+        for pack, names in self._packs.items():
+            given |= self._laid_out(pack, [(name, arguments[name]) for name in names], lanes)
+        for name in filter(is_common, self._columns):
+            given[name] = given[_copied(name)] = arguments[name][lanes[0]]
+        for name, shape in self._scratch.items():
+            given[name], given[_copied(name)] = np.zeros((*shape, count)), np.zeros(shape)
+        given["carried"] = sum(given[_copied(name)].size for name in self._carried)
+        given["spare"] = np.zeros((max(f.spares for f in self._functions), count))
+        given["numbers"] = np.zeros((_ROWS, count))
+        given["plain"], given["going"] = np.zeros(count, dtype=bool), np.arange(count) < len(blocks)
+        given |= {name: np.zeros(count, dtype=np.int64) for name in ("coming", "taken", "reason")}
+        self._module.advance(*(given[name] for name in self._parameters))
+        note_compiled(self._module)
+        for name in self._carried:
+            arguments[name][blocks] = np.moveaxis(given[name], -1, 0)[: len(blocks)]
+        taken[blocks], reason[blocks] = given["taken"][: len(blocks)], given["reason"][: len(blocks)]
+
+    def _laid_out(
+        self, pack: str, arrays: Sequence[tuple[str, Column]], lanes: NDArray[np.intp]
+    ) -> dict[str, Column]:
+        """Arrays of these blocks as lanes in one array, room for a copy of one of them in another, and views."""
+        sizes = [math.prod(array.shape[1:]) for _, array in arrays]
+        together = np.empty((sum(sizes), len(lanes)), dtype=arrays[0][1].dtype)
+        single = np.empty(sum(sizes), dtype=together.dtype)
+        made = {pack: together, _copied(pack): single}
+        ends = np.cumsum(sizes).tolist()
+        for (name, array), size, end in zip(arrays, sizes, ends, strict=True):
+            shape = array.shape[1:]
+            made[name] = together[end - size : end].reshape(*shape, len(lanes))
+            made[name][...] = np.moveaxis(array[lanes], 0, -1)
+            made[_copied(name)] = single[end - size : end].reshape(shape)
+            made[_copied(name)].flags.writeable = array.flags.writeable
+        return made
+
+
+def _copied(name: str) -> str:
+    """What an array is called of which alone() has a copy for one lane."""
+    return f"{name}_alone"
+
+
+def _parameters(function: Callable[..., Any]) -> list[str]:
+    return list(inspect.signature(function).parameters)
+
+
+def _sources(module: str) -> dict[str, str]:
+    """The functions of a module, in order, by name."""
+    found = [f for f in vars(importlib.import_module(module)).values() if isinstance(f, FunctionType)]
+    return {function.__name__: inspect.getsource(function) for function in found}

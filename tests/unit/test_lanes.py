@@ -1,0 +1,81 @@
+"""Functions for lanes, made from those for one: run as plain Python, lane by lane the same."""
+
+from __future__ import annotations
+
+import ast
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from game.program.lanes import LaneFunction, functions, lanes_for
+
+LANES = 3
+SOURCE = '''
+LIMIT = 0.5
+SLOW = True
+
+@compiled
+def pull(dt, displacement, force, rods_between, rods_stiffness):
+    """What becomes of forces, and the largest stretch."""
+    most = 0.0
+    for i in range(force.shape[0]):
+        for d in range(2):
+            total = 0.0
+            for j in range(2):
+                total += (j + 1) * displacement[i, d]
+            force[i, d] = dt * total
+    if SLOW:
+        most += dt
+    for r in range(rods_between.shape[0]):
+        a = rods_between[r, 0]
+        b = rods_between[r, 1]
+        stretch = displacement[b, 0] - displacement[a, 0]
+        if stretch > LIMIT:
+            stretch = math.sqrt(stretch)
+        part = rods_stiffness[r] * stretch
+        force[a, 0] += part
+        force[b, 0] -= part
+        most = max(most, stretch)
+    return most
+'''
+
+
+def run(source: str, *given: Any) -> Any:
+    scope: dict[str, Any] = {"math": math, "LANES": LANES, "LIMIT": 0.5, "SLOW": True}
+    scope |= dict.fromkeys(("compiled", "apart"), lambda function: function)
+    exec(source, scope)
+    return scope["pull"](*given)
+
+
+@pytest.mark.parametrize("chosen", [False, True])
+def test_each_lane_is_what_it_is_alone(chosen: bool) -> None:
+    made = LaneFunction(functions(SOURCE)["pull"], ("dt",), chosen=chosen)
+    rng = np.random.default_rng(0)
+    between = np.array([[0, 1], [1, 2], [0, 2]], dtype=np.uint32)
+    dt, displacement, stiffness = rng.random(LANES), rng.random((3, 2, LANES)), rng.random((3, LANES))
+    force, result = np.full((3, 2, LANES), 7.0), np.full(LANES, 7.0)
+    going = np.array([True, False, True]) if chosen else np.ones(LANES, dtype=bool)
+    spare = np.zeros((made.spares, LANES))
+    more = (spare, result, going) if chosen else (spare, result)
+    run(made.source, dt, displacement, force, between, stiffness, *more)
+    for lane in range(LANES):
+        expected = np.full((3, 2), 7.0)
+        most = 7.0
+        if going[lane]:
+            most = run(SOURCE, dt[lane], displacement[..., lane], expected, between, stiffness[:, lane])
+        assert np.array_equal(force[..., lane], expected)
+        assert result[lane] == most
+
+
+def test_loops_over_lanes_are_innermost_and_what_is_looked_up_is_looked_up_once() -> None:
+    source = LaneFunction(functions(SOURCE)["pull"], ("dt",)).source
+    for loop in (n for n in ast.walk(ast.parse(source)) if isinstance(n, ast.For)):
+        if ast.unparse(loop.target) == "lane":
+            assert not any(isinstance(n, ast.For) for n in ast.walk(loop) if n is not loop)
+            assert "rods_between" not in ast.unparse(loop)
+
+
+def test_larger_models_have_fewer_lanes() -> None:
+    assert [lanes_for(particles) for particles in (3, 25, 50, 100, 200)] == [128, 128, 64, 32, 32]
