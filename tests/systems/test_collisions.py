@@ -328,3 +328,38 @@ def test_stepping_back_replays_what_a_hand_did_with_the_same_bits() -> None:
         now = session.model.clock.steps
         assert states.get(now, state(session)) == state(session)
     assert now < 30
+
+
+@pytest.mark.parametrize(
+    ("seed", "count", "fit", "restitution"), [(2, 14, 3, 0.2), (16, 10, 4, 0.9), (22, 13, 3, 0.9)]
+)
+def test_energy_does_not_grow_where_rows_fit_exactly_between_walls(
+    seed: int, count: int, fit: int, restitution: float
+) -> None:
+    """Heavy and light discs that jam: what forces keep their rows together is not determined."""
+    random = np.random.default_rng(seed)
+    half, columns = 0.05 * fit, int(0.1 * fit / 0.115)
+    discs = [
+        {
+            "position": [-half + 0.0525 + 0.11 * (k % columns), 0.06 + 0.13 * (k // columns)],
+            "mass": float(random.choice([1.0, 1.0, 1.0, 10.0, 0.1])),
+            "velocity": random.normal(0.0, 1.0, 2).tolist(),
+        }
+        for k in range(count)
+    ]
+    ends = {"floor": ([-half, 0.0], [half, 0.0])}
+    ends |= {f"side {x:g}": ([x, 0.0], [x, 3.0]) for x in (-half, half)}
+    walls = [{"name": name, "start": start, "end": end} for name, (start, end) in ends.items()]
+    sections = {"components": {"walls.Wall": walls}, "settings": {"restitution": restitution}}
+    session = Session.open(model(discs, environment=GRAVITY, **sections))
+    pull = 1000.0 * session.particles.constant_force
+
+    def energy() -> float:
+        return session.energy.kinetic - float((pull * session.particles.displacement).sum())
+
+    first = before = energy()
+    for _ in range(30):
+        session.run(time=0.1)
+        assert energy() <= before + 1e-3 * (abs(first) + abs(before))
+        before = energy()
+    assert sinking(session) <= 1e-3

@@ -51,6 +51,7 @@ STILL = 1e-10  # of the speed and acceleration that gravity gives; what moves le
 STEP_ANGLE = 0.0156  # by which discs turn around one another in a step; discs sink by its cube / 8 of a radius
 LEAST_SHARE = 1e-4  # of such a step, by which the end of a flat side, or of a contact, may be missed
 MOST_CORRECTIONS = 40  # of the forces in a step; 3 are usual
+MOST_IN_VAIN = 5  # of them, one after the other, that do not halve the largest gap
 
 
 @compiled
@@ -134,13 +135,13 @@ def support(count, touching, discs, group, numbers):
         duration = _duration(closed, discs, group, numbers)
         if duration < NEVER:
             least = LEAST_SHARE * duration
-            _meet_at_end(duration, count, closed, discs, group, numbers)
-            while duration > least and _one_lets_go(
-                closed, group
-            ):  # not before its time, or they meet again at once
+            met = _meet_at_end(duration, count, closed, discs, group, numbers)
+            while duration > least and (not met or _one_lets_go(closed, group)):  # or they meet again at once
                 duration = max(0.25 * duration, least)
                 closed = _push_now(count, touching, discs, group, numbers)
-                _meet_at_end(duration, count, closed, discs, group, numbers)
+                met = _meet_at_end(duration, count, closed, discs, group, numbers)
+            if not met:
+                closed = _push_now(count, touching, discs, group, numbers)
     for k in range(closed):
         c = group.marks[ACTIVE, k]
         group.contacts[c, FORCE] = group.contacts[c, GIVEN]
@@ -299,18 +300,27 @@ def _end_gap(c, h, discs, group):
 
 @compiled
 def _meet_at_end(h, count, closed, discs, group, numbers):
-    """Correct the forces until the closed contacts touch, or have opened, after a time h."""
+    """Correct the forces until the closed contacts are after a time h as near as now, or open. False if none do that.
+
+    What now is too near by round-off stays so: discs that are jammed between others cannot all be put right, and
+    would be pushed the harder the longer one tries.
+    """
     contacts = group.contacts
+    before, in_vain = NEVER, 0
     for _ in range(MOST_CORRECTIONS):
-        met = True
+        met, worst = True, 0.0
         for k in range(closed):
             c = group.marks[ACTIVE, k]
-            gap = _end_gap(c, h, discs, group)
+            gap = _end_gap(c, h, discs, group) - min(_end_gap(c, 0.0, discs, group), 0.0)
             i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
             noise = place_noise(discs, i, j, numbers[NOW])
-            met = met and gap >= -noise and (gap <= noise or contacts[c, GIVEN] == 0.0)
+            if gap < -noise or (gap > noise and contacts[c, GIVEN] > 0.0):
+                met, worst = False, max(worst, abs(gap))
             contacts[c, BIAS] += 2.0 * gap / (h * h) - opening_rate(c, group.motion, group)
-        if met:
-            return
+        in_vain = in_vain + 1 if worst > 0.5 * before else 0
+        if met or in_vain == MOST_IN_VAIN:
+            return met
+        before = worst
         _pull(count, discs, group)
         project(count, closed, 0.0, group)
+    return False

@@ -72,6 +72,7 @@ TRAVEL = 0.35  # of the smaller radius of two discs, relative to one another, in
 THROUGH = 0.25  # of the way of the fastest disc, or of its radius: how far others may pass that on to a disc in a step
 AHEAD, ROOM = 4.0, 0.1  # steps, and radii, by which discs may go on until pairs are listed anew
 MOST_SWEEPS = 80  # to and fro over the contacts in a step; the next goes on from there
+SLIGHT = 1e-9  # of the energy of motion: what rounding may feign
 TOLERANCE = 1e-8  # of the smallest radius: by how much discs sink in a step whose sweeps have settled
 MANY, ROUGHNESS = 1000, 4e-3  # of more contacts than that: or of the way of the fastest disc, if that is more
 NEARBY = 0.2  # of the radius of the smaller of two discs: nearer than this they fly on straight lines
@@ -161,7 +162,11 @@ def step(discs, grid, ties, pile, report, numbers, counts):
         if active > MANY:
             tolerance = max(tolerance, ROUGHNESS * fastest)
         _find_impulses(active, tolerance, pile)
-        if _stays_within_reach(h, discs, pile):
+        if _is_worse_than_none(active, h, discs, pile):
+            pile.forces[: counts[LISTED]] = (
+                0.0  # those of the step before mislead, as of a row that has come loose
+            )
+        elif _stays_within_reach(h, discs, pile):
             break
     numbers[STEP_END] = numbers[NOW] + h
     _report_impacts(active, h, discs, pile, report, numbers, counts)
@@ -482,6 +487,32 @@ def _relax(c, given, pile):
     motion[SPEED, b, 0] += bx * change
     motion[SPEED, b, 1] += by * change
     return impulse
+
+
+@compiled
+def _is_worse_than_none(active, h, discs, pile):
+    """True if the impulses begin with such that sweeps have not made good: they could supply energy.
+
+    Sweeps lessen ½ |u₁ − u₀|² + p·(N u₀ + b), u₀ being the motion without impulses, which is 0 without any.
+    """
+    contacts, motion = pile.contacts, pile.motion
+    total, size = 0.0, 0.0
+    for i in range(discs.shape[0]):
+        for d in range(2):
+            root = motion[ROOT, i, d]
+            if root > 0.0:
+                free = (discs[i, VX + d] + h * discs[i, GX + d]) / root
+                motion[NOTED, i, d] = free
+                total += 0.5 * (motion[SPEED, i, d] - free) ** 2
+                size += 0.5 * free * free
+            else:
+                motion[NOTED, i, d] = 0.0
+    for c in range(active):
+        a, b = pile.ends[c, 0], pile.ends[c, 1]
+        rate = contacts[c, 0] * motion[NOTED, a, 0] + contacts[c, 1] * motion[NOTED, a, 1]
+        rate += contacts[c, 2] * motion[NOTED, b, 0] + contacts[c, 3] * motion[NOTED, b, 1]
+        total += contacts[c, GIVEN] * (rate + contacts[c, BIAS])
+    return total > SLIGHT * size
 
 
 @compiled
