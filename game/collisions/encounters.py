@@ -17,7 +17,7 @@ from components.model import Model
 from components.particle import Particle
 from components.paths import Paths
 from components.snapshot import Snapshot
-from game.collisions.contacts import Contacts
+from game.collisions.contacts import Contacts, complementary
 from game.collisions.encounter_kernels import note_encounters
 from game.collisions.flight import part_overlaps
 from game.collisions.impacts import Impacts
@@ -164,9 +164,13 @@ def load_encounters() -> None:
     part_overlaps(model)
     encounters = Encounters(model, Impacts(model), lambda target: StopReason.DONE, _nothing_to_bind)
     before = Snapshot.take(model)
-    encounters._near.look_up()
-    encounters._near.clear_time()
-    encounters._near.meeting(before, None)
+    near = encounters._near
+    near.look_up()
+    near.clear_time()
+    model.writable("clock.time")[0] = 1e-3
+    near.meeting(before, None)
+    gap, normal = near.gaps(near.pairs, near.displacement)
+    complementary(near.compliance(near.pairs, normal, normal), gap, np.zeros(len(gap)))
     encounters._strikes.happen(before)
     note_encounters()
 
