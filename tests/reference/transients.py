@@ -108,6 +108,8 @@ def _ends_of_branches(s: _Branched) -> list[tuple[int, int, Event]]:
     assert s.branches is not None
     ends = []
     for index, branch in enumerate(s.branches):
+        if not _changes(s, index):
+            continue
         if branch:
             ends.append((index, 0, _unloading(s, index, branch)))
             continue
@@ -115,6 +117,12 @@ def _ends_of_branches(s: _Branched) -> list[tuple[int, int, Event]]:
             if s.strength(index, side) < math.inf:
                 ends.append((index, side, _yielding(s, index, side)))
     return ends
+
+
+def _changes(s: _Branched, index: int) -> bool:
+    """False for a rod between two particles that are held: what is always zero would pass zero for ever."""
+    rod, particles = s.elements.rods[index], s.elements.particles
+    return not all(all(particles[end].fixed) for end in (rod.start, rod.end))
 
 
 def _unloading(s: _Branched, index: int, branch: int) -> Event:

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -91,3 +92,23 @@ def test_the_reference_knows_what_yields_from_the_start_on() -> None:
     exact = 0.01 + 3 * 0.01 - 0.5 * 200.0 * 0.01**2
     assert abs(expected[1, 0] - exact) < 1e-14
     assert _error(document, 0.01, expected) < 1e-12
+
+
+def test_the_reference_ends_with_a_rod_that_yields_between_two_held_particles() -> None:
+    """Its elongation never changes: it neither goes on yielding nor unloads, and stays as it is."""
+    document: Document = {
+        "format": "pinjoint model",
+        "version": 1,
+        "particles": [
+            {"name": "A", "position": [0, 0], "displacement": [-0.01, 0], "fixed": [True, True]},
+            {"name": "B", "position": [1, 0], "fixed": [True, True]},
+            {"name": "C", "position": [2, 0], "velocity": [1, 0], "mass": 1},
+        ],
+        "rods": [
+            {"name": "AB", "between": ["A", "B"], "stiffness": 1000, "tensile_strength": 2},
+            {"name": "BC", "between": ["B", "C"], "stiffness": 1000, "tensile_strength": 2},
+        ],
+    }
+    displacement, _ = follow(document, 1e-4)
+    assert displacement[:2].tolist() == [[-0.01, 0.0], [0.0, 0.0]]
+    assert displacement[2, 0] == pytest.approx(1e-4, rel=1e-2)
