@@ -105,8 +105,8 @@ def test_the_reference_ends_with_a_rod_that_yields_between_two_held_particles() 
             {"name": "C", "position": [2, 0], "velocity": [1, 0], "mass": 1},
         ],
         "rods": [
-            {"name": "AB", "between": ["A", "B"], "stiffness": 1000, "tensile_strength": 2},
-            {"name": "BC", "between": ["B", "C"], "stiffness": 1000, "tensile_strength": 2},
+            {"name": "AB", "between": ["A", "B"], "stiffness": 1000, "damping": 0, "tensile_strength": 2},
+            {"name": "BC", "between": ["B", "C"], "stiffness": 1000, "damping": 0, "tensile_strength": 2},
         ],
     }
     displacement, _ = follow(document, 1e-4)
