@@ -67,9 +67,20 @@ class Paths(Mapping[str, Any]):
     __hash__ = None  # type: ignore[assignment]
 
 
-def resting(contacts: NDArray[np.integer[Any]], forces: NDArray[np.float64]) -> Paths:
-    """Paths of particles that do not fly free, of which these are in lasting contact."""
-    return Paths(np.zeros((0, 0)), contacts.astype(np.int64), forces, np.zeros(0))
+def resting(
+    contacts: NDArray[np.integer[Any]], forces: NDArray[np.float64], longest: float = math.inf
+) -> Paths:
+    """Paths of particles that do not fly free, of which these are in lasting contact.
+
+    longest: step (s) to begin with, where one as long as usual is too long.
+    """
+    crowd = np.array([longest] if longest < math.inf else [])
+    return Paths(np.zeros((0, 0)), contacts.astype(np.int64), forces, crowd)
+
+
+def longest_step(paths: Paths) -> float:
+    """The step (s) that particles in lasting contact begin with, if they do not fly free; infinite if that is as usual."""
+    return float(paths.crowd[0]) if len(paths.crowd) else math.inf
 
 
 def check_paths(value: Any, where: str) -> Paths:

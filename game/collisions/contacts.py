@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
 
 from components.model import Model
-from components.paths import Paths
+from components.paths import Paths, longest_step, resting
 from components.snapshot import Snapshot
 from game.collisions.encounter_kernels import kernels
-from game.collisions.strikes import CROWD, CROWD_HEIGHT, NO_CROWD, NO_MOTION
+from game.collisions.strikes import CROWD, CROWD_HEIGHT
 from game.collisions.vicinity import Vicinity
 from game.program.program import Program
 from systems.base import StopReason
@@ -52,7 +51,7 @@ class Contacts:
             _push(program, self.model, 0.0)
             return take(until)
         clock, start = self.model.clock, float(before.columns["clock.time"][0])
-        longest = float(contacts.crowd[0]) if len(contacts.crowd) else math.inf
+        longest = longest_step(contacts)
         if longest < clock.step_size:
             until = start + longest if until is None else min(until, start + longest)
         reason, found = self._try(program, before, take, until, contacts)
@@ -66,8 +65,8 @@ class Contacts:
         if clock.time - start > 0.5 * longest:
             longest *= 2.0
         if longest < clock.step_size and clock.paths is not None:
-            paths = Paths(NO_MOTION, clock.paths.contacts, clock.paths.forces, np.array([longest]))
-            self.model.writable("clock.paths")[0] = paths
+            lasting = resting(clock.paths.contacts, clock.paths.forces, longest)
+            self.model.writable("clock.paths")[0] = lasting
         return reason
 
     def _try(
@@ -117,8 +116,7 @@ class Contacts:
         lasts = (forces > 0.0) | (gap <= HELD * size)
         if len(pairs) >= CROWD:
             lasts |= np.maximum(gap, later) <= CROWD_HEIGHT * size
-        paths = Paths(NO_MOTION, pairs[lasts], forces[lasts], NO_CROWD)
-        self.model.writable("clock.paths")[0] = paths
+        self.model.writable("clock.paths")[0] = resting(pairs[lasts], forces[lasts])
 
     def _note_energy(self, energy: float) -> None:
         """Energies (J) are small or large beside what forces in contact would do along the radii of what they hold.

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from components.model import Model
-from components.paths import Paths
+from components.paths import longest_step, resting
 from components.snapshot import Snapshot
 from game.collisions.encounter_kernels import kernels
 from game.collisions.impacts import Impacts
@@ -19,7 +19,6 @@ from systems.near import Floats, Rows
 TOUCH = 1e-12  # of the reach of two particles: nearer than this they touch
 CROWD = 4  # contacts that last, from which on bounces would go on and on
 CROWD_HEIGHT = 1e-3  # replaces REST_HEIGHT there
-NO_MOTION, NO_CROWD = np.zeros((0, 0)), np.zeros(0)  # of particles that do not fly free
 
 
 class Strikes:
@@ -114,12 +113,12 @@ class Strikes:
         if len(new) == 0:
             return False
         known = contacts_of(self.model)
-        contacts, forces, crowd = new, np.zeros(len(new)), NO_CROWD
+        contacts, forces, longest = new, np.zeros(len(new)), math.inf
         if known is not None:
             contacts = np.concatenate([known.contacts, contacts])
             forces = np.concatenate([known.forces, forces])
-            crowd = known.crowd
-        self.model.writable("clock.paths")[0] = Paths(NO_MOTION, contacts, forces, crowd)
+            longest = longest_step(known)
+        self.model.writable("clock.paths")[0] = resting(contacts, forces, longest)
         return True
 
 
