@@ -8,6 +8,7 @@ import math
 from systems.collision.arrays import LASTING, LEFT_ALONE, OVERLAP, WATCHED
 from systems.collision.kernels import compiled
 from systems.collision.kernels.gap import nearest_of_piece
+from systems.collision.kernels.projection import coupling
 
 
 @compiled
@@ -55,12 +56,5 @@ def yield_to_forces(pairs, normal, pushed, weight, slope):
     """Fill in how fast unit forces along `pushed` in each contact (columns) open each along `normal`, 1/kg."""
     for c in range(pairs.shape[0]):
         for d in range(pairs.shape[0]):
-            total = 0.0
-            for p in range(2):
-                for q in range(2):
-                    m = pairs[c, p]
-                    if m == pairs[d, q]:
-                        along = weight[m, 0] * normal[c, 0] * pushed[d, 0]
-                        along += weight[m, 1] * normal[c, 1] * pushed[d, 1]
-                        total += along if p == q else -along
-            slope[c, d] = total
+            ends = pairs[c], pairs[d]
+            slope[c, d] = coupling(ends, normal[c, 0], normal[c, 1], pushed[d, 0], pushed[d, 1], weight)

@@ -373,10 +373,16 @@ def _pull(h, discs, pile):
     """The velocities at the end of the step without contacts."""
     for i in range(discs.shape[0]):
         for d in range(2):
-            root = pile.motion[ROOT, i, d]
-            pile.motion[SPEED, i, d] = (discs[i, VX + d] + h * discs[i, GX + d]) / root if root > 0.0 else 0.0
+            pile.motion[SPEED, i, d] = _free(i, d, h, discs, pile)
             pile.motion[ALONG, i, d] = 0.0
         pile.travel[NEAR, i] = 0.0
+
+
+@compiled
+def _free(i, d, h, discs, pile):
+    """u of a disc at the end of the step, without contacts; 0 where it is held."""
+    root = pile.motion[ROOT, i, d]
+    return (discs[i, VX + d] + h * discs[i, GX + d]) / root if root > 0.0 else 0.0
 
 
 @compiled
@@ -499,14 +505,10 @@ def _is_worse_than_none(active, h, discs, pile):
     total, size = 0.0, 0.0
     for i in range(discs.shape[0]):
         for d in range(2):
-            root = motion[ROOT, i, d]
-            if root > 0.0:
-                free = (discs[i, VX + d] + h * discs[i, GX + d]) / root
-                motion[NOTED, i, d] = free
-                total += 0.5 * (motion[SPEED, i, d] - free) ** 2
-                size += 0.5 * free * free
-            else:
-                motion[NOTED, i, d] = 0.0
+            free = _free(i, d, h, discs, pile)
+            motion[NOTED, i, d] = free
+            total += 0.5 * (motion[SPEED, i, d] - free) ** 2
+            size += 0.5 * free * free
     for c in range(active):
         a, b = pile.ends[c, 0], pile.ends[c, 1]
         rate = contacts[c, 0] * motion[NOTED, a, 0] + contacts[c, 1] * motion[NOTED, a, 1]

@@ -37,14 +37,21 @@ def opening_rate(c, motion, group):
 @compiled
 def compliance(c, d, group):
     """Rate at which a unit impulse in contact d opens contact c: N_cᵀ M⁻¹ N_d, 1/kg."""
-    links, contacts = group.links, group.contacts
+    first, second = group.contacts[c], group.contacts[d]
+    ends = group.links[c], group.links[d]
+    return coupling(ends, first[NX], first[NY], second[NX], second[NY], group.mobility)
+
+
+@compiled
+def coupling(ends, nx, ny, px, py, mobility):
+    """Rate along (nx, ny) at which the first pair parts where a unit impulse along (px, py) pushes the second apart."""
     total = 0.0
     for p in range(2):
         for q in range(2):
-            m = links[c, p]
-            if m == links[d, q]:
-                along = group.mobility[m, 0] * contacts[c, NX] * contacts[d, NX]
-                along += group.mobility[m, 1] * contacts[c, NY] * contacts[d, NY]
+            m = ends[0][p]
+            if m == ends[1][q]:
+                along = mobility[m, 0] * nx * px
+                along += mobility[m, 1] * ny * py
                 total += along if p == q else -along
     return total
 
