@@ -12,6 +12,7 @@ from game.cli import main
 from game.collisions.vicinity import Vicinity
 from game.models import document
 from systems.edit.pull import hand_on
+from tests.systems.test_encounters import box, energy_of_discs
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
 
@@ -347,19 +348,11 @@ def test_energy_does_not_grow_where_rows_fit_exactly_between_walls(
         }
         for k in range(count)
     ]
-    ends = {"floor": ([-half, 0.0], [half, 0.0])}
-    ends |= {f"side {x:g}": ([x, 0.0], [x, 3.0]) for x in (-half, half)}
-    walls = [{"name": name, "start": start, "end": end} for name, (start, end) in ends.items()]
-    sections = {"components": {"walls.Wall": walls}, "settings": {"restitution": restitution}}
-    session = Session.open(model(discs, environment=GRAVITY, **sections))
-    pull = 1000.0 * session.particles.constant_force
-
-    def energy() -> float:
-        return session.energy.kinetic - float((pull * session.particles.displacement).sum())
-
-    first = before = energy()
+    session = Session.open(box(discs, half, environment=GRAVITY, settings={"restitution": restitution}))
+    first = before = energy_of_discs(session)
     for _ in range(30):
         session.run(time=0.1)
-        assert energy() <= before + 1e-3 * (abs(first) + abs(before))
-        before = energy()
+        now = energy_of_discs(session)
+        assert now <= before + 1e-3 * (abs(first) + abs(before))
+        before = now
     assert sinking(session) <= 1e-3
