@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Collection
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections import deque
+from collections.abc import Callable, Collection
+from itertools import repeat
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,9 +34,15 @@ class Handle:
     _world: weakref.ref[World]
     entity: int
 
-    def __init__(self, world: weakref.ref[World]) -> None:
-        """Of a world that gives it an entity; only `World.create` makes any."""
-        object.__setattr__(self, "_world", world)  # of many at once, without a look at the name
+    def __init__(self) -> None:
+        raise TypeError(f"A {self.noun} is part of a model; model.create({type(self).__name__}) makes one.")
+
+    @classmethod
+    def of_world(cls, world: World, count: int) -> list[Self]:
+        """So many new handles, of a world that is yet to give each an entity; only `World.create` makes any."""
+        handles = list(map(cls.__new__, repeat(cls, count)))
+        deque(map(_set_world, handles, repeat(weakref.ref(world))), maxlen=0)
+        return handles
 
     if not TYPE_CHECKING:  # or any name would be right
 
@@ -77,3 +85,8 @@ class Handle:
 
     def __repr__(self) -> str:
         return f"<{self.world.describe(self)}>" if self.exists else f"<deleted {self.noun}>"
+
+
+# Setters of the slots, which many handles are handed to at once without a look at the name.
+_set_world: Callable[[Handle, weakref.ref[World]], None] = vars(Handle)["_world"].__set__
+set_entity: Callable[[Handle, int], None] = vars(Handle)["entity"].__set__

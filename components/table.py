@@ -226,10 +226,10 @@ class Table(Generic[H]):
         while (wanted := count - len(found)) > 0:
             last = first + max(wanted, _TRIED)
             tried = [f"{noun} {n}" for n in range(first, last)]
-            free = [name for name in tried if name not in used]
+            free = tried if used.keys().isdisjoint(tried) else [name for name in tried if name not in used]
             if not free and first == self._lowest_number:
                 self._lowest_number = last
-            found += [name for name in free if name not in others]
+            found += free if others.isdisjoint(free) else [name for name in free if name not in others]
             first = last
         return found[:count]
 

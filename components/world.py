@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import weakref
+from collections import deque
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from components.commands import Assign, Command, Create, Custom, Delete, Group, Removed, Restore
 from components.field import Column, Field, FieldError, Role, same
-from components.handle import Handle
+from components.handle import Handle, set_entity
 from components.spelling import missing
 from components.table import Table, grown
 
@@ -315,13 +316,13 @@ class World:
         for field in table.fields.values():
             if field.references is not None and field.name not in columns:
                 raise FieldError(f"A new {kind.noun} needs '{field.name}': rows of the {field.references}.")
+        names = columns.pop("name", None) if "name" in table.fields else None
         if "name" in table.fields:
-            names = columns.pop("name", None)
             columns = {"name": table.free_names(count) if names is None else names, **columns}
         for name, values in columns.items():
             field = self._settable(table, name, kind.noun)
             checked[field.name] = self._checked(field, values, count, where)
-        if "name" in checked:
+        if names is not None:
             self._check_names(table, checked["name"].tolist())
         with self.transaction(f"new {kind.noun}"):
             self.execute(Create(kind, count, checked))
@@ -406,12 +407,9 @@ class World:
     def _create(self, command: Create) -> Command:
         self._switch()
         table = self.tables[command.kind.table]
-        reference = weakref.ref(self)
-        handles = [command.kind(reference) for _ in range(command.count)]
-        entities = [esper.create_entity(handle) for handle in handles]
-        set_it = object.__setattr__  # of many at once, without a look at the name
-        for handle, entity in zip(handles, entities, strict=True):
-            set_it(handle, "entity", entity)
+        handles = command.kind.of_world(self, command.count)
+        entities = list(map(esper.create_entity, handles))
+        deque(map(set_entity, handles, entities), maxlen=0)
         table.append(handles, np.array(entities, dtype=np.int64), dict(command.columns))
         return Delete(tuple(entities))
 

@@ -108,7 +108,7 @@ def paste(model: Model, part: Part, offset: Vector) -> list[Handle]:
                 columns[point] = columns[point] + offset
             for reference in columns.keys() & REFERENCES:
                 columns[reference] = first + columns[reference]
-            made[kind] = model.create(kind, len(columns["name"]), **columns)
+            made[kind] = model.create(kind, len(held["name"]), **columns)
         for (kind, place), kept in part.foreign.items():
             model.foreign[made[kind][place].entity] = kept
     return [handle for kind, handles in made.items() if kind is not Load for handle in handles]
@@ -136,8 +136,10 @@ def _columns(model: Model, kind: Kind, rows: Rows, place: Rows) -> dict[str, Any
     return columns
 
 
-def _free_names(table: Table[Any], names: list[str]) -> list[str]:
-    """The names, those that are taken replaced by new ones."""
+def _free_names(table: Table[Any], names: list[str]) -> list[str] | None:
+    """The names, those that are taken replaced by new ones; None: all are new."""
     taken = table.taken(names)
+    if len(taken) == len(names):
+        return None
     fresh = iter(table.free_names(len(taken), besides=set(names) - taken))
     return [next(fresh) if name in taken else name for name in names]

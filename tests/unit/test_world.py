@@ -604,6 +604,11 @@ def test_unlimited_strengths_are_infinite() -> None:
     assert model.rods.compression_limit.tolist() == [np.inf] * 3
 
 
+def test_an_element_is_made_by_its_model_only() -> None:
+    with pytest.raises(TypeError, match=r"A rod is part of a model; model.create\(Rod\) makes one"):
+        Rod()
+
+
 # --- tags --------------------------------------------------------------------------------------------------
 
 
