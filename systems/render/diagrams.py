@@ -13,7 +13,7 @@ from components.load import CONSTANT
 from components.model import Model
 from components.tags import DiagramShown, Selected
 from systems.render.labels import FAINT, Label, half_size
-from systems.render.marks import Fills, Points, Stamps, Strokes
+from systems.render.marks import Bars, Points, Stamps, Strokes
 from systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
 from systems.render.supports import NO_SUPPORT, crowding
 from systems.render.symbols import ARROW_LENGTH, SUPPORT_DEPTH
@@ -84,16 +84,12 @@ def draw_rod_diagrams(sheet: Sheet) -> None:
     height = np.abs(force[rows]) * (sheet.model.settings.diagram_scale * factor * sheet.unit)
     normal = _outward_normals(sheet, rows, start, end)
     values = force[rows]
-    corners = np.empty((len(rows), 4, 2))
-    corners[:, 0], corners[:, 3] = start, end
-    for axis in (0, 1):
-        rise = normal[:, axis] * height
-        corners[:, 1, axis], corners[:, 2, axis] = start[:, axis] + rise, end[:, axis] + rise
+    rise = normal * height[:, None]
     pulled, pushed = values > SMALLEST_FORCE, values < -SMALLEST_FORCE
     nothing = ~(pulled | pushed | sheet.model.rods.tension_only[rows])  # a slack cable stays dashed
     for name, mask in (("tension", pulled), ("compression", pushed), ("zero", nothing)):
         if mask.any():
-            _draw_rectangles(sheet, name, corners[mask])
+            _draw_rectangles(sheet, name, start[mask], end[mask], rise[mask])
     _label_rods(sheet, rows, values, (start + end) / 2, normal, height)
 
 
@@ -141,11 +137,13 @@ def _outward_normals(sheet: Sheet, rows: Rows, start: Points, end: Points) -> Po
     return np.stack([along_y * scale, -along_x * scale], axis=1)
 
 
-def _draw_rectangles(sheet: Sheet, name: str, corners: Points) -> None:
+def _draw_rectangles(sheet: Sheet, name: str, start: Points, end: Points, rise: Points) -> None:
     colour: Colour = getattr(sheet.theme, name)
     outlined = typical_length(sheet.start, sheet.end) > 16.0 * sheet.unit
-    sheet.marks.append(Fills(corners, faded(colour, 0.16 if outlined else 0.5)))
+    bars = Bars(start, end, rise, faded(colour, 0.16 if outlined else 0.5))
+    sheet.marks.append(bars)
     if outlined:
+        corners = bars.corners
         first, last = corners[:, :-1].reshape(-1, 2), corners[:, 1:].reshape(-1, 2)
         sheet.occupancy.line(first, last, FAINT)
         sheet.marks.append(Strokes(first, last, 1.25 * sheet.unit, faded(colour, 0.9)))

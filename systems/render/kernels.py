@@ -1,4 +1,4 @@
-"""Rasterising: anti-aliased strokes, polygons and discs, written straight into the pixels of a surface.
+"""Rasterising: anti-aliased strokes, rectangles and discs, written straight into the pixels of a surface.
 
 Points are in pixels, y down; the pixel (row, column) covers [column, column + 1) × [row, row + 1). Pixels are
 four channels of 8 bits, in whatever order. clip: left, top, right, bottom; nothing beyond it is touched.
@@ -12,23 +12,26 @@ import numpy as np
 
 from systems.kernels import compiled
 
-_EVEN = np.uint64(0x00FF00FF)  # every second channel of a pixel
-_HALVES = np.uint64(0x00800080)  # 0.5 in both of them, for rounding
-_EIGHT = np.uint64(8)
+_EVEN = np.uint32(0x00FF00FF)  # every second channel of a pixel
+_ODD = np.uint32(0xFF00FF00)
+_HALVES = np.uint32(0x00800080)  # 0.5 in both of them, for rounding
+_EIGHT = np.uint32(8)
+_ONE = 16  # bits behind the point of a length
 
 
 @compiled
 def mixed(old, new, part):
     """A pixel of which `part` of 255 is replaced by another, each channel rounded to the nearest.
 
-    Two channels at a time, 16 bits each. (v + 128 + ((v + 128) >> 8)) >> 8 is v / 255, rounded.
+    Two channels at a time, 16 bits each. (v + 128 + ((v + 128) >> 8)) >> 8 is v / 255, rounded. All in 32 bits,
+    so that a processor mixes as many pixels at once as it can.
     """
-    there, rest = np.uint64(part), np.uint64(255 - part)
-    below, above = np.uint64(old), np.uint64(new)
-    even = (below & _EVEN) * rest + (above & _EVEN) * there + _HALVES
-    odd = ((below >> _EIGHT) & _EVEN) * rest + ((above >> _EIGHT) & _EVEN) * there + _HALVES
-    even = ((even + ((even >> _EIGHT) & _EVEN)) >> _EIGHT) & _EVEN
-    odd = (odd + ((odd >> _EIGHT) & _EVEN)) & (_EVEN << _EIGHT)
+    there = np.uint32(part)
+    rest = np.uint32(np.uint32(255) - there)
+    even = np.uint32((old & _EVEN) * rest + (new & _EVEN) * there + _HALVES)
+    odd = np.uint32(((old >> _EIGHT) & _EVEN) * rest + ((new >> _EIGHT) & _EVEN) * there + _HALVES)
+    even = np.uint32((even + ((even >> _EIGHT) & _EVEN)) >> _EIGHT) & _EVEN
+    odd = np.uint32(odd + ((odd >> _EIGHT) & _EVEN)) & _ODD
     return np.uint32(even | odd)
 
 
@@ -36,9 +39,11 @@ def mixed(old, new, part):
 def cover_strokes(cover, clip, start, end, width):
     """Raise `cover` (uint8, rows × columns) to what strokes from `start` to `end`, each (n, 2), cover.
 
-    The compiled form of coverage.stroke_coverage: where strokes cross, the one that covers most counts.
+    The compiled form of coverage.stroke_coverage: where strokes cross, the one that covers most counts. Along a
+    stroke, where it begins and how much of a column it crosses are whole numbers of 1 / 2¹⁶.
     """
     left, top, right, bottom = clip
+    one = float(1 << _ONE)
     for i in range(len(start)):
         dx, dy = end[i, 0] - start[i, 0], end[i, 1] - start[i, 1]
         steep = abs(dy) > abs(dx)
@@ -49,101 +54,101 @@ def cover_strokes(cover, clip, start, end, width):
         reach = max(m1 - m0, 1e-9)
         slope = (last[i, across] - first[i, across]) / reach
         half = 0.5 * width * math.hypot(dx, dy) / reach
-        for major in range(max(math.floor(m0), least), min(math.floor(m1), most - 1) + 1):
-            share = 255.0 * (min(major + 1.0, m1) - max(float(major), m0))
-            middle = first[i, across] + (major + 0.5 - m0) * slope
-            low, high = middle - half, middle + half
-            for minor in range(max(math.floor(low), lowest), min(math.floor(high), highest - 1) + 1):
-                amount = int((min(minor + 1.0, high) - max(float(minor), low)) * share + 0.5)
+        begin = max(math.floor(m0), least)
+        low = int((first[i, across] + (begin + 0.5 - m0) * slope - half) * one)
+        thickness, rise = int(2.0 * half * one), int(slope * one)
+        for major in range(begin, min(math.floor(m1), most - 1) + 1):
+            share = int(255.0 * one * (min(major + 1.0, m1) - max(float(major), m0)))
+            high = low + thickness
+            for minor in range(max(low >> _ONE, lowest), min(high >> _ONE, highest - 1) + 1):
+                part = min((minor + 1) << _ONE, high) - max(minor << _ONE, low)
+                amount = np.uint8((part * share + (1 << (2 * _ONE - 1))) >> (2 * _ONE))
                 row, column = (major, minor) if steep else (minor, major)
-                if cover[row, column] < amount:
-                    cover[row, column] = amount
+                at = np.uint64(row), np.uint64(column)  # a place that may be negative would be looked at twice
+                cover[at] = max(cover[at], amount)
+            low += rise
 
 
 @compiled
-def blend_cover(pixels, cover, clip, colour, opacity):
-    """Blend a colour into `pixels` (uint32, rows × columns) where they are covered, and clear `cover`."""
+def blend_cover(pixels, cover, groups, clip, colour, opacity):
+    """Blend a colour into `pixels` (uint32, rows × columns) where they are covered, and clear `cover`.
+
+    groups: the same memory as `cover`, eight pixels each, shape (rows, blocks, groups of a block), uint64. Most
+    blocks hold no stroke.
+    """
     left, top, right, bottom = clip
+    opaque, block = np.uint32(opacity), 8 * groups.shape[2]
     for row in range(top, bottom):
-        line, covered = pixels[row], cover[row]
-        for column in range(left, right):
-            if covered[column]:
-                product = int(covered[column]) * opacity + 128
-                part = (product + (product >> 8)) >> 8
-                line[column] = mixed(line[column], colour, part)
-                covered[column] = 0
+        for index in range(left // block, (right + block - 1) // block):
+            held = groups[row, index]
+            if not held.any():
+                continue
+            first = index * block
+            line, covered = pixels[row, first : first + block], cover[row, first : first + block]
+            for column in range(len(line)):
+                product = np.uint32(np.uint32(covered[column]) * opaque + np.uint32(128))
+                line[column] = mixed(line[column], colour, (product + (product >> _EIGHT)) >> _EIGHT)
+            held[:] = 0
 
 
 @compiled
-def _ramp(t):
-    """∫ min(max(s, 0), 1) ds up to t."""
-    if t <= 0.0:
-        return 0.0
-    return 0.5 * t * t if t < 1.0 else t - 0.5
+def _overlap(middle, length):
+    """How much of [middle − 1/2, middle + 1/2] lies within [0, length]."""
+    half, nothing = np.float32(0.5), np.float32(0.0)
+    return max(min(middle + half, length) - max(middle - half, nothing), nothing)
 
 
 @compiled
-def _accumulate_edge(change, reach, clip, x0, y0, x1, y1):
-    """Add what lies right of one edge of a polygon to `change`, row by row.
+def _crossing(at, slope, length):
+    """Between which t the overlap of at + slope t and `length` may be more than 0."""
+    per = 1.0 / slope if abs(slope) > 1e-6 else 1e6
+    t0, t1 = (-0.5 - at) * per, (length + 0.5 - at) * per
+    return min(t0, t1), max(t0, t1)
 
-    change (float64, rows × (columns + 2)): by how much the covered share of a pixel exceeds that of the pixel
-    left of it. reach (rows × 2): first and last column touched. Edges downwards count positive, upwards
-    negative. In a row where the edge runs from xa to xb, the share of the pixel [c, c + 1) that lies right
-    of it is the mean of min(max(c + 1 − x, 0), 1) over xa ≤ x ≤ xb.
+
+@compiled
+def _axis(x, y):
+    """A direction whose larger component is 1, and how long (x, y) is when measured by it.
+
+    Middles of pixels that lie side by side are then 1 apart, as wide as a pixel counts: what a bar covers of a
+    column, or of a row if it is steep, is exact.
+    """
+    most = max(abs(x), abs(y))
+    return x / most, y / most, (x * x + y * y) / most
+
+
+@compiled
+def draw_bars(pixels, clip, start, end, rise, colour, opacity):
+    """Blend rectangles into `pixels`, one after the other: each stands on a line from `start` to `end`, (n, 2).
+
+    rise: from that line to the opposite one, (n, 2), at right angles. How much of a pixel is covered is the share
+    of it along the rectangle, times that across; exact where the rectangle is upright.
     """
     left, top, right, bottom = clip
-    sign = 1.0
-    if y1 < y0:
-        x0, y0, x1, y1, sign = x1, y1, x0, y0, -1.0
-    if y1 == y0:
-        return
-    slope = (x1 - x0) / (y1 - y0)
-    for row in range(max(math.floor(y0), top), min(math.ceil(y1), bottom)):
-        ya, yb = max(y0, float(row)), min(y1, row + 1.0)
-        height = sign * (yb - ya)
-        xa = min(max(x0 + (ya - y0) * slope, float(left)), float(right))
-        xb = min(max(x0 + (yb - y0) * slope, float(left)), float(right))
-        if xb < xa:
-            xa, xb = xb, xa
-        first, last = math.floor(xa), math.floor(xb)
-        if first == last:
-            share = first + 1.0 - 0.5 * (xa + xb)
-            change[row, first] += height * share
-            change[row, first + 1] += height * (1.0 - share)
-        else:
-            scale, before = height / (xb - xa), 0.0
-            for column in range(first, last + 1):
-                share = scale * (_ramp(column + 1.0 - xa) - _ramp(column + 1.0 - xb))
-                change[row, column] += share - before
-                before = share
-            change[row, last + 1] += height - before
-        reach[row, 0] = min(reach[row, 0], first)
-        reach[row, 1] = max(reach[row, 1], last + 1)
-
-
-@compiled
-def fill_polygons(pixels, change, reach, clip, corners, colour, opacity):
-    """Blend polygons with `corners` (n, k, 2) into `pixels`, one after the other, by the area they cover.
-
-    change, reach: scratch, see _accumulate_edge; all 0, and no column touched, before and after.
-    """
-    _, top, right, bottom = clip
-    for i in range(len(corners)):
-        low, high = float(bottom), float(top)
-        for k in range(corners.shape[1]):
-            x0, y0 = corners[i, k - 1]
-            x1, y1 = corners[i, k]
-            _accumulate_edge(change, reach, clip, x0, y0, x1, y1)
-            low, high = min(low, y1), max(high, y1)
-        for row in range(max(math.floor(low), top), min(math.ceil(high), bottom)):
-            line, changed, share = pixels[row], change[row], 0.0
-            for column in range(reach[row, 0], reach[row, 1] + 1):
-                share += changed[column]
-                changed[column] = 0.0
-                part = int(min(abs(share), 1.0) * opacity + 0.5)
-                if part > 0 and column < right:
-                    line[column] = mixed(line[column], colour, part)
-            reach[row, 0], reach[row, 1] = len(line), -1
+    opaque, half = np.float32(opacity), np.float32(0.5)
+    for i in range(len(start)):
+        x, y = start[i, 0], start[i, 1]
+        dx, dy, up_x, up_y = end[i, 0] - x, end[i, 1] - y, rise[i, 0], rise[i, 1]
+        if (dx == 0.0 and dy == 0.0) or (up_x == 0.0 and up_y == 0.0):
+            continue
+        (ax, ay, length), (bx, by, height) = _axis(dx, dy), _axis(up_x, up_y)
+        low, high = y + min(dy, 0.0) + min(up_y, 0.0), y + max(dy, 0.0) + max(up_y, 0.0)
+        for row in range(max(math.floor(low - 0.5), top), min(math.ceil(high + 0.5), bottom)):
+            along, across = (row + 0.5 - y) * ay, (row + 0.5 - y) * by
+            first_a, last_a = _crossing(along, ax, length)
+            first_b, last_b = _crossing(across, bx, height)
+            first = max(math.floor(x + max(first_a, first_b)), left)
+            last = min(math.ceil(x + min(last_a, last_b)), right)
+            if first >= last:
+                continue
+            # Whole sixteens: a processor blends those at once, and takes the rest one by one.
+            line = pixels[row, first : min(first + (last - first + 15) // 16 * 16, right)]
+            a, da, all_a = np.float32(along + (first + 0.5 - x) * ax), np.float32(ax), np.float32(length)
+            b, db, all_b = np.float32(across + (first + 0.5 - x) * bx), np.float32(bx), np.float32(height)
+            for column in range(len(line)):
+                t = np.float32(column)
+                share = _overlap(a + t * da, all_a) * _overlap(b + t * db, all_b)
+                line[column] = mixed(line[column], colour, np.uint32(share * opaque + half))
 
 
 @compiled

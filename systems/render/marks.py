@@ -32,6 +32,21 @@ class Fills:
 
 
 @dataclass(frozen=True)
+class Bars:
+    """Filled rectangles on lines from `start` to `end`, each (n, 2); `rise` (n, 2), at right angles, is how high."""
+
+    start: Points
+    end: Points
+    rise: Points
+    colour: Colour
+
+    @property
+    def corners(self) -> NDArray[np.float64]:
+        """Shape (n, 4, 2), from start round to end."""
+        return np.stack([self.start, self.start + self.rise, self.end + self.rise, self.end], axis=1)
+
+
+@dataclass(frozen=True)
 class Stamps:
     """One symbol at many places `at` (n, 2).
 
@@ -100,7 +115,7 @@ class Text:
     anchor: str = "left"
 
 
-Mark = Strokes | Fills | Stamps | Discs | Rectangles | Panel | Text
+Mark = Strokes | Fills | Bars | Stamps | Discs | Rectangles | Panel | Text
 
 
 @dataclass

@@ -15,7 +15,7 @@ import pygame.gfxdraw
 from numpy.typing import NDArray
 
 from systems.render.coverage import stroke_coverage, stroke_pixels_estimate
-from systems.render.marks import Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
+from systems.render.marks import Bars, Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
 from systems.render.raster import Clip, Pixels, Raster
 from systems.render.symbols import RIM, symbol_parts
 from systems.render.theme import Colour
@@ -25,7 +25,7 @@ _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
 _SKETCHED = 1_500  # elements of a kind
-_MANY = 300  # areas, discs; and 50 pixels of strokes for each: from there on the compiled kernels pay
+_MANY = 300  # bars, discs; and 50 pixels of strokes for each: from there on the compiled kernels pay
 
 
 class Canvas:
@@ -65,7 +65,9 @@ class Canvas:
                 case Text():
                     self._text(surface, mark)
                 case Fills():
-                    self._fills(surface, mark)
+                    _fill(surface, mark.corners, mark.colour)
+                case Bars():
+                    self._bars(surface, mark)
                 case Rectangles():
                     for box in mark.boxes.tolist():
                         surface.fill(mark.colour, box)
@@ -108,12 +110,11 @@ class Canvas:
             x, y, amount = stroke_coverage(mark.start[some], mark.end[some], mark.width)
             _blend(surface, x, y, amount, mark.colour)
 
-    def _fills(self, surface: pygame.Surface, mark: Fills) -> None:
-        if len(mark.corners) > _MANY and (raster := self._large()):
-            raster.fills(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
+    def _bars(self, surface: pygame.Surface, mark: Bars) -> None:
+        if len(mark.start) > _MANY and (raster := self._large()):
+            raster.bars(_pixels(surface), _clip(surface), mark, _pixel(surface, mark.colour))
         else:
-            for corners in np.round(mark.corners[self._some(len(mark.corners))]).astype(np.int64).tolist():
-                pygame.gfxdraw.filled_polygon(surface, corners, mark.colour)
+            _fill(surface, mark.corners[self._some(len(mark.start))], mark.colour)
 
     def _panel(self, surface: pygame.Surface, mark: Panel) -> None:
         left, top = round(mark.left), round(mark.top)
@@ -158,6 +159,12 @@ class Canvas:
             ("font", size, weight), lambda: pygame.font.Font(io.BytesIO(self._files[weight]), size)
         )
         return font
+
+
+def _fill(surface: pygame.Surface, corners: NDArray[np.float64], colour: Colour) -> None:
+    """Fill polygons with corners (n, k, 2), rounded to whole pixels."""
+    for polygon in np.round(corners).astype(np.int64).tolist():
+        pygame.gfxdraw.filled_polygon(surface, polygon, colour)
 
 
 def _pixels(surface: pygame.Surface) -> Pixels:

@@ -1,4 +1,4 @@
-"""Raster: draws many strokes, areas and discs at once into the pixels of a picture, by compiled kernels."""
+"""Raster: draws many strokes, bars and discs at once into the pixels of a picture, by compiled kernels."""
 
 from __future__ import annotations
 
@@ -7,18 +7,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.render.marks import Discs, Fills, Strokes
+from systems.render.marks import Bars, Discs, Strokes
 
 Pixels = NDArray[np.uint32]
 Clip = tuple[int, int, int, int]
 
+_BLOCK = (
+    4  # groups of eight pixels side by side: looked at as one number each, blended together if any is covered
+)
+
 # What is compiled, and for which types: those of kernels.py.
 _POINTS, _CLIP, _PIXELS = "float64[:, ::1]", "UniTuple(int64, 4)", "uint32[:, ::1]"
-_SCRATCH = "float64[:, ::1], int64[:, ::1]"
 SIGNATURES = {
     "cover_strokes": f"void(uint8[:, ::1], {_CLIP}, {_POINTS}, {_POINTS}, float64)",
-    "blend_cover": f"void({_PIXELS}, uint8[:, ::1], {_CLIP}, uint32, int64)",
-    "fill_polygons": f"void({_PIXELS}, {_SCRATCH}, {_CLIP}, float64[:, :, ::1], uint32, int64)",
+    "blend_cover": f"void({_PIXELS}, uint8[:, ::1], uint64[:, :, ::1], {_CLIP}, uint32, int64)",
+    "draw_bars": f"void({_PIXELS}, {_CLIP}, {_POINTS}, {_POINTS}, {_POINTS}, uint32, int64)",
     "draw_discs": f"void({_PIXELS}, {_CLIP}, {_POINTS}, float64[::1], float64, uint32, int64, uint32, int64)",
 }
 
@@ -32,29 +35,27 @@ class Raster:
     def __init__(self, kernels: Any) -> None:
         """kernels: a module with those of kernels.py, compiled."""
         self._kernels = kernels
-        self._prepare((0, 0))
+        self._prepare((1, 1))
 
     def _prepare(self, shape: tuple[int, int]) -> None:
-        self._cover = np.zeros(shape, dtype=np.uint8)
-        self._change = np.zeros((shape[0], shape[1] + 2))
-        self._reach = np.full((shape[0], 2), (shape[1], -1), dtype=np.int64)
+        """How much of each pixel is covered, and the same memory in blocks of groups; rows are of whole blocks."""
+        self._shape = shape
+        self._groups = np.zeros((shape[0], -(-shape[1] // (8 * _BLOCK)), _BLOCK), dtype=np.uint64)
+        self._cover = self._groups.view(np.uint8).reshape(shape[0], -1)
 
     def strokes(self, pixels: Pixels, clip: Clip, mark: Strokes, colour: np.uint32) -> None:
         """Each pixel takes the colour by what the stroke that covers most of it does."""
-        if pixels.shape != self._cover.shape:
+        if pixels.shape != self._shape:
             self._prepare(pixels.shape)
         ends = _contiguous(mark.start), _contiguous(mark.end)
         clip = _around(clip, mark)
         self._kernels.cover_strokes(self._cover, clip, *ends, mark.width)
-        self._kernels.blend_cover(pixels, self._cover, clip, colour, mark.colour[3])
+        self._kernels.blend_cover(pixels, self._cover, self._groups, clip, colour, mark.colour[3])
 
-    def fills(self, pixels: Pixels, clip: Clip, mark: Fills, colour: np.uint32) -> None:
-        """One polygon over the other."""
-        if pixels.shape != self._cover.shape:
-            self._prepare(pixels.shape)
-        corners = _contiguous(mark.corners)
-        scratch = self._change, self._reach
-        self._kernels.fill_polygons(pixels, *scratch, clip, corners, colour, mark.colour[3])
+    def bars(self, pixels: Pixels, clip: Clip, mark: Bars, colour: np.uint32) -> None:
+        """One rectangle over the other."""
+        places = _contiguous(mark.start), _contiguous(mark.end), _contiguous(mark.rise)
+        self._kernels.draw_bars(pixels, clip, *places, colour, mark.colour[3])
 
     def discs(self, pixels: Pixels, clip: Clip, mark: Discs, ink: np.uint32, hollow: np.uint32) -> None:
         """One disc over the other."""

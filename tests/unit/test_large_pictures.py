@@ -11,7 +11,7 @@ from components.tags import Selected
 from components.view import View
 from systems.render.clip import clip_rods, clip_segments
 from systems.render.labels import FAINT, STRONG, Occupancy
-from systems.render.marks import Fills, Picture, Stamps, Strokes
+from systems.render.marks import Bars, Picture, Stamps, Strokes
 from systems.render.picture import compose
 from systems.render.theme import load_theme
 from tests.benchmarks.models import lattice
@@ -38,7 +38,7 @@ def test_rods_too_short_for_diagrams_take_the_colour_of_their_force() -> None:
     model.writable("rods.axial_force")[...] = force
     model.tag(model.rods[0], Selected)
     picture = compose(model, view_of(model), LIGHT)
-    assert not [mark for mark in picture.marks if isinstance(mark, Fills)]
+    assert not [mark for mark in picture.marks if isinstance(mark, Bars)]
     found = {
         name: len(strokes(picture, getattr(LIGHT, name)).start) for name in ("tension", "compression", "ink")
     }

@@ -12,9 +12,10 @@ import pytest
 from numpy.typing import NDArray
 
 from components.camera import Viewport
+from components.field import Vector
 from game.raster_program import load_raster
 from systems.render.coverage import stroke_coverage
-from systems.render.marks import Discs, Fills, Mark, Picture, Points, Strokes
+from systems.render.marks import Bars, Discs, Mark, Picture, Points, Strokes
 from systems.render.pygame_canvas import Canvas
 
 BLACK, WHITE = (0, 0, 0, 255), (255, 255, 255, 255)
@@ -59,26 +60,58 @@ def test_translucent_strokes_do_not_add_up_where_they_cross() -> None:
     assert found.max() == pytest.approx(0.2, abs=0.003)
 
 
+def bars(start: Vector, end: Vector, height: float, times: int = 400) -> tuple[Points, Points, Points]:
+    """Start, end and rise of one bar, and others that lie far outside."""
+    (dx, dy), places = np.subtract(end, start), np.array([start, end], dtype=np.float64)
+    rise = np.array([[-dy, dx]]) * height / np.hypot(dx, dy)
+    first, last = (many(place[None], times) for place in places)
+    return first, last, np.concatenate([rise, np.full((times, 2), 3.0)])
+
+
+@pytest.mark.parametrize("height", [0.2, 1.0, 7.0, -7.0])
 @pytest.mark.parametrize("seed", range(5))
-def test_areas_are_exact(seed: int) -> None:
-    """Σ of what a triangle covers of all pixels is its area, to the rounding of each pixel it has an edge in."""
-    corners = np.random.default_rng(seed).uniform(2, SIZE - 2, (1, 3, 2))
-    (ax, ay), (bx, by) = corners[0, 1:] - corners[0, 0]
-    edges = float(np.abs(np.diff(corners[0], axis=0, append=corners[0, :1])).sum()) + 10.0
-    found = float(darkness(Fills(many(corners), BLACK)).sum())
-    assert found == pytest.approx(abs(ax * by - ay * bx) / 2, abs=0.5 * edges / 255)
+def test_bars_have_their_area(seed: int, height: float) -> None:
+    """Σ of what one covers of all pixels is its area, to the rounding of each pixel it has an edge in."""
+    start, end = np.random.default_rng(seed).uniform(10, SIZE - 10, (2, 2))
+    length = float(np.hypot(*(end - start)))
+    found = float(darkness(Bars(*bars(start, end, height), BLACK)).sum())
+    edges = 2.0 * (length + abs(height)) + 10.0
+    assert found == pytest.approx(length * abs(height), abs=0.5 * edges / 255)
 
 
-def test_an_upright_area_is_exact_in_every_pixel() -> None:
-    box = np.array([[[3.25, 5.0], [9.0, 5.0], [9.0, 7.5], [3.25, 7.5]]])
+def test_an_upright_bar_is_exact_in_every_pixel() -> None:
     expected = np.zeros((SIZE, SIZE))
     expected[3:9, 5:8] = np.outer([0.75, 1, 1, 1, 1, 1], [1, 1, 0.5])
-    np.testing.assert_allclose(darkness(Fills(many(box), BLACK)), expected, atol=0.5 / 255 + 1e-9)
+    for start, end, height in (
+        ((3.25, 5.0), (9.0, 5.0), 2.5),
+        ((3.25, 7.5), (9.0, 7.5), -2.5),
+        ((3.25, 5.0), (3.25, 7.5), -5.75),
+        ((9.0, 7.5), (9.0, 5.0), -5.75),
+    ):
+        found = darkness(Bars(*bars(start, end, height), BLACK))
+        np.testing.assert_allclose(found, expected, atol=0.5 / 255 + 1e-9)
 
 
-def test_areas_lie_over_each_other() -> None:
-    box = np.array([[[3.0, 5.0], [9.0, 5.0], [9.0, 8.0], [3.0, 8.0]]])
-    found = darkness(Fills(np.concatenate([box, many(box)]), (0, 0, 0, 128)))
+def test_bars_look_like_those_of_small_pictures() -> None:
+    """Which are rounded to whole pixels: these are."""
+    mark = Bars(*bars((4.0, 6.0), (12.0, 6.0), 5.0), BLACK)
+    few = Bars(mark.start[:1], mark.end[:1], mark.rise[:1], BLACK)
+    inside = (slice(5, 12), slice(7, 11))  # polygons of whole pixels take in their last ones
+    np.testing.assert_array_equal(darkness(few)[inside], darkness(mark)[inside])
+    assert darkness(few).sum() == pytest.approx(darkness(mark).sum(), abs=14.0)
+
+
+def test_bars_of_no_size_are_not_there() -> None:
+    place = np.full((400, 2), 20.0)
+    assert not darkness(Bars(place, place, np.zeros_like(place), BLACK)).any()
+    assert not darkness(Bars(place, place, place, BLACK)).any()
+    assert not darkness(Bars(place, place + 5.0, np.zeros_like(place), BLACK)).any()
+
+
+def test_bars_lie_over_each_other() -> None:
+    start, end, rise = bars((3.0, 5.0), (9.0, 5.0), 3.0)
+    start, end, rise = (np.concatenate([part[:1], part]) for part in (start, end, rise))
+    found = darkness(Bars(start, end, rise, (0, 0, 0, 128)))
     assert found[5, 6] == pytest.approx(0.75, abs=0.005)
 
 
@@ -103,10 +136,15 @@ def test_discs_look_like_those_of_small_pictures(rim: float) -> None:
     "mark",
     [
         Strokes(np.full((3000, 2), -50.0), np.full((3000, 2), 90.0), 3.0, BLACK),
-        Fills(np.tile([[[-50.0, -50.0], [90.0, -50.0], [90.0, 90.0], [-50.0, 90.0]]], (400, 1, 1)), BLACK),
+        Bars(
+            np.full((400, 2), -50.0),
+            np.tile([[90.0, -50.0]], (400, 1)),
+            np.tile([[0.0, 140.0]], (400, 1)),
+            BLACK,
+        ),
         Discs(np.full((400, 2), 20.0), np.full(400, 60.0), BLACK, WHITE),
     ],
-    ids=["strokes", "fills", "discs"],
+    ids=["strokes", "bars", "discs"],
 )
 def test_nothing_is_drawn_outside_of_the_viewport(mark: Mark) -> None:
     found = darkness(mark, Viewport(10, 15, 12, 9))
@@ -117,12 +155,12 @@ def test_nothing_is_drawn_outside_of_the_viewport(mark: Mark) -> None:
 
 def test_surfaces_of_other_sizes_come_next() -> None:
     canvas = Canvas(load_raster)
-    box = np.array([[[0.0, 0.0], [90.0, 0.0], [90.0, 90.0], [0.0, 90.0]]])
+    box = bars((0.0, 0.0), (90.0, 0.0), 90.0)
     for size in ((30, 20), (50, 60), (10, 10)):
         surface = pygame.Surface(size, depth=32)
         surface.fill(WHITE)
         start, end = np.full((3000, 2), (-5.0, 5.0)), np.full((3000, 2), (95.0, 5.0))
-        marks: list[Mark] = [Fills(many(box), (255, 0, 0, 255)), Strokes(start, end, 2.0, BLACK)]
+        marks: list[Mark] = [Bars(*box, (255, 0, 0, 255)), Strokes(start, end, 2.0, BLACK)]
         canvas.draw(surface, Picture(Viewport(0, 0, *size), None, marks))
         assert surface.get_at((size[0] - 1, size[1] - 1))[:3] == (255, 0, 0)
         assert surface.get_at((size[0] - 1, 5))[:3] == (0, 0, 0)

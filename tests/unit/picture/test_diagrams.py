@@ -11,7 +11,7 @@ from components.model import Model
 from components.particle import Particle
 from components.tags import DiagramShown
 from systems.render.diagrams import diagram_factor, scale_step, written
-from systems.render.marks import Fills, Stamps
+from systems.render.marks import Bars, Stamps
 from systems.render.picture import compose
 from systems.render.supports import DOWN, LEFT, RIGHT, UP
 from tests.unit.picture.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
@@ -30,8 +30,8 @@ def test_diagram_heights_are_proportional_to_forces_and_shrink_together() -> Non
     for scale in (0.1, 1.0, 7.0):
         model.settings.diagram_scale = scale
         picture = picture_of(model, all_diagrams=True)
-        (red,) = marks_of(picture, Fills, LIGHT.tension)
-        (blue,) = marks_of(picture, Fills, LIGHT.compression)
+        (red,) = marks_of(picture, Bars, LIGHT.tension)
+        (blue,) = marks_of(picture, Bars, LIGHT.compression)
         corners = np.concatenate([blue.corners, red.corners])
         heights = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
         factor = diagram_factor(198.02746, 0.0, scale, 0.15 * 600)
@@ -73,7 +73,7 @@ def test_diagrams_of_small_loads_are_enlarged_and_stay_so_while_the_forces_vibra
 def test_diagrams_stand_outside_of_the_structure() -> None:
     picture = picture_of(triangle(), all_diagrams=True)
     middle = view_of(triangle()).camera.to_pixels((1.0, 1.0 / 3.0))
-    diagrams = [corners for fills in marks_of(picture, Fills) for corners in fills.corners if len(corners) == 4]
+    diagrams = [corners for bars in marks_of(picture, Bars) for corners in bars.corners]
     assert len(diagrams) >= 3
     for corners in diagrams:
         on_rod, off_rod = (corners[0] + corners[3]) / 2, (corners[1] + corners[2]) / 2
@@ -84,7 +84,7 @@ def test_a_rod_without_force_is_black_and_reads_zero() -> None:
     model = triangle()
     fill(model, "rods.axial_force", [0.0, -1e-7, 1.0])
     picture = picture_of(model, all_diagrams=True)
-    (black,) = marks_of(picture, Fills, LIGHT.zero)
+    (black,) = marks_of(picture, Bars, LIGHT.zero)
     assert len(black.corners) == 2
     assert LIGHT.zero[:3] == (0, 0, 0)
     assert picture.texts.count("0.00 kN") == 2
