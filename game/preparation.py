@@ -12,13 +12,13 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from components.obstacles import any_obstacles
-from components.rod import nodes
+from components.rod import is_warm, nodes
 from game.catalogue import DRIVERS
 from game.collisions.encounter_kernels import has_encounters
 from game.collisions.encounters import load_encounters
 from game.collisions.flight_kernels import EVENTS, PILES, WINDOWS, has_parts
 from game.mods import MODS
-from game.prepare import ENCOUNTERS, FLIGHT, PILING, RASTER
+from game.prepare import ENCOUNTERS, FLIGHT, PILING, RASTER, WARM, Job, is_prepared, load_program
 from game.program.cache import is_blank, load_compiler
 from game.program.program import has_program
 from game.program.writer import form_of, read_sources
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from game.simulation import Simulation
     from systems.render.raster import Raster
 
-Job = tuple[str, ...]  # what `python -m game.prepare` is asked for
 FREE: dict[str, Callable[[], bool]] = {  # two processes compile the two halves of what free particles need
     FLIGHT: partial(has_parts, EVENTS),
     PILING: partial(has_parts, WINDOWS, PILES),
@@ -60,6 +59,8 @@ class Preparation(System):
         self._blank = is_blank()  # then it is known without the compiler that nothing is compiled
         self._loaded = False  # the program was, in the last frame
         self._encounters = False  # they are loaded
+        self._looked = -1  # the model's revision when it was seen to what a hand needs
+        self._pulled: set[Job] = set()  # what a hand needs, as far as it was loaded
         self._running: dict[Job, subprocess.Popen[bytes]] = {}
         self._since: dict[Job, float] = {}
         self._done: set[Job] = set()
@@ -73,11 +74,14 @@ class Preparation(System):
         before, self._structure = self._structure, simulation.model.structure
         if before != self._structure:  # what was made or deleted is seen first
             return
+        seen, self._seen = self._seen, simulation.model.revision
         loaded, self._loaded = self._loaded, simulation.ready
         if loaded and simulation.ready and self._waits_for_meetings(simulation) is None:
             self._load_encounters(simulation)
+            if seen == self._seen:
+                self._load_pulled(simulation)
         else:
-            self._load(simulation)
+            self._load(simulation, idle=seen == self._seen)
         self._compile_ahead()
 
     def _load_encounters(self, simulation: Simulation) -> None:
@@ -93,11 +97,25 @@ class Preparation(System):
                 if self._waits((job,), is_compiled) is not None:
                     return
 
-    def _load(self, simulation: Simulation) -> None:
+    def _load_pulled(self, simulation: Simulation) -> None:
+        """While nothing happens: what takes the steps while a hand pulls, for loading it takes two frames."""
+        if self._seen == self._looked or simulation.integrator == FLIGHT:
+            return
+        plan = simulation.schedule.step_plan(simulation.model)
+        pulled = (*_job(simulation, plan), Pull.name)
+        if pulled in self._running and self._running[pulled].poll() is None:  # still compiling
+            return
+        self._looked = self._seen
+        if pulled in self._pulled:
+            return
+        self._pulled.add(pulled)
+        if is_prepared(pulled):
+            load_program(pulled)
+
+    def _load(self, simulation: Simulation, *, idle: bool) -> None:
         """As soon as its program is compiled, and what was done is seen: who needs it first need not wait."""
-        seen, self._seen = self._seen, simulation.model.revision
-        idle = self.waits_for(simulation) is None and seen == self._seen
-        if idle and not simulation.ready and _is_compiled(simulation):
+        waits = self.waits_for(simulation) is not None
+        if idle and not waits and not simulation.ready and _is_compiled(simulation):
             simulation.program  # noqa: B018 (it is loaded when asked for)
 
     def waits_for(self, simulation: Simulation) -> float | None:
@@ -170,7 +188,8 @@ def _with_support(simulation: Simulation) -> list[StepSystem]:
 
 def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
     form = form_of(simulation.model, simulation.driver)
-    return simulation.integrator, form, *(system.name for system in plan)
+    warmth = (WARM,) if is_warm(simulation.model) else ()
+    return simulation.integrator, form, *warmth, *(system.name for system in plan)
 
 
 def _is_compiled(simulation: Simulation) -> bool:

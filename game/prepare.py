@@ -1,4 +1,4 @@
-"""Compile ahead of need: `python -m game.prepare DRIVER FORM SYSTEM…` for a step program, `… free_flight` and
+"""Compile ahead of need: `python -m game.prepare DRIVER FORM [warm] SYSTEM…` for a step program, `… free_flight` and
 `… windows_and_piles` for collisions of free particles, `… encounters` for those of others, or `… raster` for drawing.
 
 The window runs this in another process, because a compiler in its own would hold it up, in a thread too.
@@ -12,22 +12,29 @@ from collections.abc import Sequence
 
 from components.model import Model
 from components.particle import Particle
+from components.rod import spawn_rods
 from game.catalogue import DRIVERS
 from game.collisions.encounters import load_encounters
 from game.collisions.flight_kernels import EVENTS, PILES, WINDOWS, load_part
 from game.mods.command import load_as_asked
 from game.program.cache import forget_unused
 from game.program.in_blocks import make_program
+from game.program.program import has_program
 from game.raster_program import load_raster
 from game.session import Session
+from systems.base import Driver, StepSystem
 from systems.edit.pull import Hand
 
 RASTER, FLIGHT, PILING, ENCOUNTERS = "raster", "free_flight", "windows_and_piles", "encounters"
+WARM = "warm"  # the program is for rods whose temperature may have changed
+
+Job = tuple[str, ...]  # what to compile, in these words
 
 
 def main(words: Sequence[str]) -> None:
     """Compile what is asked for into the cache."""
-    name, *rest = load_as_asked(words)
+    job = tuple(load_as_asked(words))
+    name = job[0]
     if name == RASTER:
         load_raster()
     elif name == FLIGHT:
@@ -38,13 +45,33 @@ def main(words: Sequence[str]) -> None:
     elif name == ENCOUNTERS:
         load_encounters()
     else:
-        model = Model()
-        (particle,) = model.create(Particle, 1)
-        session = Session(model)
-        session.pull.take(Hand(particle, 1.0, 0.0, (0.0, 0.0)))  # in case that the hand is part of it
-        form, *systems = rest
-        make_program(model, session.schedule.named(systems), DRIVERS[name], form)
+        load_program(job)
     forget_unused()
+
+
+def load_program(job: Job) -> None:
+    """Load the step program that is asked for, after compiling it if nobody has."""
+    session, plan, driver, form = _example(job)
+    make_program(session.model, plan, driver, form)
+
+
+def is_prepared(job: Job) -> bool:
+    """True if the step program that is asked for need only be loaded."""
+    session, plan, driver, form = _example(job)
+    return has_program(session.model, plan, driver, form)
+
+
+def _example(job: Job) -> tuple[Session, list[StepSystem], Driver, str]:
+    """The smallest model with the program that is asked for, and its plan, driver and form."""
+    name, form, *systems = job
+    model = Model()
+    first, second = model.create(Particle, 2, position=[[0.0, 0.0], [1.0, 0.0]])
+    if WARM in systems:
+        systems.remove(WARM)
+        spawn_rods(model, [[first.row, second.row]], temperature_change=1.0)
+    session = Session(model)
+    session.pull.take(Hand(first, 1.0, 0.0, (0.0, 0.0)))  # in case that the hand is part of it
+    return session, session.schedule.named(systems), DRIVERS[name], form
 
 
 if __name__ == "__main__":

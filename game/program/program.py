@@ -46,9 +46,9 @@ def _writer(model: Model, systems: Sequence[StepSystem], driver: Driver, form: s
     return (ControlledWriter if driver.controlled else plain)(model, joining, driver, form)
 
 
-def has_program(model: Model, systems: Sequence[StepSystem], driver: Driver) -> bool:
-    """True if the program of this plan need not be compiled any more, only loaded."""
-    writer = _writer(model, systems, driver, form_of(model, driver))
+def has_program(model: Model, systems: Sequence[StepSystem], driver: Driver, form: str = "") -> bool:
+    """True if the program of this plan, in the form that suits the model or another, need only be loaded."""
+    writer = _writer(model, systems, driver, form or form_of(model, driver))
     return is_compiled(writer.source(), writer.kernels)
 
 

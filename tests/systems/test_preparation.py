@@ -20,8 +20,11 @@ from game import models, preparation
 from game.app import App
 from game.collisions import encounter_kernels
 from game.preparation import Preparation
+from game.prepare import _example
 from game.program import cache
-from game.program.writer import FEW
+from game.program.program import _writer
+from game.program.writer import FEW, form_of
+from game.session import Session
 from game.showing import COMPILING
 from systems.input import pygame_input
 
@@ -173,6 +176,37 @@ def test_what_is_compiled_is_loaded_before_a_key_needs_it(
     assert app.session.desk.unsaved == saved
 
 
+def test_what_a_hand_needs_is_loaded_while_nothing_happens(
+    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loaded: list[preparation.Job] = []
+    monkeypatch.setattr(preparation, "is_prepared", lambda job: True)
+    monkeypatch.setattr(preparation, "load_program", loaded.append)
+    session = app.session
+    session.press("space")
+    compiler.status = 0
+    frames(app, 6)
+    assert session.model.clock.steps > 0
+    assert loaded == []  # it would hold up a picture
+    session.press("space")
+    frames(app, 6)
+    assert loaded == [(*compiler.jobs[0], "edit.pull")]
+
+
+@pytest.mark.parametrize("name", ["isostatic", "tower", "ball_on_truss", "hanging_net"])
+@pytest.mark.parametrize("warmth", [0.0, 20.0])
+def test_what_another_process_compiles_is_what_the_model_needs(name: str, warmth: float) -> None:
+    session = Session(models.load(name))
+    session.model.assign(list(session.rods), "temperature_change", warmth)
+    simulation = session.simulation
+    plan = session.schedule.step_plan(session.model)
+    example, same_plan, driver, form = _example(preparation._job(simulation, plan))
+    there = _writer(example.model, same_plan, driver, form)
+    here = _writer(session.model, plan, simulation.driver, form_of(session.model, simulation.driver))
+    assert there.source() == here.source()
+    assert there.kernels == here.kernels
+
+
 def test_free_particles_have_their_program_loaded_too(
     app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -254,8 +288,6 @@ for entry in (module.advance, module.observe):
 
 
 def test_another_process_compiles_what_this_one_loads(tmp_path: Path) -> None:
-    from game import Session
-
     session = Session.open(json.loads(ALONE))
     names = [system.name for system in session.schedule.step_plan(session.model)]
     folders = {"XDG_CACHE_HOME": str(tmp_path), "LOCALAPPDATA": str(tmp_path), "HOME": str(tmp_path)}
