@@ -20,7 +20,7 @@ from game import models, preparation
 from game.app import App
 from game.collisions import encounter_kernels
 from game.preparation import Preparation
-from game.prepare import _example
+from game.prepare import Job, _example
 from game.program import cache
 from game.program.program import _writer
 from game.program.writer import FEW, form_of
@@ -179,7 +179,7 @@ def test_what_is_compiled_is_loaded_before_a_key_needs_it(
 def test_what_a_hand_needs_is_loaded_while_nothing_happens(
     app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    loaded: list[preparation.Job] = []
+    loaded: list[Job] = []
     monkeypatch.setattr(preparation, "is_prepared", lambda job: True)
     monkeypatch.setattr(preparation, "load_program", loaded.append)
     session = app.session
