@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import Literal
 
 import numpy as np
@@ -19,9 +19,6 @@ from systems.render.supports import NO_SUPPORT, crowding
 from systems.render.symbols import ARROW_LENGTH, SUPPORT_DEPTH
 from systems.render.theme import Colour, faded
 
-Pair = Sequence[float]
-Places = list[tuple[float, float]]
-
 SMALLEST_FORCE = 1e-4  # kN; less is drawn as none
 _FEW_VALUES = 24  # up to which each carries its unit and keeps clear of rods
 _STEPS = (8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0)
@@ -29,6 +26,7 @@ _TOO_FLAT, _ENLARGED = 0.05, 0.3  # of the room: loads (one point per kN) below 
 _SHORTEST_WITH_DIAGRAM = 6.0  # points
 _SHORTEST_WITH_VALUE = 24.0  # points; the values of shorter rods would only hide the structure
 _MANY_ARROWS = 200  # up to which all are drawn, though they may lie over each other
+_SLIDES = np.array([0.0, 1.0, -1.0, 2.0, -2.0])  # along a rod, in sizes of a label: the middle first
 _BACKING = 0.86  # opacity behind a value
 
 
@@ -164,14 +162,14 @@ def _label_rods(
     if typical_length(sheet.start, sheet.end) < _SHORTEST_WITH_VALUE * sheet.unit:
         candidates = np.flatnonzero(selected)
         sheet.notes.append("zoom in to read forces")
-    written_ones = _most_important(sheet, values, candidates, selected, middle)
+    shown = _most_important(sheet, values, candidates, selected, middle)
     few = len(values) <= _FEW_VALUES
-    for index in written_ones:
-        value = float(values[index])
-        text, size, half = _value_text(sheet, written(value), few)
-        places = _places_by_rod(middle[index].tolist(), normal[index].tolist(), height[index].item(), half, few)
-        rank = _rank(value) - 1e6 * bool(selected[index])
-        _add_value(sheet, text, places, size, getattr(sheet.theme, _sign_of(value)), rank, few)
+    numbers = values[shown].tolist()
+    texts, size, half = _value_texts(sheet, map(written, numbers), few)
+    places = _places_by_rods(middle[shown], normal[shown], height[shown], half, few)
+    for value, text, where, held in zip(numbers, texts, places, selected[shown].tolist(), strict=True):
+        colour = getattr(sheet.theme, _sign_of(value))
+        _add_value(sheet, text, where, size, colour, _rank(value) - 1e6 * held, few)
 
 
 def _sign_of(force: float) -> str:
@@ -186,7 +184,7 @@ def _rank(value: float) -> float:
 
 def _most_important(
     sheet: Sheet, values: NDArray[np.float64], candidates: Rows, selected: NDArray[np.bool_], at: Points
-) -> list[int]:
+) -> Rows:
     """The selected and the largest values at visible points, as many as leave most of the picture free.
 
     candidates: indices of those to choose from.
@@ -198,40 +196,43 @@ def _most_important(
     if len(seen) > most:
         enough = np.partition(worth, -most)[-most] if most else np.inf
         seen, worth = seen[worth >= enough], worth[worth >= enough]
-    order: list[int] = seen[np.lexsort((-np.abs(values[seen]), -worth))][:most].tolist()
+    order: Rows = seen[np.lexsort((-np.abs(values[seen]), -worth))][:most]
     return order
 
 
-def _value_text(sheet: Sheet, number: str, few: bool) -> tuple[str, int, tuple[float, float]]:
-    """A value as it is written among few or many, its font size, and half the size of its label."""
-    text = number + (" kN" if few else "")
+def _value_texts(sheet: Sheet, numbers: Iterable[str], few: bool) -> tuple[list[str], int, Points]:
+    """Values as they are written among few or many, their font size, and half the size of each label, (n, 2)."""
+    texts = [f"{number} kN" for number in numbers] if few else list(numbers)
     size = sheet.font(12.0 if few else 11.0)
-    return text, size, half_size(text, size, "semibold", sheet.unit)
+    half = [half_size(text, size, "semibold", sheet.unit) for text in texts]
+    return texts, size, np.array(half).reshape(-1, 2)
 
 
 def _add_value(
-    sheet: Sheet, text: str, places: Places, size: int, colour: Colour, rank: float, few: bool
+    sheet: Sheet, text: str, places: Points, size: int, colour: Colour, rank: float, few: bool
 ) -> None:
     backing = faded(sheet.theme.background, _BACKING)
     lines: Literal["spare", "cover"] = "spare" if few else "cover"
     sheet.labels.append(Label(text, places, size, colour, rank, "semibold", backing, lines))
 
 
-def _places_by_rod(middle: Pair, normal: Pair, height: float, half: tuple[float, float], few: bool) -> Places:
-    """Where the value of a rod may stand: in its diagram if it fits, else beyond, else behind the rod.
+def _places_by_rods(
+    middle: Points, normal: Points, height: NDArray[np.float64], half: Points, few: bool
+) -> list[Points]:
+    """Where the value of each rod may stand: in its diagram if it fits, else beyond, else behind the rod.
 
     Among many rods it stands on its own one first, since beside it, it might be taken for another's.
     reach is how far a label extends from its middle along the normal, slide a step along the rod.
     """
-    (x, y), (nx, ny) = middle, normal
-    reach = abs(nx) * half[0] + abs(ny) * half[1]
-    slide = abs(ny) * half[0] + abs(nx) * half[1]
-    inside = [height / 2] if height > 2.0 * reach or not few else []
-    return [
-        (x + nx * distance - ny * step * slide, y + ny * distance + nx * step * slide)
-        for distance in (*inside, height + reach, height / 2, -reach)
-        for step in (0.0, 1.0, -1.0, 2.0, -2.0)
-    ]
+    normal_x, normal_y = np.abs(normal).T
+    reach, slide = normal_x * half[:, 0] + normal_y * half[:, 1], normal_y * half[:, 0] + normal_x * half[:, 1]
+    distance = np.stack([height / 2, height + reach, height / 2, -reach], axis=1)
+    step = slide[:, None] * _SLIDES
+    across, along = normal[:, None, None, :], np.stack([-normal[:, 1], normal[:, 0]], axis=1)[:, None, None, :]
+    places = middle[:, None, None, :] + distance[:, :, None, None] * across + step[:, None, :, None] * along
+    places = places.reshape(len(middle), distance.shape[1] * step.shape[1], 2)
+    inside = (height > 2.0 * reach) | (not few)
+    return [row if fits else row[len(_SLIDES) :] for row, fits in zip(places, inside.tolist(), strict=True)]
 
 
 def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
@@ -310,24 +311,30 @@ def _arrow_places(
 def _label_arrows(sheet: Sheet, value: NDArray[np.float64], middle: Points, side: NDArray[np.int64]) -> None:
     few = len(value) <= _FEW_VALUES
     nothing = np.zeros(len(value), dtype=bool)
-    for index in _most_important(sheet, value, np.arange(len(value)), nothing, middle):
-        size_of_force = abs(float(value[index]))
-        # The smallest that is drawn at all, 0.0001, must not read 0.00.
-        number = written(size_of_force, 2 if size_of_force >= 0.01 else 4)
-        text, size, half = _value_text(sheet, number, few)
-        outward = DIRECTIONS[side[index]].tolist()
-        places = _places_by_arrow(middle[index].tolist(), outward, half, sheet.unit)
+    shown = _most_important(sheet, value, np.arange(len(value)), nothing, middle)
+    sizes = np.abs(value[shown]).tolist()
+    # The smallest that is drawn at all, 0.0001, must not read 0.00.
+    numbers = (written(size, 2 if size >= 0.01 else 4) for size in sizes)
+    texts, font, half = _value_texts(sheet, numbers, few)
+    places = _places_by_arrows(middle[shown], DIRECTIONS[side[shown]], half, sheet.unit)
+    for size, text, where in zip(sizes, texts, places, strict=True):
         # Arrows are few and say little without their value: before the rods.
-        _add_value(sheet, text, places, size, sheet.theme.force, _rank(size_of_force) - 1e9, few)
+        _add_value(sheet, text, where, font, sheet.theme.force, _rank(size) - 1e9, few)
 
 
-def _places_by_arrow(middle: Pair, outward: Pair, half: tuple[float, float], u: float) -> Places:
-    """Where the value of an arrow may stand: beyond its outer end, beside it, beside that end."""
-    (x, y), (dx, dy) = middle, outward
-    length, width = (half[0], half[1]) if dx else (half[1], half[0])
-    beyond, beside = ARROW_LENGTH * u / 2 + length, width + 7.5 * u
-    places = [(beyond, 0.0)]
-    for along in (0.0, length - ARROW_LENGTH * u / 2, ARROW_LENGTH * u / 2, beyond):
-        places += [(along, beside), (along, -beside)]
-    places += [(0.0, beside + width), (0.0, -beside - width)]
-    return [(x + dx * along + dy * across, y + dy * along + dx * across) for along, across in places]
+def _places_by_arrows(middle: Points, outward: Points, half: Points, u: float) -> Points:
+    """Where the value of each arrow may stand, (n, k, 2): beyond its outer end, beside it, beside that end."""
+    level = outward[:, 0] != 0.0
+    length, width = np.where(level, half.T, half.T[::-1])
+    outer, nothing = ARROW_LENGTH * u / 2, np.zeros(len(middle))
+    beyond, beside = outer + length, width + 7.5 * u
+    along, across = [beyond], [nothing]
+    for place in (nothing, length - outer, nothing + outer, beyond):
+        along += [place, place]
+        across += [beside, -beside]
+    along += [nothing, nothing]
+    across += [beside + width, -beside - width]
+    x, y = np.stack(along, axis=1), np.stack(across, axis=1)
+    dx, dy = outward.T[:, :, None]
+    places: Points = middle[:, None, :] + np.stack([dx * x + dy * y, dy * x + dx * y], axis=2)
+    return places

@@ -92,14 +92,14 @@ class Occupancy:
 
 @dataclass(frozen=True)
 class Label:
-    """A text that is to be placed with its middle at one of `places`, the best first.
+    """A text that is to be placed with its middle at one of `places` (k, 2), the best first.
 
     rank: labels of lower rank come first. backing: colour behind the text, or None. lines: whether it may
     cover rods ("cover"), only if there is no other place ("spare"), or no line ever ("avoid").
     """
 
     text: str
-    places: Sequence[tuple[float, float]]
+    places: Points | Sequence[tuple[float, float]]
     size: int
     colour: Colour
     rank: float
@@ -117,45 +117,53 @@ def place_labels(labels: Iterable[Label], occupancy: Occupancy, unit: float) -> 
     """Marks of the labels that found a free place, in order of rank; the others are left out."""
     marks: list[Mark] = []
     ranked = sorted(labels, key=lambda label: label.rank)
-    halves = [half_size(label.text, label.size, label.weight, unit) for label in ranked]
-    for label, place, half in zip(ranked, _free_places(ranked, halves, occupancy), halves, strict=True):
-        if place is None:
-            continue
-        x, y = place
-        box = x - half[0], y - half[1], 2 * half[0], 2 * half[1]
-        occupancy.block(*box)
+    if not ranked:
+        return marks
+    count = [len(label.places) for label in ranked]
+    sizes = np.array([half_size(label.text, label.size, label.weight, unit) for label in ranked])
+    half = np.repeat(sizes, count, axis=0)
+    low, high = bounds(occupancy.viewport)
+    middle = np.concatenate([label.places for label in ranked])
+    middle = np.minimum(np.maximum(middle, low + half), high - half)  # into the viewport where it sticks out
+    cells = occupancy.cells_of(middle - half, 2.0 * half)
+    for label, place in _free_places(ranked, np.repeat(np.arange(len(ranked)), count), cells, occupancy):
+        (x, y), (half_width, half_height) = middle[place].tolist(), half[place].tolist()
         if label.backing is not None:
+            box = x - half_width, y - half_height, 2.0 * half_width, 2.0 * half_height
             marks.append(Panel(*box, 4.0 * unit, label.backing))
         marks.append(Text(label.text, x, y, label.size, label.colour, label.weight, "centre"))
     return marks
 
 
 def _free_places(
-    labels: Sequence[Label], halves: Sequence[tuple[float, float]], occupancy: Occupancy
-) -> Iterator[tuple[float, float] | None]:
-    """For one label after the other the first of its places that is free, also of the labels before it.
+    labels: Sequence[Label], of: NDArray[np.intp], cells: NDArray[np.intp], occupancy: Occupancy
+) -> Iterator[tuple[Label, int]]:
+    """Each label for which any of its places is free, and the first such place, which is taken.
 
-    Which are free of all else is found for all places at once: there are thousands of them in every frame.
+    of: which label each place is of; cells (k, 4) of each place. What is free of all else is found for all places
+    at once, since there are thousands of them in every frame; then, one after the other, of the labels before it.
     """
-    middle = np.array([place for label in labels for place in label.places]).reshape(-1, 2)
-    half = np.repeat(np.array(halves).reshape(-1, 2), [len(label.places) for label in labels], axis=0)
-    low, high = bounds(occupancy.viewport)
-    middle = np.minimum(np.maximum(middle, low + half), high - half)  # into the viewport where it sticks out
-    cells = occupancy.cells_of(middle - half, 2.0 * half)
-    needed = sorted({covering for label in labels for covering in _COVERED[label.lines]})
-    free = {covering: occupancy.are_free(cells, covering).tolist() for covering in needed}
-    xs, ys = middle.T.tolist()  # by columns: thousands of small lists would be as many objects to look after
-    left, top, right, bottom = cells.T.tolist()
+    coverings = [_COVERED[label.lines] for label in labels]
+    attempts = []
+    for attempt in range(max(map(len, coverings))):
+        covering = np.array([given[attempt] if attempt < len(given) else -1 for given in coverings])[of]
+        free = np.zeros(len(of), dtype=bool)
+        for strength in sorted({given[attempt] for given in coverings if attempt < len(given)}):
+            free |= (covering == strength) & occupancy.are_free(cells, strength)
+        attempts.append(np.flatnonzero(free))
+    tried = np.concatenate(attempts)
+    tried = tried[np.argsort(of[tried], kind="stable")]  # all attempts of one label, then those of the next
     taken = [0] * len(occupancy.taken)  # by labels so far: the columns of each row as bits of one number
-    first = 0
-    for label in labels:
-        chosen = None
-        indices = range(first, first + len(label.places))
-        for index in (i for covering in _COVERED[label.lines] for i in indices if free[covering][i]):
-            rows, bits = slice(top[index], bottom[index]), (1 << right[index]) - (1 << left[index])
-            if not any(row & bits for row in taken[rows]):
-                taken[rows] = [row | bits for row in taken[rows]]
-                chosen = xs[index], ys[index]
-                break
-        yield chosen
-        first = indices.stop
+    placed = -1
+    for index, place, (left, top, right, bottom) in zip(
+        of[tried].tolist(), tried.tolist(), cells[tried].tolist(), strict=True
+    ):
+        if index == placed:
+            continue
+        bits = (1 << right) - (1 << left)
+        if any(row & bits for row in taken[top:bottom]):
+            continue
+        taken[top:bottom] = [row | bits for row in taken[top:bottom]]
+        occupancy.taken[top:bottom, left:right] = True
+        placed = index
+        yield labels[index], place
