@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -17,6 +18,7 @@ from systems.render.typography import line_height, text_width
 
 FAINT, STRONG = 1, 2  # lines that a name does not cover; lines that a value covers only if it must
 _COVERED = {"cover": (STRONG,), "spare": (FAINT, STRONG), "avoid": (0,)}  # by each attempt, at most
+_MANY_LINES = 4000
 _CELL = 3.0  # points: how finely the picture is divided into free and taken
 
 
@@ -41,7 +43,12 @@ class Occupancy:
             self.taken[top:bottom, left:right] = True
 
     def line(self, start: Points, end: Points, strength: int) -> None:
-        """Note lines, FAINT or STRONG, from `start` to `end`, each (n, 2), inside or near the viewport."""
+        """Note lines, FAINT or STRONG, from `start` to `end`, each (n, 2), inside or near the viewport.
+
+        Of very many, every so many: they leave no room between them in any case.
+        """
+        some = slice(None, None, len(start) // _MANY_LINES + 1)
+        start, end = start[some], end[some]
         left, top = self.viewport.left, self.viewport.top
         x, y = (start[:, 0] - left) / self.cell, (start[:, 1] - top) / self.cell
         dx, dy = (end[:, 0] - start[:, 0]) / self.cell, (end[:, 1] - start[:, 1]) / self.cell
@@ -108,6 +115,7 @@ class Label:
     lines: Literal["cover", "spare", "avoid"] = "spare"
 
 
+@lru_cache(maxsize=8192)
 def half_size(text: str, size: int, weight: str, unit: float) -> tuple[float, float]:
     """Half the width and height in pixels of a label, its margins included."""
     return text_width(text, size, weight) / 2 + 3.5 * unit, line_height(size) / 2 + 0.5 * unit
@@ -135,22 +143,24 @@ def place_labels(labels: Iterable[Label], occupancy: Occupancy, unit: float) -> 
     return marks
 
 
+def _needed(labels: Iterable[Label]) -> set[int]:
+    """Which strengths of lines labels may cover."""
+    return {covering for lines in {label.lines for label in labels} for covering in _COVERED[lines]}
+
+
 def _free_places(
     labels: Sequence[Label], of: NDArray[np.intp], cells: NDArray[np.intp], occupancy: Occupancy
 ) -> Iterator[tuple[Label, int]]:
     """Each label for which any of its places is free, and the first such place, which is taken.
 
     of: which label each place is of; cells (k, 4) of each place. What is free of all else is found for all places
-    at once, since there are thousands of them in every frame; then, one after the other, of the labels before it.
+    at once, since there are thousands of them in every frame; then, one after the other, of the labels before.
     """
-    coverings = [_COVERED[label.lines] for label in labels]
+    free = {covering: occupancy.are_free(cells, covering) for covering in sorted(_needed(labels))}
     attempts = []
-    for attempt in range(max(map(len, coverings))):
-        covering = np.array([given[attempt] if attempt < len(given) else -1 for given in coverings])[of]
-        free = np.zeros(len(of), dtype=bool)
-        for strength in sorted({given[attempt] for given in coverings if attempt < len(given)}):
-            free |= (covering == strength) & occupancy.are_free(cells, strength)
-        attempts.append(np.flatnonzero(free))
+    for lines, coverings in _COVERED.items():
+        theirs = np.flatnonzero(np.array([label.lines == lines for label in labels])[of])
+        attempts += [theirs[free[covering][theirs]] for covering in coverings if len(theirs)]
     tried = np.concatenate(attempts)
     tried = tried[np.argsort(of[tried], kind="stable")]  # all attempts of one label, then those of the next
     taken = [0] * len(occupancy.taken)  # by labels so far: the columns of each row as bits of one number
