@@ -35,7 +35,8 @@ def derive_masses(world: World) -> None:
     prescribed = particles.prescribed_mass
     mass = world.writable("particles.mass")
     mass[...] = np.where(np.isnan(prescribed), lumped, prescribed)
-    mobility = np.where(particles.fixed, 0.0, 1000.0 / mass[:, None])
+    with np.errstate(over="ignore", divide="ignore"):  # likewise what is too small
+        mobility = np.where(particles.fixed, 0.0, 1000.0 / mass[:, None])
     world.writable("particles.mobility")[...] = mobility
 
 

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from components.extremes import incomputable
 from components.load import loads_end
 from components.model import Model
 from systems.physics.spectrum import Array, RodOperator
@@ -24,6 +25,8 @@ def choose(model: Model) -> str:
     """
     if model.rods.count > SMALL or model.settings.time_step is not None:
         return "velocity_verlet"
+    if incomputable(model):  # no run begins, but undo and properties ask too
+        return suited_to(0.0)
     return suited_to(float(stiffnesses(model, np.array([model.environment.drag]))[0]))
 
 

@@ -47,10 +47,10 @@ def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DE
     after so many points. Accelerations act in full from the start. It goes straight on through bifurcations.
     Raises ValueError if nothing is to be scaled, or if there is no equilibrium at the factor 0.
     """
-    structure, external = Structure.of(model), external_forces(model)
     unloaded = settle(model, (0.0,)).final
     if unloaded.status != "equilibrium":
         raise ValueError(f"There is no equilibrium to start from. {unloaded.message}")
+    structure, external = Structure.of(model), external_forces(model)
     if not structure.gather(external.scaled).any():
         raise ValueError("No force or load acts on a free direction; apply one that the factor can scale.")
     search = _Search.towards(goal, structure, external, unloaded)

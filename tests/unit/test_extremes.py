@@ -68,3 +68,24 @@ def test_strains_can_be_too_large_and_no_warning_comes_first(recwarn: pytest.War
     with pytest.raises(FieldError, match="Rod AB: plastic strain is 1e\\+308, too large"):
         session.settle()
     assert not recwarn.list
+
+
+@pytest.mark.parametrize("mass", [1e-320, 1e-35])
+def test_such_a_mass_can_be_undone_however_small_it_is(mass: float, recwarn: pytest.WarningsRecorder) -> None:
+    session = Session.open("isostatic")
+    session.particles["B"].mass = mass
+    assert session.run(time=0.001) == "diverged"
+    assert "Particle B: mass is" in session.message
+    session.undo()
+    session.undo()
+    assert session.run(time=0.001) == "time reached"
+    assert not recwarn.list
+
+
+def test_curves_are_refused_without_a_warning_of_numpy(recwarn: pytest.WarningsRecorder) -> None:
+    session = Session.open("isostatic")
+    session.particles["B"].acceleration = (1e300, 0.0)
+    session.particles["B"].mass = 1e20
+    with pytest.raises(FieldError, match="Particle B: applied acceleration is 1e\\+300"):
+        session.load_path()
+    assert not recwarn.list
