@@ -149,8 +149,9 @@ def _messages(found: Found) -> Iterator[str]:
     if found["status"] == NOT_VERIFIED and worst is not None:
         yield (
             f"At rest elsewhere than in the exact equilibrium, by {worst['simulation_error']:.1e} in the"
-            f" {Row(**worst).title}. Statics lets all loads grow together; what yields or snaps under loads that come"
-            " one after another, or in a model that starts in motion, may differ."
+            f" {Row(**worst).title}. Statics lets lack of fit and moved supports grow slowly, and then all loads"
+            " together; what yields or snaps where they act at once, under loads that come one after another, or in"
+            " a model that starts in motion, may differ."
         )
     for way in ("simulation", "linear", "exact"):
         if found[way] is not None and found[way]["message"] and found[way]["status"] != "at rest":

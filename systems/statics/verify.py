@@ -10,7 +10,7 @@ import numpy as np
 
 from components.model import Model
 from components.spelling import missing
-from systems.statics.equations import Array, Flags
+from systems.statics.equations import ROUND_OFF, Array, Flags
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import rod_names
 from systems.statics.settle import Settlement, Start, settle
@@ -31,6 +31,7 @@ DEPARTURES = {  # what a run does that ends elsewhere than a slowly growing load
 ELSEWHERE = 1e-3  # of the largest value of its kind: a difference that no integration error makes
 FURTHER = 1e-2  # of the plastic strain of statics: more is an overshoot
 LEAST = 1e-6  # of the strain at first yield: less is rounding
+ROUNDING = 64.0 * ROUND_OFF  # of the largest like it, or of what a strain of 1 is, is nothing
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,8 @@ class Row:
     """One quantity of one element: its values by the three ways, None where one has no answer.
 
     element: "rod" or "particle". component: "", "x" or "y". Errors are against the exact value, relative to
-    the largest exact value of the same quantity in the model (absolute, if that is zero).
+    the largest exact value of the same quantity in the model; where that is zero but for rounding, to the
+    largest of the same unit, and where that is, too, absolute.
     """
 
     element: str
@@ -169,7 +171,15 @@ class Comparison:
         return fixed if quantity == "reaction" else ~fixed
 
     def scale(self, quantity: str) -> float:
-        """The largest exact value, 0 if there is none."""
+        """The largest exact value; of the same unit where that is only rounding; 0 where that is, too."""
+        rods, unit = self.model.rods, QUANTITIES[quantity][1]
+        of_strain_1 = float((rods.stiffness if unit == "kN" else rods.rest_length).max(initial=0.0))
+        own = self._largest(quantity)
+        alike = max(self._largest(name) for name, (_, other) in QUANTITIES.items() if other == unit)
+        largest = own if own > ROUNDING * alike else alike
+        return largest if largest > ROUNDING * of_strain_1 else 0.0
+
+    def _largest(self, quantity: str) -> float:
         exact = self._values[quantity].get("exact")
         return float(np.abs(exact).max(initial=0.0)) if exact is not None else 0.0
 
