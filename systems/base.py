@@ -153,7 +153,7 @@ class Driver(StepSystem):
         (1/s) of a model, not both 0; infinite if unconditionally stable, 0 if stable at none.
     order: of convergence. entry: source of the loop around the kernel. parts: sources that the kernel calls,
         "module:function" or "module:function=name in the program". constants: numbers and arrays by name.
-    side_by_side: module with sources of a loop for many variants at a time (see side_by_side.py); "": there is none.
+    side_by_side: module with sources of a loop for many variants at a time (see physics/side_by_side.py); "": there is none.
     controlled: it owns time and step size and locates events (see runge_kutta.py); else its steps are all
         alike. Either ends a step, or a piece of one, where a load changes abruptly.
     estimates_error: it chooses its steps so that settings.tolerance is met, unless the step is fixed.

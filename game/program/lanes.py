@@ -9,8 +9,9 @@ order, hence the same bits.
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from copy import deepcopy
+from typing import Any
 
 _MOST, _LEAST = 128, 32  # lanes; fewer than the least are not worth it
 _KEPT_NEAR = 3200  # particles × lanes, so that what steps need stays near the processor
@@ -34,42 +35,54 @@ class LaneFunction:
     """A function of one variant, rewritten for lanes.
 
     No two of its arrays may share memory that it writes to. Its last parameters are `spare`, shape (spares, LANES),
-    to write to; `result`, shape (LANES,), if it returns anything; and `going`, which lanes it does anything for,
-    if `chosen`.
+    to write to, and `result`, shape (LANES,), if it returns anything.
 
-    source: its definition. varying: parameters that are numbers of their own in each lane.
+    source: its definition. varying: parameters that are numbers of their own in each lane. called: those that it
+    calls, for lanes too, by name. constants: choices by these are made here.
     """
 
-    def __init__(self, source: ast.FunctionDef, varying: Collection[str], *, chosen: bool = False) -> None:
+    def __init__(
+        self,
+        source: ast.FunctionDef,
+        varying: Collection[str],
+        called: Mapping[str, LaneFunction] | None = None,
+        constants: Mapping[str, Any] | None = None,
+    ) -> None:
         self._varying = set(varying)
         self._common = {argument.arg for argument in source.args.args} - self._varying
         self._looked_up: set[str] = set()  # names of rows
-        self._chosen = chosen
+        self._called = called or {}
+        self._calls: list[tuple[ast.Call, str]] = []  # and the name of the result; ""
         self._loops: list[ast.For] = []
-        self._returns = False
-        function = deepcopy(source)
+        self.returns = False
+        function: ast.FunctionDef = _Settled(constants or {}).visit(deepcopy(source))
         function.body = self._body(function.body)
-        self._slots = {name: slot for slot, name in enumerate(self._lasting())}
-        self.spares = len(self._slots)
+        first = max((self._function(call).spares for call, _ in self._calls), default=0)
+        self._slots = {name: slot for slot, name in enumerate(self._lasting(), first)}
+        self.spares: int = first + len(self._slots)
         for loop in self._loops:
             loop.body = [_InLane(self._varying, self._slots).visit(line) for line in loop.body]
-        more = ["spare", *(["result"] if self._returns else []), *(["going"] if chosen else [])]
-        function.args.args += [ast.arg(name) for name in more]
+        for call, result in self._calls:
+            self._hand_over(call, result)
+        function.args.args += [ast.arg(name) for name in ("spare", *(["result"] if self.returns else []))]
         function.decorator_list = [ast.Name("apart", ast.Load())]
         self.source = ast.unparse(ast.fix_missing_locations(function))
 
     def _body(self, lines: Iterable[ast.stmt]) -> list[ast.stmt]:
-        """Loops and choices that are the same for all lanes stay; what is between goes into loops over the lanes."""
+        """What is the same for all lanes stays, and calls; what is between goes into loops over the lanes."""
         made: list[ast.stmt] = []
         between: list[ast.stmt] = []
         for line in lines:
             if isinstance(line, ast.Return):
-                self._returns = True
+                self.returns = True
                 told = _line("result[lane] = 0.0")
                 told.value = line.value  # type: ignore[attr-defined]
                 between.append(told)
             elif self._adds_there(line):
                 made += self._in_a_loop(between) + self._in_a_loop([line])
+                between = []
+            elif call := self._call_in(line):
+                made += [*self._in_a_loop(between), ast.Expr(call)]
                 between = []
             elif not (isinstance(line, ast.For) or self._is_common(line)):
                 between.append(line)
@@ -79,6 +92,28 @@ class LaneFunction:
                 made.append(self._kept(line))
         return made + self._in_a_loop(between)
 
+    def _call_in(self, line: ast.stmt) -> ast.Call | None:
+        """The call that a line consists of, besides a name for its result."""
+        call = line.value if isinstance(line, ast.Expr | ast.Assign) else None
+        if not (
+            isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in self._called
+        ):
+            return None
+        self._calls.append((call, ast.unparse(line.targets[0]) if isinstance(line, ast.Assign) else ""))
+        return call
+
+    def _function(self, call: ast.Call) -> LaneFunction:
+        return self._called[ast.unparse(call.func)]
+
+    def _hand_over(self, call: ast.Call, result: str) -> None:
+        """Give a call all lanes of its arguments, what is spare, and where to leave its result."""
+        rows = {
+            name: ast.Subscript(ast.Name("spare", ast.Load()), ast.Constant(slot), ast.Load())
+            for name, slot in self._slots.items()
+        }
+        call.args = [rows.get(ast.unparse(argument), argument) for argument in call.args]
+        call.args += [ast.Name("spare", ast.Load()), *([rows[result]] if result else [])]
+
     def _adds_there(self, line: ast.stmt) -> bool:
         """Whether it adds to what was looked up: alone in a loop, nothing in it can be the same in memory."""
         return isinstance(line, ast.AugAssign) and bool(_names(line.target) & self._looked_up)
@@ -87,6 +122,8 @@ class LaneFunction:
         """Whether it is the same for all lanes: a comment, a choice, a look-up of who is meant, a view of an array."""
         if isinstance(line, ast.Expr):
             return isinstance(line.value, ast.Constant)
+        if isinstance(line, ast.Pass):
+            return True
         if isinstance(line, ast.If):
             return self._knows(line.test)
         if isinstance(line, ast.Assign):
@@ -115,25 +152,39 @@ class LaneFunction:
     def _in_a_loop(self, lines: list[ast.stmt]) -> list[ast.stmt]:
         if not lines:
             return []
-        loop = _line("for lane in range(LANES):\n    if going[lane]:\n        pass")
+        loop = _line("for lane in range(LANES):\n    pass")
         assert isinstance(loop, ast.For)
-        if self._chosen:
-            loop.body[0].body = lines  # type: ignore[attr-defined]
-        else:
-            loop.body = lines
+        loop.body = lines
         self._loops.append(loop)
         return [loop]
 
     def _lasting(self) -> list[str]:
-        """Local numbers that several of the loops know: they are kept in `spare`."""
+        """Local numbers that several of the loops and calls know: they are kept in `spare`."""
         known: dict[str, int] = {}
         for loop in self._loops:
             stored = (n for line in loop.body for n in ast.walk(line) if isinstance(n, ast.Name))
             known |= {n.id: 0 for n in stored if isinstance(n.ctx, ast.Store)}
-        for loop in self._loops:
-            for name in {name for line in loop.body for name in _names(line)} & set(known):
+        known |= {result: 0 for _, result in self._calls if result}
+        pieces = [{name for line in loop.body for name in _names(line)} for loop in self._loops]
+        pieces += [_names(call) | {result} for call, result in self._calls]
+        for piece in pieces:
+            for name in piece & set(known):
                 known[name] += 1
-        return [name for name, loops in known.items() if loops > 1]
+        return [name for name, count in known.items() if count > 1]
+
+
+class _Settled(ast.NodeTransformer):
+    """Leaves of choices by constants what is chosen: it needs no loop of its own."""
+
+    def __init__(self, constants: Mapping[str, Any]) -> None:
+        self._constants = constants
+
+    def visit_If(self, node: ast.If) -> ast.stmt | list[ast.stmt]:
+        self.generic_visit(node)
+        test = ast.unparse(node.test)
+        if not _names(node.test) <= set(self._constants):
+            return node
+        return (node.body if eval(test, dict(self._constants)) else node.orelse) or ast.Pass()
 
 
 class _InLane(ast.NodeTransformer):

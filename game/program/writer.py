@@ -400,8 +400,10 @@ class Writer:
             return []
         columns = self._columns_text()
         return [
-            f"before = load_power(origin + (first + step - 1) * dt, velocity, {columns})",
-            f"account[0] += 500.0 * dt * (before + load_power(time, velocity, {columns}))",
+            "began = origin + (first + step - 1) * dt",
+            f"before = load_power(began, velocity, {columns})",
+            f"after = load_power(time, velocity, {columns})",
+            "account[0] += 500.0 * dt * (before + after)",
         ]
 
     def _enter_powers(self, resist: str, given: str = RESISTED) -> list[str]:

@@ -7,7 +7,7 @@ import importlib
 import inspect
 import math
 from collections.abc import Callable, Mapping, Sequence
-from types import FunctionType
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -18,24 +18,11 @@ from game.program.cache import compile_module, note_compiled
 from game.program.lanes import LaneFunction, functions, head, is_common
 from game.program.program import Program
 
-# What is rewritten for lanes, with the numbers that differ between these; `remember` changes some of them only.
-_REWRITTEN = {
-    "evaluate": ("time", "dt"),
-    "extrapolate": ("dt",),
-    "accelerate": (),
-    "combine": ("dt", "tolerance"),
-    "mark": ("dt",),
-    "passed": ("dt",),
-    "measure": (),
-    "remember": ("time", "dt"),
-}
-_CHOSEN = ("remember",)
-_AS_THEY_ARE = ("is_check_due", "error_of", "aim", "follow")
-_NUMBERS = ("steps", "total", "first", "origin", "tolerance", "limit")  # one for each block
+_NUMBERS = ("steps", "total", "first", "origin", "tolerance", "limit", "dt")  # one for each block
 _SHARED = ("breaks", "until", "landing", "loads_end")
 _CARRIED = ("control", "displacement", "velocity", "account")  # what steps change, besides what commits write
 _MEASURES = 16
-_NUMBER = "float64"
+_PACK = "packed_float64"  # what steps change lies in its first rows
 _ROWS = 6  # of numbers that the loop keeps for each lane
 
 
@@ -48,24 +35,22 @@ class LaneProgram:
     def __init__(self, program: Program, scratch: Mapping[str, tuple[int, ...]], lanes: int) -> None:
         self._lanes = lanes
         self._columns = list(program.columns)
-        self._carried = (*_CARRIED, *program.written)
+        self._given = _parameters(program.module.advance.py_func)
+        self._single = [p for p in self._given if p not in (*_NUMBERS, *_SHARED, "fresh")]
+        self._carried = (*(name for name in _CARRIED if name in self._single), *program.written)
         self._scratch = {**scratch, "measures": (_MEASURES,)}
         self._packs = self._packed(program)
-        known = functions(program.source)
-        self._functions = [
-            LaneFunction(known[name], varying, chosen=name in _CHOSEN)
-            for name, varying in _REWRITTEN.items()
-            if name in known
-        ]
-        advance = program.module.advance
-        self._single = [p for p in _parameters(advance.py_func) if p not in (*_NUMBERS, *_SHARED, "fresh")]
-        self._loop = _sources(program.driver.side_by_side)
+        loop = importlib.import_module(program.driver.side_by_side)
+        self._loop = _sources(loop)
         self._parameters = self._parameters_of_loop()
+        known = functions(program.source)
+        self._functions = _for_lanes(known, loop.VARYING, vars(program.module))
         source = [head(program.source), f"LANES = {lanes}\napart = part(apart=True)"]
-        source += [ast.unparse(known[name]) for name in _AS_THEY_ARE]
+        source += [ast.unparse(known[name]) for name in loop.AS_THEY_ARE]
         source += [function.source for function in self._functions]
-        source += [self._alone(), *self._pasted()]
-        self._module = compile_module("\n\n".join(source) + "\n", {**program.kernels, "single": advance})
+        source += [self._alone(), *self._aside(), *self._pasted()]
+        called = {**program.kernels, "single": program.module.advance}
+        self._module = compile_module("\n\n".join(source) + "\n", called)
 
     # --- source ---------------------------------------------------------------------------------------
 
@@ -74,7 +59,7 @@ class LaneProgram:
 
         All of one kind do, of numbers those first that steps change.
         """
-        packs: dict[str, list[str]] = {f"packed_{_NUMBER}": list(self._carried)}
+        packs: dict[str, list[str]] = {_PACK: list(self._carried)}
         for name, column in program.columns.items():
             if not (is_common(name) or name in self._carried):
                 packs.setdefault(f"packed_{column.dtype.name}", []).append(name)
@@ -83,7 +68,7 @@ class LaneProgram:
     @property
     def _takes(self) -> list[str]:
         """What alone() takes at last."""
-        return ["carried", *self._packs, *map(_copied, self._packs), *map(_copied, self._single)]
+        return ["kept", *self._packs, *map(_copied, self._packs), *map(_copied, self._single)]
 
     def _pasted(self) -> list[str]:
         """The driver's loop for lanes, with the columns for *columns."""
@@ -103,21 +88,35 @@ class LaneProgram:
 
     def _alone(self) -> str:
         """A step of one lane by the program of a single run, on copies of its numbers."""
-        numbers = ("total[lane] + taken[lane]", "first[lane] + taken[lane]", "origin[lane]")
-        given = ("1", "False", *numbers, "tolerance[lane]", "limit[lane]", *_SHARED)
-        taken_over = ("total", "first", "origin", "tolerance", "limit", *_SHARED, "taken")
+        so_far = {p: f"{p}[lane] + taken[lane]" for p in ("total", "first")}
+        given = {p: f"{p}[lane]" for p in _NUMBERS} | {p: p for p in _SHARED} | so_far
+        given |= {p: _copied(p) for p in self._single} | {"steps": "1", "fresh": "False"}
+        taken_over = [p for p in self._given if p in (*_NUMBERS, *_SHARED) and p != "steps"]
         lines = [
-            f"def alone(lane, {', '.join((*taken_over, *self._takes))}):",
+            f"def alone(lane, {', '.join((*taken_over, 'taken', *self._takes))}):",
             *(
                 f"    for k in range({pack}.shape[0]):\n        {_copied(pack)}[k] = {pack}[k, lane]"
                 for pack in self._packs
             ),
-            f"    done, why = single({', '.join((*given, *map(_copied, self._single)))})",
-            "    for k in range(carried):",
-            f"        packed_{_NUMBER}[k, lane] = {_copied(f'packed_{_NUMBER}')}[k]",
+            f"    done, why = single({', '.join(given[p] for p in self._given)})",
+            *self._each_carried(f"{_PACK}[k, lane] = {_copied(_PACK)}[k]"),
             "    return done, why",
         ]
         return "@compiled\n" + "\n".join(lines)
+
+    def _aside(self) -> list[str]:
+        """Functions that put aside what steps change of a lane, and that put it back."""
+        return [
+            "\n".join(["@compiled", f"def {name}(lane, {', '.join(self._takes)}):", *self._each_carried(line)])
+            for name, line in [
+                ("keep", f"kept[k, lane] = {_PACK}[k, lane]"),
+                ("restore", f"{_PACK}[k, lane] = kept[k, lane]"),
+            ]
+        ]
+
+    @staticmethod
+    def _each_carried(line: str) -> list[str]:
+        return ["    for k in range(kept.shape[0]):", f"        {line}"]
 
     # --- calling it -----------------------------------------------------------------------------------
 
@@ -134,17 +133,19 @@ class LaneProgram:
         """
         count = self._lanes
         lanes = np.resize(blocks, count)
-        given = {name: arguments[name] for name in _SHARED} | {n: arguments[n][lanes] for n in _NUMBERS}
+        given = {name: arguments[name] for name in _SHARED if name in self._given}
+        given |= {name: arguments[name][lanes] for name in _NUMBERS if name in self._given}
         for pack, names in self._packs.items():
             given |= self._laid_out(pack, [(name, arguments[name]) for name in names], lanes)
         for name in filter(is_common, self._columns):
             given[name] = given[_copied(name)] = arguments[name][lanes[0]]
         for name, shape in self._scratch.items():
             given[name], given[_copied(name)] = np.zeros((*shape, count)), np.zeros(shape)
-        given["carried"] = sum(given[_copied(name)].size for name in self._carried)
+        given["kept"] = np.zeros((sum(given[_copied(name)].size for name in self._carried), count))
         given["spare"] = np.zeros((max(f.spares for f in self._functions), count))
         given["numbers"] = np.zeros((_ROWS, count))
-        given["plain"], given["going"] = np.zeros(count, dtype=bool), np.arange(count) < len(blocks)
+        going = (np.arange(count) < len(blocks)) & (given["steps"] > 0)
+        given["plain"], given["going"] = np.zeros(count, dtype=bool), going
         given |= {name: np.zeros(count, dtype=np.int64) for name in ("coming", "taken", "reason")}
         self._module.advance(*(given[name] for name in self._parameters))
         note_compiled(self._module)
@@ -179,7 +180,19 @@ def _parameters(function: Callable[..., Any]) -> list[str]:
     return list(inspect.signature(function).parameters)
 
 
-def _sources(module: str) -> dict[str, str]:
+def _sources(module: ModuleType) -> dict[str, str]:
     """The functions of a module, in order, by name."""
-    found = [f for f in vars(importlib.import_module(module)).values() if isinstance(f, FunctionType)]
+    found = [f for f in vars(module).values() if isinstance(f, FunctionType)]
     return {function.__name__: inspect.getsource(function) for function in found}
+
+
+def _for_lanes(
+    known: Mapping[str, ast.FunctionDef], varying: Mapping[str, Sequence[str]], constants: Mapping[str, Any]
+) -> list[LaneFunction]:
+    """Functions of a program, by name, for lanes; `varying`: in which order, and which numbers each lane has."""
+    chosen = {name: value for name, value in constants.items() if name.isupper() and isinstance(value, int)}
+    made: dict[str, LaneFunction] = {}
+    for name in varying:
+        if name in known:
+            made[name] = LaneFunction(known[name], varying[name], made, chosen)
+    return list(made.values())

@@ -42,7 +42,8 @@ def explicit_stages(
     trial, speed = work[STAGES], work[STAGES + 1]
     for s in range(1, STAGES):
         extrapolate(s, dt, displacement, velocity, work, trial, speed)
-        evaluate(time + NODES[s] * dt, dt, trial, speed, force, resisting, direction, stage_power, *columns)
+        at = time + NODES[s] * dt
+        evaluate(at, dt, trial, speed, force, resisting, direction, stage_power, *columns)
         accelerate(force, resisting, work[s], *columns)
         if POWERS or LOADS:
             for k in range(gained.shape[0]):

@@ -49,24 +49,57 @@ def run(source: str, *given: Any) -> Any:
     return scope["pull"](*given)
 
 
-@pytest.mark.parametrize("chosen", [False, True])
-def test_each_lane_is_what_it_is_alone(chosen: bool) -> None:
-    made = LaneFunction(functions(SOURCE)["pull"], ("dt",), chosen=chosen)
+@pytest.mark.parametrize("constants", [{}, {"SLOW": True}])
+def test_each_lane_is_what_it_is_alone(constants: dict[str, Any]) -> None:
+    made = LaneFunction(functions(SOURCE)["pull"], ("dt",), constants=constants)
     rng = np.random.default_rng(0)
     between = np.array([[0, 1], [1, 2], [0, 2]], dtype=np.uint32)
     dt, displacement, stiffness = rng.random(LANES), rng.random((3, 2, LANES)), rng.random((3, LANES))
     force, result = np.full((3, 2, LANES), 7.0), np.full(LANES, 7.0)
-    going = np.array([True, False, True]) if chosen else np.ones(LANES, dtype=bool)
     spare = np.zeros((made.spares, LANES))
-    more = (spare, result, going) if chosen else (spare, result)
-    run(made.source, dt, displacement, force, between, stiffness, *more)
+    run(made.source, dt, displacement, force, between, stiffness, spare, result)
     for lane in range(LANES):
         expected = np.full((3, 2), 7.0)
-        most = 7.0
-        if going[lane]:
-            most = run(SOURCE, dt[lane], displacement[..., lane], expected, between, stiffness[:, lane])
+        most = run(SOURCE, dt[lane], displacement[..., lane], expected, between, stiffness[:, lane])
         assert np.array_equal(force[..., lane], expected)
         assert result[lane] == most
+
+
+CALLS = """
+def square(dt, work):
+    for i in range(work.shape[0]):
+        work[i] *= dt
+    for i in range(work.shape[0]):
+        work[i] *= dt
+    last = work[0]
+    for i in range(work.shape[0]):
+        last += dt
+    return last
+
+
+def pull(dt, work):
+    most = 0.0
+    for step in range(2):
+        twice = 2.0 * dt + step
+        last = square(twice, work)
+        most += last - twice
+    return most
+"""
+
+
+def test_calls_hand_over_all_lanes_and_what_they_return_comes_back() -> None:
+    known = functions(CALLS)
+    square = LaneFunction(known["square"], ("dt",))
+    made = LaneFunction(known["pull"], ("dt",), {"square": square})
+    assert made.spares > square.spares > 0  # none of the caller's is used by whom it calls
+    rng = np.random.default_rng(0)
+    dt, work = rng.random(LANES), rng.random((4, LANES))
+    given, result = work.copy(), np.zeros(LANES)
+    run("\n\n".join([square.source, made.source]), dt, given, np.zeros((made.spares, LANES)), result)
+    for lane in range(LANES):
+        alone = work[:, lane].copy()
+        assert result[lane] == run(CALLS, dt[lane], alone)
+        assert np.array_equal(given[:, lane], alone)
 
 
 def test_loops_over_lanes_are_innermost_and_what_is_looked_up_is_looked_up_once() -> None:
