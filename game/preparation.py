@@ -78,7 +78,7 @@ class Preparation(System):
         loaded, self._loaded = self._loaded, simulation.ready
         if loaded and simulation.ready and self._waits_for_meetings(simulation) is None:
             self._load_encounters(simulation)
-            if seen == self._seen:
+            if seen == self._seen and not frame.session.busy:
                 self._load_pulled(simulation)
         else:
             self._load(simulation, idle=seen == self._seen)
@@ -210,7 +210,8 @@ def _load_libraries() -> None:
         is_compiled()
     read_sources(tuple(DRIVERS.values()))
     importlib.import_module("systems.plasticity.kernels")
-    importlib.import_module("scipy.spatial")
+    for library in ("scipy.spatial", "scipy.sparse.linalg"):
+        importlib.import_module(library)
 
 
 def _started(job: Job) -> subprocess.Popen[bytes]:

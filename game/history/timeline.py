@@ -73,13 +73,13 @@ class Timeline:
 
     def _watch(self) -> int:
         beyond = self._now % self._interval
-        if beyond == 0:
+        if beyond == 0 or self._now in self._moments:
             self._keep()
         return self._interval - beyond
 
     def _keep(self) -> None:
         now = self._now
-        if now in self._moments:
+        if now in self._moments and self._moments[now].armed:
             return
         moment = self._moments[now] = self._simulation.moment()
         if len(self._moments) > max(min(MOST_MOMENTS, self._memory // max(moment.state.size, 1)), 2):
@@ -92,19 +92,21 @@ class Timeline:
     def hold(self, hand: Hand | None) -> None:
         """Pull by a hand from now on, differently, or (None) let go."""
         self.begin()
-        self._change_hand(hand)
+        anew = self._change_hand(hand)
         self._hands.append((self._now, hand))
-        if self._now in self._moments:  # what is kept of a step is what follows from the hand there
+        if anew or self._now in self._moments:  # what is kept of a step is what follows from the hand there
             self._moments[self._now] = self._simulation.moment()
 
-    def _change_hand(self, hand: Hand | None) -> None:
+    def _change_hand(self, hand: Hand | None) -> bool:
+        """True if the run goes on by another program, which takes longer to get ready than many steps do."""
         held = self._pull.hand
         if held is not None and hand is not None and held.particle is hand.particle:
             self._pull.move(self._simulation.model, hand.anchor)
             self._simulation.wake()
-        else:
-            self._simulation.before_change()
-            self._pull.take(hand)
+            return False
+        self._simulation.before_change()
+        self._pull.take(hand)
+        return True
 
     # --- going back ------------------------------------------------------------------------------------
 

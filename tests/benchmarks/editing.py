@@ -117,6 +117,17 @@ def _drag(hand: Hand) -> None:
         hand.press(key, place)
 
 
+def _pull(hand: Hand) -> None:
+    x, y = hand.session.pointer
+    hand.press("drag to", (x + 4.0, y + 3.0))
+
+
+def look_on(hand: Hand) -> None:
+    """Look at what one drew, and think."""
+    for _ in range(10):
+        hand.pause()
+
+
 def _type(hand: Hand) -> None:
     hand.session.click_box("stiffness")
     hand.session.type("2")
@@ -165,11 +176,14 @@ SESSION: tuple[tuple[str, Act, int], ...] = (
     ("save again", keys("ctrl+s"), 3),
     ("open the list of models", keys("d"), 1),
     ("leave it", keys("escape"), 1),
+    ("", look_on, 1),
     ("run", keys("space"), 1),
     ("a frame while it runs", nothing, 7),
     ("new particle while it runs", lambda hand: hand.press("p", hand.point(0.5, 0.25)), 7),
     ("delete while it runs", at_particle("click", "delete"), 7),
-    ("pull a particle", at_particle("drag"), 3),
+    ("", look_on, 1),
+    ("begin to pull a particle", at_particle("drag"), 1),
+    ("pull it", _pull, 7),
     ("let go", keys("drop"), 1),
     ("pause", keys("space"), 1),
     ("a step", keys("."), 7),

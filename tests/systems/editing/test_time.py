@@ -7,6 +7,7 @@ import pytest
 from components.snapshot import Snapshot
 from game import Session
 from game.history.timeline import Timeline
+from systems.edit.pull import Hand
 from tests.systems.editing.hand import FRAME, assert_same_state, opened, run_frames
 
 
@@ -58,6 +59,30 @@ def test_stepping_back_through_a_pull_repeats_what_the_hand_did(triangle: Sessio
     for name in ("particles.displacement", "particles.velocity"):
         then, now = states[at].columns[name], triangle.model.column(name)
         assert now.tobytes() == then.tobytes()
+
+
+def test_stepping_back_after_a_pull_does_not_pull_again(
+    triangle: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    triangle.press("space")
+    run_frames(triangle, 20)
+    triangle.grab(1.0, 1.0)
+    triangle.drag_to(1.2, 1.0)
+    run_frames(triangle, 10)
+    triangle.drop()
+    triangle.frame(FRAME)
+    triangle.press("space")
+    states = [Snapshot.take(triangle.model)]
+    for _ in range(4):
+        triangle.press("right")
+        states.append(Snapshot.take(triangle.model))
+    taken: list[Hand | None] = []
+    monkeypatch.setattr(triangle.pull, "take", taken.append)
+    for step in (3, 1, 0):
+        while triangle.model.clock.steps > states[step].columns["clock.steps"][0]:
+            triangle.press("left")
+        assert_same_state(triangle, states[step])
+    assert taken == []
 
 
 def test_going_back_stops_where_something_was_edited_and_undo_goes_on(triangle: Session) -> None:
