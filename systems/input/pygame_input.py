@@ -15,6 +15,7 @@ from systems.input.bindings import TEXT, repeats
 CLICK_REACH = 4.0  # points that the pointer may move while a button is down; more: a drag
 IDLE_PAUSE = 0.016  # s between looks for events while nothing moves
 IDLE_LOOKS = 16  # until a frame goes by without any
+WAITING_LOOKS = 4  # where something is being compiled, which frames would hold up
 
 _NAMES = {
     pygame.K_ESCAPE: "escape",
@@ -37,9 +38,9 @@ _NAMES = {
 }
 
 
-def _awaited() -> list[pygame.event.Event]:
+def _awaited(looks: int) -> list[pygame.event.Event]:
     """The next events, or none after a while. pygame.event.wait looks so often that it takes 2 % of a core."""
-    for _ in range(IDLE_LOOKS):
+    for _ in range(looks):
         time.sleep(IDLE_PAUSE)
         if events := pygame.event.get():
             return events
@@ -65,9 +66,10 @@ class PygameInput(System):
 
     def process(self, frame: Any) -> None:
         """Collect the events since the last frame; sleep a little where nothing can happen without one."""
-        events = pygame.event.get()
-        if not events and not (frame.session.busy or frame.session.performing):
-            events = _awaited()
+        session, events = frame.session, pygame.event.get()
+        waiting = session.awaited is not None
+        if not events and not session.performing and (waiting or not session.busy):
+            events = _awaited(WAITING_LOOKS if waiting else IDLE_LOOKS)
         for event in events:
             self._handle(event, frame)
 

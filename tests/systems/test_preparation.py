@@ -152,6 +152,25 @@ def test_a_run_waits_and_says_so_and_goes_on(app: App, compiler: Compiler) -> No
     assert compiler.jobs[1] == (*compiler.jobs[0], "edit.pull")  # next, in case that it is pulled
 
 
+def test_while_a_run_waits_frames_are_few(
+    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They would take a fifth of a core from what compiles."""
+    looks: list[float] = []
+    monkeypatch.setattr(pygame_input.time, "sleep", looks.append)
+    app.session.press("space")
+    frames(app, 2)
+    looks.clear()
+    frames(app, 1)
+    assert len(looks) == pygame_input.WAITING_LOOKS
+    compiler.status = 0
+    frames(app, 3)
+    looks.clear()
+    frames(app, 1)
+    assert app.session.view.status.state == "running"
+    assert looks == []
+
+
 def test_what_cannot_be_compiled_there_is_compiled_here(app: App, compiler: Compiler) -> None:
     compiler.status = 1
     app.session.press("space")
