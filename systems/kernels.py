@@ -19,8 +19,34 @@ from typing import Any
 from numba import njit
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
-from numba.core.registry import CPUDispatcher
-from numba.core.types import unliteral
+from numba.core.compiler_machinery import PassManager
+from numba.core.registry import CPUDispatcher, cpu_target
+from numba.core.typed_passes import InlineOverloads, NopythonRewrites
+from numba.core.types import Function, unliteral
+from numba.core.typing.context import Context
+from numba.core.untyped_passes import (
+    FindLiterallyCalls,
+    InlineClosureLikes,
+    InlineInlinables,
+    LiteralPropagationSubPipelinePass,
+    LiteralUnroll,
+    MakeFunctionToJitFunction,
+    WithLifting,
+)
+
+# Passes over a function that look for what kernels do not have: `with`, closures and comprehensions, functions
+# inlined before their types are known, loops over unlike things, expressions of whole arrays.
+UNUSED = (
+    WithLifting,
+    InlineClosureLikes,
+    MakeFunctionToJitFunction,
+    InlineInlinables,
+    FindLiterallyCalls,
+    LiteralUnroll,
+    LiteralPropagationSubPipelinePass,
+    InlineOverloads,
+    NopythonRewrites,
+)
 
 compiled = njit(error_model="numpy", no_cfunc_wrapper=True)  # type: ignore[call-overload]
 
@@ -71,7 +97,50 @@ class _Code(JITCodeLibrary):
         """There is no machine code to tell; only what parts raise would need it, and they raise nothing."""
 
 
-class _Compiler(Compiler):
+class _Typing(Context):
+    """What numba knows of types, and what it has found: for every a + b it would ask a dozen that may know the type.
+
+    A large program has some six thousand such operations, of which a few hundred are different.
+    """
+
+    def __init__(self, known: Context) -> None:
+        self.__dict__ = known.__dict__
+        self._found: dict[Any, Any] = {}
+
+    def resolve_function_type(self, function: Any, given: Any, named: Any) -> Any:
+        """Types of what a call is given and returns."""
+        known = self._lookup_global(function) or function
+        if named or not isinstance(known, Function):
+            return super().resolve_function_type(function, given, named)
+        key = known, tuple(given)
+        if key not in self._found:
+            found = super().resolve_function_type(function, given, named)
+            if found is None:
+                return None
+            self._found[key] = found
+        return self._found[key]
+
+
+class _Lean(Compiler):
+    """numba's compiler, with what it found of types, and without passes that kernels have no use for."""
+
+    _typing = _Typing(cpu_target.typing_context)
+
+    def __init__(self, _: Any, *rest: Any) -> None:
+        super().__init__(self._typing, *rest)
+
+    def define_pipelines(self) -> list[PassManager]:
+        """One that makes machine code."""
+        (usual,) = super().define_pipelines()
+        lean = PassManager(usual.pipeline_name)
+        for kind, what_for in usual.passes:
+            if kind not in UNUSED:
+                lean.add_pass(kind, what_for)
+        lean.finalize()
+        return [lean]
+
+
+class _Compiler(_Lean):
     def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
         super().__init__(typing, target, library or _Code(target.codegen(), "part"), *rest)
 
@@ -86,7 +155,7 @@ class _Whole(JITCodeLibrary):
         super()._optimize_final_module()
 
 
-class _EntryCompiler(Compiler):
+class _EntryCompiler(_Lean):
     def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
         if library is None:
             library = _Whole(target.codegen(), "entry")
