@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from components.load import CONSTANT
 from components.model import Model
 from components.tags import DiagramShown, Selected
-from systems.render.labels import FAINT, Label, half_size
+from systems.render.labels import FAINT, Key, Label, half_size
 from systems.render.marks import Bars, Points, Stamps, Strokes
 from systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
 from systems.render.supports import NO_SUPPORT, crowding
@@ -26,6 +26,8 @@ _TOO_FLAT, _ENLARGED = 0.05, 0.3  # of the room: loads (one point per kN) below 
 _SHORTEST_WITH_DIAGRAM = 6.0  # points
 _SHORTEST_WITH_VALUE = 24.0  # points; the values of shorter rods would only hide the structure
 _MANY_ARROWS = 200  # up to which all are drawn, though they may lie over each other
+_TOLD = 1.5  # by how much a value may be larger than one that the last picture tells without taking its place
+_ROD_VALUE, _ARROW_VALUE = "rods.axial_force", "particles.external_force"  # what labels stay in their places by
 _SLIDES = np.array([0.0, 1.0, -1.0, 2.0, -2.0])  # along a rod, in sizes of a label: the middle first
 _BACKING = 0.86  # opacity behind a value
 
@@ -162,14 +164,15 @@ def _label_rods(
     if typical_length(sheet.start, sheet.end) < _SHORTEST_WITH_VALUE * sheet.unit:
         candidates = np.flatnonzero(selected)
         sheet.notes.append("zoom in to read forces")
-    shown = _most_important(sheet, values, candidates, selected, middle)
+    worth = _worth(sheet, _ROD_VALUE, rows, values) + 1e6 * selected
+    shown = _most_important(sheet, worth, candidates, middle)
     few = len(values) <= _FEW_VALUES
     numbers = values[shown].tolist()
     texts, size, half = _value_texts(sheet, map(written, numbers), few)
     places = _places_by_rods(middle[shown], normal[shown], height[shown], half, few)
-    for value, text, where, held in zip(numbers, texts, places, selected[shown].tolist(), strict=True):
-        colour = getattr(sheet.theme, _sign_of(value))
-        _add_value(sheet, text, where, size, colour, _rank(value) - 1e6 * held, few)
+    colours = [getattr(sheet.theme, _sign_of(value)) for value in numbers]
+    keys = [(_ROD_VALUE, row) for row in rows[shown].tolist()]
+    _add_values(sheet, zip(texts, places, colours, (-worth[shown]).tolist(), keys, strict=True), size, few)
 
 
 def _sign_of(force: float) -> str:
@@ -177,27 +180,24 @@ def _sign_of(force: float) -> str:
     return "zero" if abs(force) <= SMALLEST_FORCE else "tension" if force > 0.0 else "compression"
 
 
-def _rank(value: float) -> float:
-    """Large values first; two digits only, so that tiny changes do not reorder labels from frame to frame."""
-    return -float(f"{abs(value):.1e}")
+def _worth(sheet: Sheet, field: str, rows: Rows, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How much it matters that each value is written: its size, to two digits, lest tiny changes reorder labels.
 
-
-def _most_important(
-    sheet: Sheet, values: NDArray[np.float64], candidates: Rows, selected: NDArray[np.bool_], at: Points
-) -> Rows:
-    """The selected and the largest values at visible points, as many as leave most of the picture free.
-
-    candidates: indices of those to choose from.
+    What the last picture tells counts more, so that labels do not come and go while forces vibrate.
     """
+    size = np.maximum(np.abs(values), 1e-300)
+    decade = 10.0 ** np.floor(np.log10(size))
+    told = np.array([row for name, row in sheet.placed if name == field], dtype=np.intp)
+    worth: NDArray[np.float64] = np.round(size / decade, 1) * decade
+    return worth * np.where(sheet.chosen(told, rows), _TOLD, 1.0)
+
+
+def _most_important(sheet: Sheet, worth: NDArray[np.float64], candidates: Rows, at: Points) -> Rows:
+    """Of the candidates at visible points those worth most, as many as leave most of the picture free."""
     area = sheet.viewport.width * sheet.viewport.height / sheet.unit**2
     most = int(0.25 * area / (46.0 * 18.0))
     seen = candidates[sheet.sees(at[candidates])]
-    worth = np.where(selected[seen], np.inf, np.abs(values[seen]))
-    if len(seen) > most:
-        enough = np.partition(worth, -most)[-most] if most else np.inf
-        seen, worth = seen[worth >= enough], worth[worth >= enough]
-    order: Rows = seen[np.lexsort((-np.abs(values[seen]), -worth))][:most]
-    return order
+    return np.sort(seen[np.lexsort((seen, -worth[seen]))][:most])
 
 
 def _value_texts(sheet: Sheet, numbers: Iterable[str], few: bool) -> tuple[list[str], int, Points]:
@@ -208,12 +208,16 @@ def _value_texts(sheet: Sheet, numbers: Iterable[str], few: bool) -> tuple[list[
     return texts, size, np.array(half).reshape(-1, 2)
 
 
-def _add_value(
-    sheet: Sheet, text: str, places: Points, size: int, colour: Colour, rank: float, few: bool
+def _add_values(
+    sheet: Sheet, values: Iterable[tuple[str, Points, Colour, float, Key]], size: int, few: bool
 ) -> None:
+    """Labels of values: text, places, colour, rank and key of each."""
     backing = faded(sheet.theme.background, _BACKING)
     lines: Literal["spare", "cover"] = "spare" if few else "cover"
-    sheet.labels.append(Label(text, places, size, colour, rank, "semibold", backing, lines))
+    sheet.labels += [
+        Label(text, places, size, colour, rank, "semibold", backing, lines, key)
+        for text, places, colour, rank, key in values
+    ]
 
 
 def _places_by_rods(
@@ -260,7 +264,7 @@ def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
                 Stamps("arrow", tail[mask], length, sheet.unit, sheet.theme.force, sheet.theme.force, turns)
             )
     sheet.occupancy.block_squares(tail + DIRECTIONS[direction] * length / 2, np.full(len(rows), 0.2 * length))
-    _label_arrows(sheet, value, tail + DIRECTIONS[direction] * length / 2, outer)
+    _label_arrows(sheet, 2 * rows + axis, value, tail + DIRECTIONS[direction] * length / 2, outer)
 
 
 def _thinned(
@@ -308,18 +312,22 @@ def _arrow_places(
     return start + outward * np.where(pushes, ARROW_LENGTH * u, 0.0)[:, None], side
 
 
-def _label_arrows(sheet: Sheet, value: NDArray[np.float64], middle: Points, side: NDArray[np.int64]) -> None:
+def _label_arrows(
+    sheet: Sheet, which: Rows, value: NDArray[np.float64], middle: Points, side: NDArray[np.int64]
+) -> None:
+    """The size of the force at each arrow; which: twice the particle's row, one more if it is vertical."""
     few = len(value) <= _FEW_VALUES
-    nothing = np.zeros(len(value), dtype=bool)
-    shown = _most_important(sheet, value, np.arange(len(value)), nothing, middle)
+    worth = _worth(sheet, _ARROW_VALUE, which, value)
+    shown = _most_important(sheet, worth, np.arange(len(value)), middle)
     sizes = np.abs(value[shown]).tolist()
     # The smallest that is drawn at all, 0.0001, must not read 0.00.
     numbers = (written(size, 2 if size >= 0.01 else 4) for size in sizes)
     texts, font, half = _value_texts(sheet, numbers, few)
     places = _places_by_arrows(middle[shown], DIRECTIONS[side[shown]], half, sheet.unit)
-    for size, text, where in zip(sizes, texts, places, strict=True):
-        # Arrows are few and say little without their value: before the rods.
-        _add_value(sheet, text, where, font, sheet.theme.force, _rank(size) - 1e9, few)
+    # Arrows are few and say little without their value: before the rods.
+    ranks, keys = (-worth[shown] - 1e9).tolist(), [(_ARROW_VALUE, number) for number in which[shown].tolist()]
+    colours = [sheet.theme.force] * len(texts)
+    _add_values(sheet, zip(texts, places, colours, ranks, keys, strict=True), font, few)
 
 
 def _places_by_arrows(middle: Points, outward: Points, half: Points, u: float) -> Points:

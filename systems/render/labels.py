@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +19,10 @@ FAINT, STRONG = 1, 2  # lines that a name does not cover; lines that a value cov
 _COVERED = {"cover": (STRONG,), "spare": (FAINT, STRONG), "avoid": (0,)}  # by each attempt, at most
 _MANY_LINES = 4000
 _CELL = 3.0  # points: how finely the picture is divided into free and taken
+
+
+Key = tuple[str, int]  # such as ("rods.axial_force", its row)
+Placed = dict[Key, int]  # which of its places each label has taken
 
 
 class Occupancy:
@@ -97,12 +100,12 @@ class Occupancy:
         return slice(max(int(y / self.cell), 0), max(int((y + height) / self.cell) + 1, 0)), columns
 
 
-@dataclass(frozen=True)
-class Label:
+class Label(NamedTuple):
     """A text that is to be placed with its middle at one of `places` (k, 2), the best first.
 
     rank: labels of lower rank come first. backing: colour behind the text, or None. lines: whether it may
-    cover rods ("cover"), only if there is no other place ("spare"), or no line ever ("avoid").
+    cover rods ("cover"), only if there is no other place ("spare"), or no line ever ("avoid"). key: what it
+    tells of what, if it is to stay where it was in the last picture.
     """
 
     text: str
@@ -113,6 +116,7 @@ class Label:
     weight: str = "regular"
     backing: Colour | None = None
     lines: Literal["cover", "spare", "avoid"] = "spare"
+    key: Key | None = None
 
 
 @lru_cache(maxsize=8192)
@@ -121,59 +125,77 @@ def half_size(text: str, size: int, weight: str, unit: float) -> tuple[float, fl
     return text_width(text, size, weight) / 2 + 3.5 * unit, line_height(size) / 2 + 0.5 * unit
 
 
-def place_labels(labels: Iterable[Label], occupancy: Occupancy, unit: float) -> list[Mark]:
-    """Marks of the labels that found a free place, in order of rank; the others are left out."""
-    marks: list[Mark] = []
+def place_labels(labels: Iterable[Label], occupancy: Occupancy, unit: float, placed: Placed) -> list[Mark]:
+    """Marks of the labels that found a free place, in order of rank; the others are left out.
+
+    placed: where labels were in the last picture, which they leave only for a place where they cover less; it
+    is told where they are now.
+    """
     ranked = sorted(labels, key=lambda label: label.rank)
+    former = [placed.get(label.key, -1) if label.key else -1 for label in ranked]
+    placed.clear()
     if not ranked:
-        return marks
-    count = [len(label.places) for label in ranked]
-    sizes = np.array([half_size(label.text, label.size, label.weight, unit) for label in ranked])
-    half = np.repeat(sizes, count, axis=0)
+        return []
+    count = np.array([len(label.places) for label in ranked])
+    of, first = np.repeat(np.arange(len(ranked)), count), np.cumsum(count) - count
+    half = np.array([half_size(label.text, label.size, label.weight, unit) for label in ranked])[of]
     low, high = bounds(occupancy.viewport)
     middle = np.concatenate([label.places for label in ranked])
     middle = np.minimum(np.maximum(middle, low + half), high - half)  # into the viewport where it sticks out
     cells = occupancy.cells_of(middle - half, 2.0 * half)
-    for label, place in _free_places(ranked, np.repeat(np.arange(len(ranked)), count), cells, occupancy):
-        (x, y), (half_width, half_height) = middle[place].tolist(), half[place].tolist()
+    held = np.arange(len(of)) - first[of] == np.array(former)[of]
+    free = _free_places(ranked, of, held, cells, occupancy)
+    marks: list[Mark] = []
+    for index, place, (x, y), (wide, tall) in zip(
+        of[free].tolist(),
+        (free - first[of[free]]).tolist(),
+        middle[free].tolist(),
+        half[free].tolist(),
+        strict=True,
+    ):
+        label = ranked[index]
+        if label.key:
+            placed[label.key] = place
         if label.backing is not None:
-            box = x - half_width, y - half_height, 2.0 * half_width, 2.0 * half_height
-            marks.append(Panel(*box, 4.0 * unit, label.backing))
+            marks.append(Panel(x - wide, y - tall, 2.0 * wide, 2.0 * tall, 4.0 * unit, label.backing))
         marks.append(Text(label.text, x, y, label.size, label.colour, label.weight, "centre"))
     return marks
 
 
-def _needed(labels: Iterable[Label]) -> set[int]:
-    """Which strengths of lines labels may cover."""
-    return {covering for lines in {label.lines for label in labels} for covering in _COVERED[lines]}
-
-
 def _free_places(
-    labels: Sequence[Label], of: NDArray[np.intp], cells: NDArray[np.intp], occupancy: Occupancy
-) -> Iterator[tuple[Label, int]]:
-    """Each label for which any of its places is free, and the first such place, which is taken.
+    labels: Sequence[Label],
+    of: NDArray[np.intp],
+    held: NDArray[np.bool_],
+    cells: NDArray[np.intp],
+    occupancy: Occupancy,
+) -> NDArray[np.intp]:
+    """Of each label for which any of its places is free, the first such place, which is taken.
 
-    of: which label each place is of; cells (k, 4) of each place. What is free of all else is found for all places
-    at once, since there are thousands of them in every frame; then, one after the other, of the labels before.
+    of: which label each place is of; held: the label was there; cells (k, 4) of each. What is free of all else is
+    found for all places at once, since there are thousands of them in every frame; then, one after the other, of
+    the labels before.
     """
-    free = {covering: occupancy.are_free(cells, covering) for covering in sorted(_needed(labels))}
+    kinds = [label.lines for label in labels]
+    strengths = sorted({strength for lines in set(kinds) for strength in _COVERED[lines]})
+    free = {strength: occupancy.are_free(cells, strength) for strength in strengths}
     attempts = []
     for lines, coverings in _COVERED.items():
-        theirs = np.flatnonzero(np.array([label.lines == lines for label in labels])[of])
-        attempts += [theirs[free[covering][theirs]] for covering in coverings if len(theirs)]
+        theirs = np.flatnonzero(np.array([kind == lines for kind in kinds])[of])
+        for covering in coverings if len(theirs) else ():
+            possible = theirs[free[covering][theirs]]
+            attempts += [possible[held[possible]], possible]
     tried = np.concatenate(attempts)
     tried = tried[np.argsort(of[tried], kind="stable")]  # all attempts of one label, then those of the next
     taken = [0] * len(occupancy.taken)  # by labels so far: the columns of each row as bits of one number
-    placed = -1
+    found, placed = [], -1
     for index, place, (left, top, right, bottom) in zip(
         of[tried].tolist(), tried.tolist(), cells[tried].tolist(), strict=True
     ):
-        if index == placed:
-            continue
         bits = (1 << right) - (1 << left)
-        if any(row & bits for row in taken[top:bottom]):
+        if index == placed or any(row & bits for row in taken[top:bottom]):
             continue
         taken[top:bottom] = [row | bits for row in taken[top:bottom]]
         occupancy.taken[top:bottom, left:right] = True
+        found.append(place)
         placed = index
-        yield labels[index], place
+    return np.array(found, dtype=np.intp)

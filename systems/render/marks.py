@@ -1,8 +1,11 @@
-"""Marks: what a picture consists of, in pixels, y down. Plain data, in painter's order."""
+"""Marks: what a picture consists of, in pixels, y down. Plain data, in painter's order.
+
+Those of which a picture holds hundreds singly are tuples, which are made sooner."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,8 +88,7 @@ class Rectangles:
     colour: Colour
 
 
-@dataclass(frozen=True)
-class Panel:
+class Panel(NamedTuple):
     """An upright box with rounded corners and, perhaps, a hairline around it."""
 
     left: float
@@ -98,8 +100,7 @@ class Panel:
     outline: Colour | None = None
 
 
-@dataclass(frozen=True)
-class Text:
+class Text(NamedTuple):
     """One line of text.
 
     x, y: the point at `anchor` ("left", "centre" or "right") and half the height of capitals.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -183,7 +182,7 @@ class _Writer:
         if tile is self.chosen or tile is self.hovered:
             colour = theme.selected if tile is self.chosen else theme.hover
             marks.append(_grown(card, 3.0 * u, radius + 2.0 * u, colour))
-        marks.append(replace(_grown(card, 0.0, radius, theme.background), outline=theme.line))
+        marks.append(_grown(card, 0.0, radius, theme.background)._replace(outline=theme.line))
         if tile.picture is not None:
             viewport = Viewport(round(card.left), round(card.top), round(card.width), round(card.height))
             marks += thumbnail(tile.picture, viewport, u, theme)

@@ -9,7 +9,7 @@ from components.toolbar import Toolbar
 from components.view import View, drawn_positions
 from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
-from systems.render.labels import place_labels
+from systems.render.labels import Placed, place_labels
 from systems.render.layers import ABOVE, BELOW
 from systems.render.marks import Picture
 from systems.render.overlays import draw_notice, draw_overlays, draw_scale
@@ -30,17 +30,18 @@ if TYPE_CHECKING:
 __all__ = ["compose", "drawn_positions"]
 
 
-def compose(model: Model | Form | Toolbar, view: View, theme: Theme) -> Picture:
+def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Placed | None = None) -> Picture:
     """The model (or form, or toolbar) as seen in a view, as marks in pixels. Reads it, changes nothing.
 
     Forces are read only where a diagram shows them, yielding only where a rod has a strength, and neither
-    before they are known.
+    before they are known. placed: where labels were in the last picture of this model and view, and then are in
+    this one; they move, come and go as little as can be.
     """
     if isinstance(model, Form):
         return compose_form(model, view, theme)
     if isinstance(model, Toolbar):
         return compose_toolbar(model, view, theme)
-    sheet = measure(model, view, theme)
+    sheet = measure(model, view, theme, placed)
     if view.page is not None:
         return Picture(sheet.viewport, theme.background, draw_page(sheet))
     draw_grid(sheet)
@@ -62,7 +63,7 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme) -> Picture:
     overlays, room = draw_overlays(sheet)
     overlays += draw_readouts(sheet, room)
     overlays += draw_notice(sheet, room)
-    labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit)
+    labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
     scale = draw_scale(sheet, room) if model.particles.count else []
     over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays]
     return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over])

@@ -12,6 +12,7 @@ from components.model import Model
 from components.toolbar import Toolbar
 from components.view import View
 from systems.base import Phase, System
+from systems.render.labels import Placed
 from systems.render.picture import compose
 from systems.render.pygame_canvas import Canvas
 from systems.render.raster import Raster
@@ -30,6 +31,7 @@ class PygameRender(System):
         self.drawn = False
         self._canvas = Canvas(raster)
         self._shown: Any = None
+        self._placed: dict[str, Placed] = {}
         self._sketch = False  # the last picture was one, since the drawing of large ones was not compiled yet
 
     def process(self, frame: Any) -> None:
@@ -41,10 +43,17 @@ class PygameRender(System):
         if self.drawn:
             theme = load_theme(frame.session.view.theme)
             self._sketch = False
+            self._placed = {_looked_at(*stage): self._placed.get(_looked_at(*stage), {}) for stage in stages}
             for model, view in stages:
-                self._canvas.draw(self.surface, compose(model, view, theme))
+                placed = self._placed[_looked_at(model, view)]
+                self._canvas.draw(self.surface, compose(model, view, theme, placed))
                 self._sketch |= self._canvas.sketch
             self._shown = (id(self.surface), looks, _revisions(stages))
+
+
+def _looked_at(shown: Model | Form | Toolbar, view: View) -> str:
+    """What is shown, and from where: as long as this is the same, its labels stay where they are."""
+    return f"{'' if isinstance(shown, Toolbar) else shown.context} {view.camera}"
 
 
 def _revisions(stages: Sequence[tuple[Model | Form | Toolbar, View]]) -> tuple[tuple[str, int], ...]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from components.camera import Viewport
 from components.view import View, drawn_positions
 from systems.render.clip import bounds, clip_rods
-from systems.render.labels import Label, Occupancy
+from systems.render.labels import Label, Occupancy, Placed
 from systems.render.marks import Mark, Points
 from systems.render.theme import Colour, Theme
 
@@ -36,7 +36,8 @@ class Sheet:
     ends: rows of the particles at the rods' ends (m, 2). rods: rows of the rods that can be seen; start,
     end: their visible parts in pixels, aligned with `rods`. particles: rows of those that can be seen.
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
-    legend: names of the colours that occur and mean something. notes: what a person must know of scales.
+    placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
+    notes: what a person must know of scales.
     """
 
     model: Model
@@ -51,6 +52,7 @@ class Sheet:
     end: Points
     particles: Rows
     occupancy: Occupancy
+    placed: Placed
     pulled: Rows = field(default_factory=lambda: np.empty(0, dtype=np.intp))
     pushed: Rows = field(default_factory=lambda: np.empty(0, dtype=np.intp))
     marks: list[Mark] = field(default_factory=list)
@@ -99,7 +101,7 @@ class Sheet:
         return [(colour, choice == index) for index, colour in enumerate(colours) if (choice == index).any()]
 
 
-def measure(model: Model, view: View, theme: Theme) -> Sheet:
+def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None) -> Sheet:
     """The model in pixels. Elements at places that are not finite numbers are left out."""
     camera, unit = view.camera, view.pixel_ratio
     centres = camera.to_pixels(drawn_positions(model))
@@ -125,6 +127,7 @@ def measure(model: Model, view: View, theme: Theme) -> Sheet:
         end,
         np.flatnonzero(seen),
         Occupancy(viewport, unit),
+        {} if placed is None else placed,
     )
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from components.tags import Hovered, Selected
 from systems.render.clip import bounds, clip_segments
-from systems.render.labels import FAINT, STRONG, Label, half_size
+from systems.render.labels import FAINT, STRONG, Key, Label, half_size
 from systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
 from systems.render.sheet import FEW, MANY, Rows, Sheet, typical_length
 from systems.render.symbols import LARGEST_STAMP, RIM, circle, dashed
@@ -189,20 +189,20 @@ def label_names(sheet: Sheet) -> None:
             beside = (
                 _beside_particle(sheet, row, half) if table == "particles" else _beside_rod(sheet, index, half)
             )
-            _add_name(sheet, name, beside, is_marked)
+            _add_name(sheet, name, beside, is_marked, (f"{table}.name", row))
 
 
 def _name_font(sheet: Sheet, marked: bool) -> tuple[int, str]:
     return (sheet.font(12.0), "semibold") if marked else (sheet.font(11.0), "regular")
 
 
-def _add_name(sheet: Sheet, name: str, places: list[tuple[float, float]], marked: bool) -> None:
+def _add_name(sheet: Sheet, name: str, places: list[tuple[float, float]], marked: bool, key: Key) -> None:
     size, weight = _name_font(sheet, marked)
     if marked:
         backing = faded(sheet.theme.background, 0.86)
-        sheet.labels.append(Label(name, places, size, sheet.theme.text, -1e12, weight, backing))
+        sheet.labels.append(Label(name, places, size, sheet.theme.text, -1e12, weight, backing, key=key))
     else:
-        sheet.labels.append(Label(name, places, size, sheet.theme.muted, 1e12, weight, lines="avoid"))
+        sheet.labels.append(Label(name, places, size, sheet.theme.muted, 1e12, weight, lines="avoid", key=key))
 
 
 def _beside_particle(sheet: Sheet, row: int, half: tuple[float, float]) -> list[tuple[float, float]]:

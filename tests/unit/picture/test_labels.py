@@ -8,12 +8,14 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from components.camera import Viewport
 from components.model import Model
 from components.particle import Particle
 from components.rod import spawn_rods
 from components.tags import Hovered, Selected
 from components.view import Status
 from systems.render.diagrams import written
+from systems.render.labels import FAINT, STRONG, Label, Occupancy, Placed, place_labels
 from systems.render.marks import Panel, Text
 from systems.render.picture import compose
 from tests.reference.boxes import overlapping, text_boxes
@@ -98,3 +100,65 @@ def test_names_of_all_show_only_where_there_are_few() -> None:
     model.tag(model.rods["rod 3"], Selected)
     model.tag(model.particles["particle 2"], Hovered)
     assert {"rod 3", "particle 2"} <= set(picture_of(model).texts)
+
+
+PLACES = [(30.0, 50.0), (70.0, 50.0)]
+
+
+def place_of(blocked: float | None, placed: Placed, line: tuple[float, int] | None = None) -> float | None:
+    """The x at which a label stands that may be at 30 or 70, by a square that is taken and a line."""
+    occupancy = Occupancy(Viewport(0, 0, 100, 100), 1.0)
+    if blocked is not None:
+        occupancy.block(blocked - 5.0, 45.0, 10.0, 10.0)
+    if line is not None:
+        occupancy.line(np.array([[line[0], 0.0]]), np.array([[line[0], 100.0]]), line[1])
+    label = Label("1", PLACES, 11, LIGHT.text, 0.0, key=("rods.name", 7))
+    marks = place_labels([label], occupancy, 1.0, placed)
+    return next((mark.x for mark in marks if isinstance(mark, Text)), None)
+
+
+def test_labels_stay_where_they_were_in_the_last_picture() -> None:
+    placed: Placed = {}
+    assert place_of(30.0, placed) == 70.0
+    assert placed == {("rods.name", 7): 1}
+    assert place_of(None, placed) == 70.0
+    assert place_of(70.0, placed) == 30.0
+    assert place_of(None, placed) == 30.0
+    assert place_of(None, {}) == 30.0
+
+
+def test_labels_move_to_where_they_cover_less() -> None:
+    assert place_of(None, {("rods.name", 7): 1}, (70.0, STRONG)) == 30.0
+    assert place_of(None, {("rods.name", 7): 1}, (30.0, STRONG)) == 70.0
+    assert place_of(30.0, {("rods.name", 7): 0}, (70.0, FAINT)) == 70.0
+
+
+def test_what_has_no_place_any_more_is_forgotten() -> None:
+    placed = {("rods.name", 7): 1, ("rods.name", 8): 0}
+    occupancy = Occupancy(Viewport(0, 0, 100, 100), 1.0)
+    assert place_labels([], occupancy, 1.0, placed) == []
+    assert not placed
+
+
+def share_that_stays(model: Model, placed: Placed, *, forget: bool) -> float:
+    """The least share of the values in one picture that the one before had, too, while forces vibrate by a tenth."""
+    view, told, rng = view_of(model, 500, 500, all_diagrams=True), [], np.random.default_rng(6)
+    for _ in range(5):
+        fill(model, "rods.axial_force", np.linspace(100.0, 200.0, 200) * rng.uniform(0.9, 1.1, 200))
+        if forget:
+            placed.clear()
+        texts = compose(model, view, LIGHT, placed).texts
+        told.append({row for name, row in placed if name == "rods.axial_force"})
+        assert all(written(float(model.rods.axial_force[row])) in texts for row in told[-1])
+    return min(len(now & before) / len(now) for before, now in itertools.pairwise(told))
+
+
+def test_values_come_and_go_only_where_forces_change_much() -> None:
+    model, placed = random_model(5, 24, 200), {}
+    fill(model, "particles.applied_force", np.zeros((24, 2)))
+    assert share_that_stays(model, {}, forget=True) < 0.75
+    assert share_that_stays(model, placed, forget=False) > 0.85
+    weak = min(row for name, row in placed if name == "rods.axial_force")
+    fill(model, "rods.axial_force", np.where(np.arange(200) == weak, 1.0, 180.0))
+    compose(model, view_of(model, 500, 500, all_diagrams=True), LIGHT, placed)
+    assert ("rods.axial_force", weak) not in placed
