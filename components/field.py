@@ -173,10 +173,18 @@ class Field(Generic[T]):
 
     def check_default(self, owner: str) -> None:
         """Raise FieldError if an element that is given no value could not be saved and read again."""
+        where = f"{owner}.{self.name}, its default"
         try:
-            self.check_column(self.allocate(1), 1, lambda row: f"{owner}.{self.name}, its default")
+            self.check_column(self._column_of_default(where), 1, lambda row: where)
         except FieldError as error:
             raise FieldError(f"{error} With nullable=True, None can be its default.") from None
+
+    def _column_of_default(self, where: str) -> Column:
+        try:
+            return self.allocate(1)
+        except (TypeError, ValueError):  # numpy's, which do not say where
+            self.check(self.default, where)
+            raise
 
     def check(self, value: Any, where: str) -> Any:
         """Return `value` normalised, or raise FieldError naming `where` (such as "rod AB")."""

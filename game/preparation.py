@@ -208,7 +208,7 @@ def _load_libraries() -> None:
     load_compiler()
     for is_compiled in AHEAD.values():  # imports kernels, which takes several frames
         is_compiled()
-    read_sources(tuple(DRIVERS.values()))
+    read_sources([driver for driver in DRIVERS.values() if driver.mod is None])
     importlib.import_module("systems.plasticity.kernels")
     for library in ("scipy.spatial", "scipy.sparse.linalg"):
         importlib.import_module(library)

@@ -14,7 +14,6 @@ from components.field import Column, Role, same
 from components.load import loads_end
 from components.model import ADDED, Model
 from components.rod import is_warm
-from components.settings import AUTOMATIC
 from components.snapshot import Snapshot
 from components.world import Derivation
 from game.catalogue import DRIVERS
@@ -115,13 +114,20 @@ class Simulation:
     def driver(self) -> Driver:
         """The integrator that the settings ask for, or that suits the model; free particles need none."""
         if self._driver is None:
-            name = self.model.settings.integrator
             plan = {type(system) for system in self.schedule.step_plan(self.model)}
             if plan == {Collision} or (plan == {Collision, Pull} and self.model.particles.count > FEW):
                 self._driver = FREE_FLIGHT
             else:
-                self._driver = DRIVERS[choose(self.model) if name == AUTOMATIC else name]
+                self._driver = self._integrator
         return self._driver
+
+    @property
+    def _integrator(self) -> Driver:
+        """The one that the settings name; another where they name none, or that of a mod that is switched off."""
+        named = DRIVERS.get(self.model.settings.integrator)
+        if named is None or (named.mod is not None and named.mod.off):
+            return DRIVERS[choose(self.model)]
+        return named
 
     @property
     def integrator(self) -> str:
@@ -262,6 +268,7 @@ class Simulation:
             except ProgramError as error:
                 if not blame_mod(error):
                     raise
+                self._driver = None  # it may be the one
 
     def _bound(self, systems: list[StepSystem]) -> Program | Flight:
         key = self._key(systems)

@@ -25,7 +25,7 @@ from game.arguments import BAD_INPUT, UsageError
 from game.catalogue import DRIVERS, register_driver
 from game.gestures import TOOL_HINTS, TOOLS
 from game.gestures.drawing import drawing_of
-from game.mods.guard import guarded_history, guarded_scene, guarded_system
+from game.mods.guard import guarded_history, guarded_integrator, guarded_scene, guarded_system
 from game.mods.mod import Mod, ModError
 from game.scenes import Scene, all_scenes
 from systems.base import Driver, System
@@ -134,7 +134,7 @@ class App:
         key = driver.name.rpartition(".")[2]
         if key in INTEGRATORS:
             raise ModError(f"There is an integrator '{key}' already; call {driver.name} something else.")
-        register_driver(driver())
+        register_driver(guarded_integrator(self._mod, driver()))
         self._undo.append(lambda: (DRIVERS.pop(key), INTEGRATORS.pop(key)))
 
     def history(self, kind: HistoryKind) -> None:

@@ -11,6 +11,7 @@ from game.arguments import Parser
 from game.mods.finding import mods_folder
 from game.mods.loading import MODS, load
 from game.mods.mod import FAULTS, INCLUDED, Mod, ModError
+from game.mods.probing import problems
 from game.mods.safety import LEFT_OUT, crashed
 from game.mods.skeleton import write_skeleton
 from game.registry import COMMANDS
@@ -42,7 +43,7 @@ def run(words: Sequence[str], parser: argparse.ArgumentParser, version: str) -> 
     """The command; returns the exit status. Raises ModError."""
     commands = parser.add_subparsers(dest="command", required=True, metavar="list|check|new")
     commands.add_parser("list", help="which mods there are, and why some were left out")
-    check = commands.add_parser("check", help="load a mod and tell whether all is well")
+    check = commands.add_parser("check", help="load a mod, compile its kernels, and tell whether all is well")
     check.add_argument("folder", metavar="FOLDER")
     new = commands.add_parser("new", help="write the skeleton of a mod, with a test that passes")
     new.add_argument("name", metavar="NAME")
@@ -81,8 +82,9 @@ def _check(folder: Path) -> int:
     found = load([folder])
     if not found:
         raise ModError(f"There is no mod in {folder}; `pinjoint mods new NAME` writes one to begin with.")
+    wrong = {mod.name: [mod.problem] if mod.off else list(problems(mod)) for mod in found}
     for mod in found:
-        print(f"{mod.name} {mod.version}: {'WRONG' if mod.off else 'all is well'}")
-        for line in filter(None, (mod.problem, *mod.notes)):
+        print(f"{mod.name} {mod.version}: {'WRONG' if wrong[mod.name] else 'all is well'}")
+        for line in (*wrong[mod.name], *mod.notes):
             print(f"    {line}")
-    return 1 if any(mod.off for mod in found) else 0
+    return 1 if any(wrong.values()) else 0

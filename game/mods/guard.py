@@ -13,7 +13,8 @@ from components.snapshot import Snapshot
 from game.mods.mod import INCLUDED, Mod
 from game.mods.watchdog import interrupted_after, stop_after
 from game.scenes import Scene
-from systems.base import StepSystem, System
+from systems.base import Driver, StepSystem, System
+from systems.physics.drivers import VelocityVerlet
 
 if TYPE_CHECKING:
     from components.model import Model
@@ -98,6 +99,26 @@ def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
             return float(mod.call(what, own, history, otherwise=0.0))
 
     return replace(kind, check=check, ends=ends, breaks=breaks, static=static, mod=mod)
+
+
+def guarded_integrator(mod: Mod, driver: Driver) -> Driver:
+    """The integrator of a mod, so wrapped that it is no longer chosen once the mod is switched off."""
+    own = driver.stable_step
+
+    def stable_step(frequency: float, decay: float) -> float:
+        size = float(own(frequency, decay))
+        if not size >= 0.0:
+            raise ValueError(f"it is {size} s; return a step of at least 0, which says that none is stable")
+        return size
+
+    def called(frequency: float, decay: float) -> float:
+        what = f"the stable step of the integrator '{driver.name}'"
+        size: float = mod.call(what, stable_step, frequency, decay, otherwise=math.nan)
+        return VelocityVerlet.stable_step(frequency, decay) if math.isnan(size) else size
+
+    driver.mod = mod
+    vars(driver)["stable_step"] = called
+    return driver
 
 
 _METHODS = tuple(name for name, method in vars(Scene).items() if callable(method) and name[0] != "_")

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from components.field import Role
 from components.model import Model
-from systems.base import ACCOUNTS, Commit, Law, StepSystem
+from systems.base import ACCOUNTS, Commit, Driver, Law, StepSystem
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
 PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for
@@ -104,7 +104,7 @@ def bind(system: StepSystem, model: Model, kernel: str = "kernel") -> Bound:
 
 def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     _check_role(system, model)
-    function = find(getattr(system, kernel), system.name)
+    function = find(getattr(system, kernel), system)
     plain = getattr(function, "py_func", None)
     if plain is None:
         raise ProgramError(f"The kernel of {system.name} is not compiled; put `@njit` of numba above it.")
@@ -159,7 +159,7 @@ def _check_role(system: StepSystem, model: Model) -> None:
             )
 
 
-def find(kernel: str | Callable[..., Any], owner: str) -> Callable[..., Any]:
+def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., Any]:
     """The function that "module:function" names, or itself. Raises ProgramError naming its owner."""
     if not isinstance(kernel, str):
         found: Callable[..., Any] = getattr(kernel, "__func__", kernel)  # of a class: a method
@@ -168,10 +168,12 @@ def find(kernel: str | Callable[..., Any], owner: str) -> Callable[..., Any]:
     try:
         found = getattr(importlib.import_module(module), attribute)
     except (ImportError, AttributeError, ValueError) as error:
-        raise ProgramError(
-            f"The kernel '{kernel}' of {owner} cannot be found: {error}; write it like"
+        lost = ProgramError(
+            f"The kernel '{kernel}' of {owner.name} cannot be found: {error}; write it like"
             " 'package.module:function'."
-        ) from None
+        )
+        lost.system = owner
+        raise lost from None
     return found
 
 
@@ -211,26 +213,41 @@ def _is_column(name: str, model: Model) -> bool:
     return table in model.tables and column in model.tables[table].fields
 
 
-def explain(bound: Iterable[Bound], model: Model, error: Exception) -> ProgramError:
+def explain(bound: Iterable[Bound], driver: Driver, model: Model, error: Exception) -> ProgramError:
     """Why a program did not compile: the first kernel that fails by itself or returns the wrong thing."""
     for b in bound:
-        problem = _problem(b, model)
+        problem = problem_of(b, model)
         if problem:
-            found = ProgramError(f"The kernel of {b.system.name} {problem}")
+            found = ProgramError(problem)
             found.system = b.system
             return found
-    return ProgramError(f"The step program does not compile: {error}")
+    found = ProgramError(f"The step program of {driver.name} does not compile: {_brief(error)}")
+    found.system = driver
+    return found
+
+
+def problem_of(b: Bound, model: Model) -> str:
+    """What is wrong with a kernel, compiled by itself, or ""."""
+    problem = _problem(b, model)
+    return f"The kernel of {b.system.name} {problem}" if problem else ""
+
+
+def _brief(failure: Exception) -> str:
+    lines = [line.strip() for line in str(failure).splitlines() if line.strip()]
+    return f"{'; '.join(lines[1:4])}."
 
 
 def _problem(b: Bound, model: Model) -> str:
-    """What is wrong with a kernel, compiled by itself, or ""."""
     try:
         made = _result_type(b, model)
     except Exception as failure:  # numba raises many kinds
-        lines = [line.strip() for line in str(failure).splitlines() if line.strip()]
-        return f"does not compile: {'; '.join(lines[1:4])}."
+        return f"does not compile: {_brief(failure)}"
+    from numba import types
+
     role = b.each or "commit"
-    if getattr(made, "count", 1) != (2 if role in ("particles", "commit") else 1):
+    numbers = tuple(getattr(made, "types", (made,)))
+    wanted = 2 if role in ("particles", "commit") else 1
+    if len(numbers) != wanted or not all(isinstance(n, types.Number | types.Boolean) for n in numbers):
         return f"returns {made}; it must return {_RESULTS[role]}."
     return ""
 

@@ -87,7 +87,7 @@ class Program:
                 state = [array[:0] for array in self._state]
                 self.module.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
         except NumbaError as error:
-            raise explain(self._writer.bound, self.model, error) from error
+            raise explain(self._writer.bound, self.driver, self.model, error) from error
         note_compiled(self.module)
 
     def _of_no_rods(self) -> list[Column]:

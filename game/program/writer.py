@@ -389,7 +389,7 @@ class Writer:
         return [f"for i in range({span}):", *indented(lines)] if lines else []
 
     def _body_of(self, where: str) -> list[str]:
-        function = ast.parse(_source_of(find(where, self.driver.name))).body[0]
+        function = ast.parse(_source_of(find(where, self.driver))).body[0]
         assert isinstance(function, ast.FunctionDef)
         told = ast.get_docstring(function) is not None
         return ast.unparse(function.body[told:]).splitlines()  # type: ignore[arg-type]
@@ -508,7 +508,7 @@ class Writer:
     def _pasted(self, where: str, decorator: str) -> str:
         """A driver's source, "module:function" or with "=new name", the model's columns for *columns."""
         where, _, name = where.partition("=")
-        function = find(where, self.driver.name)
+        function = find(where, self.driver)
         source = _source_of(function).replace("*columns", self._columns_text())
         return f"@{decorator}\n" + source.replace(
             f"def {function.__name__}(", f"def {name or function.__name__}(", 1
@@ -520,7 +520,7 @@ def read_sources(drivers: Iterable[Driver]) -> None:
     for driver in drivers:
         for part in (driver.kernel, driver.begins, driver.ends, driver.entry, *driver.parts):
             if isinstance(part, str) and part:
-                _source_of(find(part.partition("=")[0], driver.name))
+                _source_of(find(part.partition("=")[0], driver))
 
 
 @cache

@@ -240,6 +240,10 @@ def test_a_shape_that_fails_switches_the_mod_off(write_mod: Write, shape: str, s
             ("    name:", "    wide: Field[float] = Field(title='width', doc='', above=0.0)\n    name:"),
             r"Gate\.wide, its default: width is 0; it must be greater than 0\. With nullable=True",
         ),
+        (
+            ("    name:", "    wide: Field[float] = Field(title='width', doc='', default='x')\n    name:"),
+            r"Gate\.wide, its default: width is 'x'; it must be a number\.",
+        ),
         (("class Gate(Handle):", "class Gate(Handle):\n    single = True"), "a component of Settings"),
     ],
 )

@@ -300,3 +300,48 @@ def plugin(app):
 def test_a_world_is_whole_after_its_entities_were_checked() -> None:
     session = Session.open(TRUSS)
     World.check_entities(session.model)
+
+
+INTEGRATOR = """
+from systems.physics.drivers import VelocityVerlet
+
+class Mine(VelocityVerlet):
+    name = "apple.mine"
+    {line}
+
+def plugin(app):
+    app.integrator(Mine)
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("ends = 'apple:nothing'", "The kernel 'apple:nothing' of apple.mine cannot be found"),
+        (
+            "stable_step = staticmethod(lambda w, d: 1 / 0)",
+            "the stable step of the integrator 'apple.mine' failed",
+        ),
+        ("stable_step = staticmethod(lambda w, d: float('nan'))", "return a step of at least 0"),
+    ],
+)
+def test_without_an_integrator_that_fails_another_takes_the_steps(session: Any, line: str, said: str) -> None:
+    made, _ = session(INTEGRATOR.format(line=line))
+    made.settings.integrator = "mine"
+    made.press("space")
+    made.frame(1 / 60)
+    assert said in made.fault
+    assert made.run(time=0.001) == "time reached"
+    made.particles["C"].force = (2.0, -2.0)
+    assert made.run(time=0.001) == "time reached"
+    assert made.simulation.integrator == "dop853"
+
+
+@pytest.mark.parametrize("result", ["", "return 'a', 'b'", "return (particles_position[0], 0.0), 1.0"])
+def test_a_kernel_that_returns_no_numbers_is_told_in_one_sentence(session: Any, result: str) -> None:
+    made, _ = session(
+        LAW.format(kernel=f"@njit\ndef bad(particles_position):\n    {result or 'pass'}", more="")
+    )
+    made.run(steps=1)
+    assert "it must return a pair, the force (fx, fy) in kN" in made.fault
+    assert len(made.fault) < 300

@@ -14,6 +14,7 @@ from game.actions import ACTIONS
 from game.cli import main
 from game.registry import COMMANDS
 from systems.input.bindings import BINDINGS, action_for
+from systems.physics.drivers import VelocityVerlet
 from tests.mods.conftest import Write
 
 BALL = {"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}]}
@@ -294,6 +295,68 @@ def test_a_new_mod_works_at_the_first_try(tmp_path: Path, unloaded: None) -> Non
     )  # fmt: skip
     assert done.returncode == 0, done.stdout
     assert "1 passed" in done.stdout
+
+
+KERNEL = """
+from components import HistoryKind
+from numba import njit
+from systems.base import Law
+from systems.physics.drivers import VelocityVerlet
+
+@njit
+def pull({parameter}):
+    return {result}
+
+class Pull(Law):
+    name = "apple.pull"
+    each = "particles"
+    kernel = pull
+    reads = ("particles.position",)
+
+class Mine(VelocityVerlet):
+    name = "apple.mine"
+    ends = "{ends}"
+
+def plugin(app):
+    app.system(Pull)
+    app.integrator(Mine)
+    app.history(HistoryKind("apple", {{}}, "{factor}", static=1.0, ends=lambda history: 0.0))
+
+    @app.action("apple.eat", key="q", scenes=("{scene}",), title="eat")
+    def eat(session, pixel):
+        pass
+"""
+RIGHT = {
+    "parameter": "particles_position",
+    "result": "0.0, 0.0",
+    "ends": VelocityVerlet.ends,
+    "factor": "systems.loads.kernels:constant",
+    "scene": "pause",
+}
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({}, "apple 1.0: all is well"),
+        ({"parameter": "particles_positon"}, "has a parameter 'particles_positon', but there is no column"),
+        ({"parameter": "particles_mass"}, "does not declare that it reads 'particles.mass'"),
+        ({"result": "0.0"}, "it must return a pair, the force (fx, fy) in kN"),
+        ({"result": "nothing"}, "The kernel of apple.pull does not compile"),
+        ({"ends": "apple:nothing"}, "The kernel 'apple:nothing' of apple.mine cannot be found"),
+        ({"factor": "apple:nothing"}, "The kernel 'apple:nothing' of loads.apple cannot be found"),
+        (
+            {"scene": "paus"},
+            "The key 'q' for apple.eat: There is no 'paus' among the scenes; did you mean 'pause'",
+        ),
+    ],
+)
+def test_a_check_finds_what_no_model_could_be_run_with(
+    change: dict[str, str], said: str, write_mod: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = write_mod("apple", KERNEL.format(**{**RIGHT, **change}))
+    assert main(["mods", "check", str(folder)]) == (1 if change else 0)
+    assert said in capsys.readouterr().out
 
 
 def test_mods_are_listed_checked_and_left_out(

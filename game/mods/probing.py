@@ -1,0 +1,48 @@
+"""Probing: what is wrong with a mod that loads, found without a run; `pinjoint mods check`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from components.spelling import missing
+from game import models
+from game.catalogue import DRIVERS, step_systems
+from game.checks import EVERYTHING
+from game.program.binding import ProgramError, bind, problem_of
+from game.program.writer import read_sources
+from game.registry import SYSTEMS
+from game.scenes import all_scenes
+from systems.base import Commit, Law
+from systems.input.bindings import BINDINGS
+
+if TYPE_CHECKING:
+    from components.model import Model
+    from game.mods.mod import Mod
+
+
+def problems(mod: Mod) -> Iterator[str]:
+    """Sentences about what no model could be run with, and keys that no scene listens to."""
+    model = models.load(EVERYTHING)
+    for system in [*step_systems(), *(make() for make in SYSTEMS)]:
+        if system.mod is mod and isinstance(system, Law | Commit):
+            yield from filter(None, [_problem_of(system, model)])
+    for driver in DRIVERS.values():
+        if driver.mod is mod:
+            try:
+                read_sources([driver])
+            except ProgramError as error:
+                yield str(error)
+    scenes = {scene.name for scene in all_scenes()}
+    for binding in BINDINGS:
+        if binding.action.startswith(f"{mod.name}."):
+            for scene in set(binding.scenes) - scenes:
+                yield f"The key '{binding.key}' for {binding.action}: {missing('scenes', scene, scenes)}"
+
+
+def _problem_of(system: Law | Commit, model: Model) -> str:
+    """What is wrong with its kernel, or ""."""
+    try:
+        return problem_of(bind(system, model), model)
+    except ProgramError as error:
+        return str(error)
