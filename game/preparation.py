@@ -16,9 +16,10 @@ from components.rod import is_warm, nodes
 from game.catalogue import DRIVERS
 from game.collisions.encounter_kernels import has_encounters
 from game.collisions.encounters import load_encounters
+from game.collisions.flight import may_pile
 from game.collisions.flight_kernels import EVENTS, PILES, WINDOWS, has_parts
 from game.mods import MODS
-from game.prepare import ENCOUNTERS, FLIGHT, PILING, RASTER, WARM, Job, is_prepared, load_program
+from game.prepare import ENCOUNTERS, FLIGHT, RASTER, WARM, Job, is_prepared, load_program
 from game.program.cache import is_blank, load_compiler
 from game.program.program import has_program
 from game.program.writer import form_of, read_sources
@@ -32,11 +33,13 @@ if TYPE_CHECKING:
     from game.simulation import Simulation
     from systems.render.raster import Raster
 
-FREE: dict[str, Callable[[], bool]] = {  # two processes compile the two halves of what free particles need
-    FLIGHT: partial(has_parts, EVENTS),
-    PILING: partial(has_parts, WINDOWS, PILES),
+FREE = (FLIGHT, EVENTS), (FLIGHT, WINDOWS)  # two processes compile the two halves of what free particles need
+PULLED = (FLIGHT, EVENTS), (FLIGHT, WINDOWS, PILES)  # and what they need where they may pile up
+AHEAD: dict[Job, Callable[[], bool]] = {
+    (RASTER,): has_raster,
+    (ENCOUNTERS,): has_encounters,
+    **{half: partial(has_parts, *half[1:]) for half in PULLED},
 }
-AHEAD = {RASTER: has_raster, ENCOUNTERS: has_encounters, **FREE}
 
 
 class Preparation(System):
@@ -94,7 +97,7 @@ class Preparation(System):
         """What any model may need, one after the other, while nothing else is compiled."""
         if all(process.poll() is not None for process in self._running.values()):
             for job, is_compiled in AHEAD.items():
-                if self._waits((job,), is_compiled) is not None:
+                if self._waits(job, is_compiled) is not None:
                     return
 
     def _load_pulled(self, simulation: Simulation) -> None:
@@ -120,11 +123,11 @@ class Preparation(System):
 
     def waits_for(self, simulation: Simulation) -> float | None:
         """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
+        if simulation.integrator == FLIGHT:  # it may be ready, but not for piles
+            waits = [self._waits(half, partial(has_parts, *half[1:])) for half in _halves(simulation)]
+            return max((waited for waited in waits if waited is not None), default=None)
         if simulation.ready:
             return self._waits_for_meetings(simulation)
-        if simulation.integrator == FLIGHT:
-            waits = [self._waits((half,), is_compiled) for half, is_compiled in FREE.items()]
-            return max((waited for waited in waits if waited is not None), default=None)
         job = _job(simulation, simulation.schedule.step_plan(simulation.model))
         waited = self._waits(job, lambda: _is_compiled(simulation))
         others = self._waits_for_meetings(simulation)
@@ -186,6 +189,12 @@ def _with_support(simulation: Simulation) -> list[StepSystem]:
     return simulation.schedule.named((*names, Support.name))
 
 
+def _halves(simulation: Simulation) -> tuple[Job, Job]:
+    """What compiles what its free particles need."""
+    plan = simulation.schedule.step_plan(simulation.model)
+    return PULLED if may_pile(simulation.model, any(isinstance(system, Pull) for system in plan)) else FREE
+
+
 def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
     form = form_of(simulation.model, simulation.driver)
     warmth = (WARM,) if is_warm(simulation.model) else ()
@@ -195,7 +204,7 @@ def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
 def _is_compiled(simulation: Simulation) -> bool:
     """True if its program need only be loaded."""
     if simulation.integrator == FLIGHT:
-        return all(is_compiled() for is_compiled in FREE.values())
+        return all(has_parts(*half[1:]) for half in _halves(simulation))
     return _has_program(simulation, simulation.schedule.step_plan(simulation.model))
 
 

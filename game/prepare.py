@@ -1,5 +1,5 @@
-"""Compile ahead of need: `python -m game.prepare DRIVER FORM [warm] SYSTEM…` for a step program, `… free_flight` and
-`… windows_and_piles` for collisions of free particles, `… encounters` for those of others, or `… raster` for drawing.
+"""Compile ahead of need: `python -m game.prepare DRIVER FORM [warm] SYSTEM…` for a step program, `… free_flight PART…`
+for collisions of free particles, `… encounters` for those of others, or `… raster` for drawing.
 
 The window runs this in another process, because a compiler in its own would hold it up, in a thread too.
 """
@@ -15,7 +15,7 @@ from components.particle import Particle
 from components.rod import spawn_rods
 from game.catalogue import DRIVERS
 from game.collisions.encounters import load_encounters
-from game.collisions.flight_kernels import EVENTS, PILES, WINDOWS, load_part
+from game.collisions.flight_kernels import load_part
 from game.mods.command import load_as_asked
 from game.program.cache import forget_unused
 from game.program.in_blocks import make_program
@@ -25,7 +25,7 @@ from game.session import Session
 from systems.base import Driver, StepSystem
 from systems.edit.pull import Hand
 
-RASTER, FLIGHT, PILING, ENCOUNTERS = "raster", "free_flight", "windows_and_piles", "encounters"
+RASTER, FLIGHT, ENCOUNTERS = "raster", "free_flight", "encounters"
 WARM = "warm"  # the program is for rods whose temperature may have changed
 
 Job = tuple[str, ...]  # what to compile, in these words
@@ -38,10 +38,8 @@ def main(words: Sequence[str]) -> None:
     if name == RASTER:
         load_raster()
     elif name == FLIGHT:
-        load_part(EVENTS)
-    elif name == PILING:
-        load_part(WINDOWS)
-        load_part(PILES)
+        for part in job[1:]:
+            load_part(part)
     elif name == ENCOUNTERS:
         load_encounters()
     else:

@@ -28,6 +28,11 @@ CROWD = len(CROWD_COUNTS) + len(CROWD_NUMBERS)
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
 
 
+def may_pile(model: Model, pulled: bool) -> bool:
+    """True if anything presses particles together for long: a hand that pulls, or forces."""
+    return pulled or bool(model.particles.constant_force.any())
+
+
 def part_overlaps(model: Model) -> str:
     """Move particles apart that overlap, but for nodes of structures among themselves; says so, or ""."""
     from systems.near import near_pairs
@@ -80,8 +85,8 @@ class Flight:
         self._pull = pull
         for part in (EVENTS, WINDOWS):
             load_part(part)
-        if self.model.particles.constant_force.any() or pull is not None or has_parts(PILES):
-            load_part(PILES)
+        if has_parts(PILES):
+            load_part(PILES)  # an edit that needs it would wait for that
         self.bind()
         self.compile_seconds = time.perf_counter() - started
 
@@ -93,6 +98,8 @@ class Flight:
 
     def bind(self) -> None:
         """The document changed: paths are found anew."""
+        if may_pile(self.model, self._pull is not None):
+            load_part(PILES)
         self._flying: Discs | None = None
         self._state_revision = -1
 

@@ -40,7 +40,9 @@ def report(*, quick: bool) -> dict[str, list[Row]]:
     names = list(JOURNEYS)[:2] if quick else list(JOURNEYS)
     return {
         "window": [row for name in names for row in journeys(name)],
-        "compiling": compiling(("encounters",) if quick else ("isostatic", "ball_on_truss", *AHEAD)),
+        "compiling": compiling(
+            ("encounters",) if quick else ("isostatic", "ball_on_truss", *map(" ".join, AHEAD))
+        ),
         "commands": commands(),
     }
 
@@ -68,9 +70,9 @@ def _environment(folder: Path) -> dict[str, str]:
 
 def compiling(whats: Sequence[str]) -> list[Row]:
     """Processor seconds, with an empty cache, of processes that compile ahead of need: programs of models, or parts."""
-    rows = []
+    rows, ahead = [], {" ".join(job): job for job in AHEAD}
     for what in whats:
-        job = [what] if what in AHEAD else _job(Session.open(what))
+        job = ahead.get(what) or _job(Session.open(what))
         with tempfile.TemporaryDirectory() as folder:
             cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
             words = [sys.executable, "-m", "game.prepare", "--no-mods", *job]

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -124,7 +125,7 @@ def test_what_other_models_may_need_comes_when_nothing_else_is_compiled(
     monkeypatch: pytest.MonkeyPatch, app: App, compiler: Compiler
 ) -> None:
     monkeypatch.setattr(
-        preparation, "AHEAD", {"one": lambda: False, "two": lambda: True, "three": lambda: False}
+        preparation, "AHEAD", {("one",): lambda: False, ("two",): lambda: True, ("three",): lambda: False}
     )
     frames(app, 2)
     assert len(compiler.jobs) == 1
@@ -157,7 +158,7 @@ def test_while_a_run_waits_frames_are_few(
 ) -> None:
     """They would take a fifth of a core from what compiles."""
     looks: list[float] = []
-    monkeypatch.setattr(pygame_input.time, "sleep", looks.append)
+    monkeypatch.setattr(time, "sleep", looks.append)
     app.session.press("space")
     frames(app, 2)
     looks.clear()
@@ -229,7 +230,7 @@ def test_what_another_process_compiles_is_what_the_model_needs(name: str, warmth
 def test_free_particles_have_their_program_loaded_too(
     app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(preparation, "FREE", {"flight": lambda: True, "piles": lambda: True})
+    monkeypatch.setattr(preparation, "has_parts", lambda *parts: True)
     app.session.adopt(models.load("collision_i"))
     compiler.status = 0
     frames(app, 3)
@@ -239,18 +240,36 @@ def test_free_particles_have_their_program_loaded_too(
 def test_what_free_particles_need_is_compiled_by_two_processes_at_once(
     app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ready = {"flight": False, "piles": False}
-    monkeypatch.setattr(preparation, "FREE", {half: lambda half=half: ready[half] for half in ready})
+    compiled = set[str]()
+    monkeypatch.setattr(preparation, "has_parts", lambda *parts: compiled.issuperset(parts))
     app.session.adopt(models.load("collision_i"))
     frames(app, 2)
-    assert {("flight",), ("piles",)} <= set(compiler.jobs)
-    ready["flight"] = True
+    assert compiler.jobs[1:] == [("free_flight", "fly"), ("free_flight", "open_window")]
+    compiled.add("fly")
     app.session.press("space")
     frames(app, 2)
     assert app.session.model.clock.steps == 0  # for want of the other half
     compiler.status = 0
     frames(app, 3)
     assert app.session.model.clock.steps > 0
+
+
+def test_what_piles_need_is_waited_for_once_something_pulls(
+    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(preparation, "has_parts", lambda *parts: "take_steps" not in parts)
+    app.session.adopt(models.load("collision_i"))
+    app.session.press("space")
+    frames(app, 4)
+    steps = app.session.model.clock.steps
+    assert steps > 0
+    app.session.environment.acceleration = (0.0, -9.81)
+    frames(app, 3)
+    assert compiler.jobs[1:] == [("free_flight", "open_window", "take_steps")]
+    assert app.session.model.clock.steps == steps
+    compiler.status = 0
+    frames(app, 3)
+    assert app.session.model.clock.steps > steps
 
 
 def test_stepping_waits_too(app: App, compiler: Compiler) -> None:
