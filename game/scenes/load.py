@@ -79,14 +79,17 @@ class Load(FileScene):
             )
 
     def accept(self, session: Session) -> None:
-        """Return: open the chosen tile, or the model whose name was typed."""
+        """Return: open the chosen tile, the model whose name was typed, or the only one that is left to choose."""
         name, chosen = self.box.text.strip(), self.form.chosen
+        left = [tile for tile in self.form.tiles if not tile.hidden]
         if chosen is not None:
             self._take(session, chosen)
         elif not name:
             self.say("Type a name, or choose a picture with the arrow keys.")
         elif (source := library.find(name)) is not None:
             self._open(session, source)
+        elif len(left) == 1:
+            self._take(session, left[0])
         else:
             nearest = library.nearest(name)
             hint = f" Did you mean '{nearest}'?" if nearest else ""
