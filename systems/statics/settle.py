@@ -32,6 +32,7 @@ ROUGH = 1e-9  # of the largest force, unbalanced: worth a note
 UNBALANCED = 1e-6  # of the largest force: more is no equilibrium
 UNCHANGED = 1e-12  # of the load: a change of it that is round-off
 MOST_DISCS = 250  # without rods; more would take minutes
+IN_ONE_PLACE = 0.75  # of the sum of their radii: discs that overlap by more are hardly parted by forces
 HELD = 1e-3  # of the forces that hold a state: if no more differs from the load, it is what holds it
 UNSTRESSED = 1e-9  # of the largest force: what holds the present state counts as nothing
 
@@ -364,6 +365,7 @@ class _SettlingWithDiscs(_Settling):
                 "limit reached",
                 f"Settling follows at most {MOST_DISCS} particles without rods; here there are {alone}. Run until rest.",
             )
+        self._check_apart()
         target = self._all(target)
         sinking = Sinking(self.bare, self.discs, target, self.point)
         outcome = sinking.run()
@@ -385,6 +387,18 @@ class _SettlingWithDiscs(_Settling):
                 " further and further. Add something that holds it if that is not meant."
             )
             self.events.append(Event("note", factor, message, motion=motion / np.hypot(*motion.T).max()))
+
+    def _check_apart(self) -> None:
+        """Raise NoEquilibrium if two are so nearly in one place that nothing says which way to part them."""
+        pairs = self.discs.touching(self.point.displacement)
+        share = -self.discs.gap(self.point.displacement, pairs) / self.discs.radius[pairs].sum(axis=1)
+        for first, second in pairs[share > IN_ONE_PLACE][:1].tolist():
+            names = [*self.model.particles.names, *self.discs.obstacles.names]
+            raise NoEquilibrium(
+                "limit reached",
+                f"{names[first]} and {names[second]} are nearly in one place, so that nothing says which way to part"
+                " them. Move one of them, or run the model.",
+            )
 
     def _note_mechanism(self, found: Point) -> None:
         """Report what the rods alone do not hold."""

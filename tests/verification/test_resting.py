@@ -310,3 +310,17 @@ def test_a_settled_pile_stays_where_it_is() -> None:
     settled_at = session.particles.displacement.copy()
     session.run(time=0.5)
     assert session.particles.displacement == pytest.approx(settled_at, abs=6e-8)
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-300, 1e-12, 1e-6, 0.02])
+def test_discs_in_one_place_are_named(apart: float, recwarn: pytest.WarningsRecorder) -> None:
+    found = settled(model([particle("A", 0, 0), particle("B", apart, 0)], []))
+    assert found.status == "limit reached"
+    assert found.message.startswith("A and B are nearly in one place")
+    assert not recwarn.list
+
+
+def test_discs_that_overlap_are_parted() -> None:
+    found = settled(model([particle("A", 0, 0), particle("B", 0.03, 0)], []))
+    assert found.status == "equilibrium"
+    assert found.final.displacement[:, 0] == pytest.approx([-0.035, 0.035], rel=1e-9)
