@@ -172,7 +172,8 @@ def _label_rods(
     places = _places_by_rods(middle[shown], normal[shown], height[shown], half, few)
     colours = [getattr(sheet.theme, _sign_of(value)) for value in numbers]
     keys = [(_ROD_VALUE, row) for row in rows[shown].tolist()]
-    _add_values(sheet, zip(texts, places, colours, (-worth[shown]).tolist(), keys, strict=True), size, few)
+    values_of = zip(texts, places, colours, (-worth[shown]).tolist(), keys, strict=True)
+    _add_values(sheet, values_of, size, "spare" if few else "cover")
 
 
 def _sign_of(force: float) -> str:
@@ -209,11 +210,13 @@ def _value_texts(sheet: Sheet, numbers: Iterable[str], few: bool) -> tuple[list[
 
 
 def _add_values(
-    sheet: Sheet, values: Iterable[tuple[str, Points, Colour, float, Key]], size: int, few: bool
+    sheet: Sheet,
+    values: Iterable[tuple[str, Points, Colour, float, Key]],
+    size: int,
+    lines: Literal["spare", "cover"],
 ) -> None:
     """Labels of values: text, places, colour, rank and key of each."""
     backing = faded(sheet.theme.background, _BACKING)
-    lines: Literal["spare", "cover"] = "spare" if few else "cover"
     sheet.labels += [
         Label(text, places, size, colour, rank, "semibold", backing, lines, key)
         for text, places, colour, rank, key in values
@@ -327,7 +330,7 @@ def _label_arrows(
     # Arrows are few and say little without their value: before the rods.
     ranks, keys = (-worth[shown] - 1e9).tolist(), [(_ARROW_VALUE, number) for number in which[shown].tolist()]
     colours = [sheet.theme.force] * len(texts)
-    _add_values(sheet, zip(texts, places, colours, ranks, keys, strict=True), font, few)
+    _add_values(sheet, zip(texts, places, colours, ranks, keys, strict=True), font, "spare")
 
 
 def _places_by_arrows(middle: Points, outward: Points, half: Points, u: float) -> Points:

@@ -162,3 +162,19 @@ def test_values_come_and_go_only_where_forces_change_much() -> None:
     fill(model, "rods.axial_force", np.where(np.arange(200) == weak, 1.0, 180.0))
     compose(model, view_of(model, 500, 500, all_diagrams=True), LIGHT, placed)
     assert ("rods.axial_force", weak) not in placed
+
+
+def test_values_of_many_forces_leave_the_rods_to_their_own_where_there_is_room() -> None:
+    model, count = Model(), 30
+    model.create(Particle, count, position=[(0.0, float(i)) for i in range(count)])
+    spawn_rods(model, [(i, i + 1) for i in range(count - 1)])
+    fill(model, "rods.axial_force", np.arange(1.0, count))
+    fill(model, "particles.applied_force", np.tile([0.0, -0.25], (count, 1)))
+    view = view_of(model, 400, 2400, all_diagrams=True)
+    picture = compose(model, view, LIGHT)
+    middle = view.camera.to_pixels((0.0, 0.0))[0]
+    forces = [mark for mark in marks_of(picture, Text, LIGHT.force) if mark.text == "0.25"]
+    assert len(forces) == count
+    inside = [mark for mark in forces[1:] if abs(mark.x - middle) < 10.0]
+    assert len(inside) <= 1  # below the lowest particle there is no rod
+    assert {written(float(force)) for force in range(1, count)} <= set(picture.texts)
