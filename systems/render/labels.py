@@ -77,11 +77,13 @@ class Occupancy:
         """
         height, width = self.taken.shape
         sums = np.zeros((height + 1, width + 1), dtype=np.int32)
-        np.cumsum(self.taken | (self.lined > covering), axis=0, dtype=np.int32, out=sums[1:, 1:])
+        sums[1:, 1:] = self.taken | (self.lined > covering)
+        np.cumsum(sums, axis=1, out=sums)
+        sums = np.ascontiguousarray(sums.T)  # summing numbers that lie side by side is several times quicker
         np.cumsum(sums, axis=1, out=sums)
         left, top, right, bottom = cells.T
         nothing: NDArray[np.bool_] = (
-            sums[bottom, right] - sums[top, right] == sums[bottom, left] - sums[top, left]
+            sums[right, bottom] - sums[right, top] == sums[left, bottom] - sums[left, top]
         )
         return nothing
 

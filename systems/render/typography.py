@@ -25,9 +25,15 @@ def text_width(text: str, size: int, weight: str = "regular") -> int:
     Every advance is rounded to whole pixels, as hinted fonts are drawn. A character that the font lacks
     counts 0.7 em.
     """
+    return sum(_character_width(character, size, weight) for character in text)
+
+
+@cache
+def _character_width(character: str, size: int, weight: str) -> int:
     metrics = _metrics()[weight]
-    em, advance = metrics["units_per_em"], metrics["advance"]
-    return sum(math.floor(advance.get(character, 0.7 * em) * size / em + 0.5) for character in text)
+    em = metrics["units_per_em"]
+    advance: float = metrics["advance"].get(character, 0.7 * em)
+    return math.floor(advance * size / em + 0.5)
 
 
 def capital_height(size: int) -> float:
