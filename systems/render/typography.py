@@ -31,8 +31,8 @@ def text_width(text: str, size: int, weight: str = "regular") -> int:
 @cache
 def _character_width(character: str, size: int, weight: str) -> int:
     metrics = _metrics()[weight]
-    em = metrics["units_per_em"]
-    advance: float = metrics["advance"].get(character, 0.7 * em)
+    em = float(metrics["units_per_em"])
+    advance = float(metrics["advance"].get(character, 0.7 * em))
     return math.floor(advance * size / em + 0.5)
 
 
