@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -96,10 +97,22 @@ def read_variations(model: Model, vary: Iterable[str] | Mapping[str, Sequence[Va
     )
     variations = tuple(_read(model, text) for text in texts)
     paths = [path for variation in variations for path in variation.columns]
-    for path in paths:
-        if paths.count(path) > 1:
+    for path, times in Counter(paths).items():
+        if times > 1:
             raise SweepError(f"{path} is varied twice; say it once.")
+    for place, path in enumerate(paths):
+        for before in paths[:place] if EVERY in path else ():
+            if _covers(path, before):
+                raise SweepError(
+                    f"Varying {path} would undo that of {before}, which comes before it; swap them."
+                )
     return variations
+
+
+def _covers(path: str, one: str) -> bool:
+    """Whether a path with every element has this one among its own."""
+    table, star, field = path.partition(f".{EVERY}.")
+    return bool(star) and one.startswith(f"{table}.") and one.endswith(f".{field}")
 
 
 def _listed(path: str, values: Sequence[Value]) -> str:

@@ -350,6 +350,8 @@ SWEEPS = {
     "Nothing is measured": {"measure": []},
     "give it a list of values, at least one": {"vary": {STIFFNESS: []}},
     "rods.CA.stiffness is varied twice": {"vary": [f"{STIFFNESS}=1,2", f"{STIFFNESS}=3:4:2"]},
+    "would undo that of rods.CA.stiffness": {"vary": [f"{STIFFNESS}=1,2", "rods.*.stiffness=3,4"]},
+    "would undo that of particles.B.force.y": {"vary": [FORCE_Y, "particles.*.force.y=1"]},
     "needs the number of samples": {"vary": [DRAWN]},
     "--samples goes with a distribution": {"samples": 5},
     "--samples 0: draw at least 1": {"vary": [DRAWN], "samples": 0},
