@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 WIDE = 1.1  # width / height from which the sets stand side by side
 MOST_OF_HEIGHT = 0.45  # that the working takes; more is scrolled
 LARGE = 500  # rods beyond which a picture says what is being worked on before it is
-CAPTION, SCALE, MARGIN = 66.0, 28.0, 40.0  # points above, below and beside a structure in its set
+LOW = 1.8  # width / height of a place from which a structure stands beside its caption
+LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; below or beside its caption
+CAPTION, SCALE, MARGIN = 66.0, 28.0, 40.0  # points above, below and at most about a structure in its set
 
 
 @dataclass
@@ -171,9 +173,12 @@ class ForceMethod(Scene):
     def _sets(self, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
         captions = words.captions(self.shown_guide) if self.shown_guide else [("",)] * 3
         there: list[Set | Mechanism] = [*self.shown_guide.shown] if self.shown_guide else self._moving()
+        places = [(index, _third(middle, index)) for index in range(3)]
+        if there and not _readable(places[0][1], ratio):
+            places = [(0 if self._picks else len(there) - 1, middle)]
         shown = []
-        for index, caption in enumerate(captions):
-            viewport = _third(middle, index)
+        for index, viewport in places:
+            caption = captions[index]
             if index >= len(there):
                 view = self._places[index]
                 _place(view, viewport, ratio)
@@ -185,6 +190,11 @@ class ForceMethod(Scene):
             view.caption = caption
             shown.append((there[index].model if index < len(there) else self._blank, view))
         return shown
+
+    @property
+    def _picks(self) -> bool:
+        """True while the unknown is picked from set 1."""
+        return self.shown_guide is not None and self.shown_guide.part == 2
 
     # --- looking closer: all sets alike ----------------------------------------------------------------
 
@@ -221,11 +231,22 @@ def _place(view: View, viewport: Viewport, ratio: float) -> None:
 
 
 def _fit(model: Model, view: View) -> None:
-    """Show the whole model between the caption, which grows from part to part, and the scale."""
+    """Show the whole model below or, in a low place, beside the caption, which grows from part to part."""
     v, u = view.camera.viewport, view.pixel_ratio
-    above, below = round(min(CAPTION * u, 0.4 * v.height)), round(min(SCALE * u, 0.1 * v.height))
-    within = Viewport(v.left, v.top + above, v.width, max(v.height - above - below, 1))
-    view.camera.fit(drawn_positions(model), MARGIN, within, u)
+    left, above = (v.width // 3, 0) if _is_low(v) else (0, round(min(CAPTION * u, 0.4 * v.height)))
+    below = round(min(SCALE * u, 0.1 * v.height))
+    within = Viewport(v.left + left, v.top + above, v.width - left, max(v.height - above - below, 1))
+    view.camera.fit(drawn_positions(model), min(MARGIN, 0.2 * v.height / u), within, u)
+
+
+def _readable(place: Viewport, ratio: float) -> bool:
+    """Whether a set has enough room beside or above others; else only the newest is shown, or what is picked from."""
+    height = LEAST_LOW if _is_low(place) else LEAST_HEIGHT
+    return place.width >= LEAST_WIDTH * ratio and place.height >= height * ratio
+
+
+def _is_low(place: Viewport) -> bool:
+    return place.width > LOW * place.height
 
 
 def _third(middle: Viewport, index: int) -> Viewport:

@@ -121,6 +121,27 @@ def test_every_part_is_drawn_at_any_size(size: tuple[int, int]) -> None:
             session.press("k")
 
 
+def test_where_there_is_no_room_for_three_the_newest_set_is_shown_or_the_one_to_pick_from() -> None:
+    session = Session.open("hyperstatic")
+    session.resize(400, 300)
+    session.press("k")
+    seen = []
+    for part in range(1, 8):
+        (_, first) = session.stages[1]
+        captions = [view.caption[0] for _, view in session.stages[1:-2] if view.caption]
+        seen.append([caption[:5] for caption in captions])
+        if part == 2:
+            session.click(0.5, 0.5)
+            assert guide_of(session).unknown is not None
+        else:
+            session.press("k")
+        assert first.camera.viewport.width == session.view.canvas.width
+    assert seen == [["Set 1"], ["Set 1"], ["Set 2"], ["Set 2"], ["Set 3"], ["Set 3"], ["Set 3"]]
+    session.resize(640, 480)
+    session.press("k")
+    assert len({view.camera.viewport for _, view in session.stages[1:4]}) == 3
+
+
 def test_a_support_without_rods_is_refused() -> None:
     session = Session.open("hyperstatic")
     session.model.create(Particle, position=[(3.0, 0.0)], fixed=[(True, False)])
