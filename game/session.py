@@ -553,7 +553,12 @@ class Session:
             self.act(name, pixel)
 
     def _action_at(self, key: str, pixel: Vector) -> str | None:
-        """What a key or button does, with the pointer at a pixel: on the toolbar, clicks do what it offers."""
+        """What a key or button does, with the pointer at a pixel: on the toolbar, clicks do what it offers.
+
+        Where the keys are listed, Escape leaves the list and nothing else.
+        """
+        if key == "escape" and self.view.help:
+            return "close help"
         if key not in ON_TOOLBAR or self.scene in FORMS or not self.view.strip.contains(pixel):
             return action_for(self.scene, key)
         buttons = self.view.toolbar.buttons(self.view.camera.viewport, self.view.pixel_ratio)

@@ -74,6 +74,11 @@ def _toggle_help(session: Session, pixel: Vector) -> None:
     session.view.help = (session.view.help + 1) % (len(pages_of_help(session)) + 1)
 
 
+@action("close help", while_drawing=True)
+def _close_help(session: Session, pixel: Vector) -> None:
+    session.view.help = 0
+
+
 @action("pan", while_drawing=True)
 def _pan(session: Session, pixel: Vector) -> None:
     """Here `pixel` is how far the pointer was dragged."""

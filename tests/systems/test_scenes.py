@@ -320,3 +320,24 @@ def test_the_help_says_everything_in_full_at_640_by_480(scene_keys: tuple[str, .
     ]
     titles = {title for _, title in session.view.keys}
     assert titles <= set(texts), titles - set(texts)
+
+
+@pytest.mark.parametrize(
+    ("keys", "scene"),
+    [
+        ((), "pause"),
+        (("space",), "simulation"),
+        (("k",), "force method"),
+        (("d",), "load"),
+        (("p", "l"), "pause"),
+    ],
+)
+def test_escape_puts_the_list_of_keys_away_and_does_nothing_else(keys: tuple[str, ...], scene: str) -> None:
+    session = Session.open("isostatic")
+    for key in keys:
+        session.press(key)
+    gesture = session.gesture
+    session.press("f1")
+    session.press("escape")
+    session.update_view()
+    assert (session.view.help, session.scene, session.gesture) == (0, scene, gesture)
