@@ -203,6 +203,11 @@ class App:
             self._clean_up()
         return frame
 
+    @property
+    def room_below(self) -> int:
+        """Points between the window and the lower edge of the display."""
+        return max(int(self._display_height) - self.window.position[1] - self.window.size[1], 0)
+
     def _follow_size(self) -> None:
         """Let the viewport and the size of type follow the window, the display's pixel density and the person."""
         surface = self.window.get_surface()

@@ -61,7 +61,8 @@ class Performance:
     def _play(self) -> list[Failure]:
         session, failures = self._app.session, list[Failure]()
         session.performing, session.footer = True, View()
-        self._grow(1)
+        grown = min(round(FOOTER), self._app.room_below)
+        self._grow(grown)
         self._say(self._script.title)
         try:
             for number, entry in self._script.lines[1:]:
@@ -73,7 +74,7 @@ class Performance:
                 self._watch_what_came(entry)
         finally:
             session.performing, session.footer = False, None
-            self._grow(-1)
+            self._grow(-grown)
         if not self._ended:
             session.notice = DONE
         return failures
@@ -184,7 +185,7 @@ class Performance:
         self._hurried |= any(key in HURRY for key in pressed)
         self._ended |= "escape" in pressed or app.input.closed
 
-    def _grow(self, sign: int) -> None:
-        """Make room for the footer below the picture, or take it away."""
+    def _grow(self, points: int) -> None:
+        """Make room for the footer below the picture, or take it away; where there is none, the picture has less."""
         width, height = self._app.window.size
-        self._app.window.size = width, round(height + sign * FOOTER)
+        self._app.window.size = width, height + points

@@ -17,7 +17,7 @@ from game.app import App
 from game.desk import ModelFile
 from game.saved import library
 from game.scenes.load import LESSONS
-from game.scripts.performance import Performance
+from game.scripts.performance import FOOTER, Performance
 from game.scripts.script import Script, lessons
 from tests.reference.bits import columns, different
 
@@ -44,7 +44,11 @@ def test_a_lesson_comes_to_the_same_bits_as_without_a_window(app: App, name: str
     assert different(columns(app.session.model), columns(headless.model)) == []
 
 
-def test_room_for_what_is_said_is_made_and_taken_away(app: App, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("below", [1000, 24])
+def test_room_for_what_is_said_is_made_and_taken_away(
+    app: App, monkeypatch: pytest.MonkeyPatch, below: int
+) -> None:
+    monkeypatch.setattr(App, "room_below", below)
     viewport, size = app.session.view.camera.viewport, tuple(app.window.size)
     said: list[str] = []
     heights: set[int] = set()
@@ -57,12 +61,14 @@ def test_room_for_what_is_said_is_made_and_taken_away(app: App, monkeypatch: pyt
             said.extend(footer.page.lines)
             heights.add(app.session.view.camera.viewport.height)
             assert footer.camera.viewport.top == app.session.view.camera.viewport.height
+            assert app.window.size[1] == size[1] + min(below, round(FOOTER))
         return result
 
     monkeypatch.setattr(app, "frame", watched)
     opened(app, Script("3_force_method")).play()
     assert any("K begins the force method" in text for text in said)
-    assert heights == {viewport.height}
+    (height,) = heights
+    assert (height == viewport.height) == (below > FOOTER), "the picture shrinks only if the display is full"
     app.frame(0.0)
     assert app.session.footer is None
     assert app.session.view.camera.viewport == viewport
