@@ -270,11 +270,13 @@ def view_like(view: View) -> View:
 
 
 def elastic_copy(model: Model) -> Model:
-    """The same structure without yielding, undisplaced and at rest, at the beginning of time."""
+    """The same structure without yielding, at rest at the beginning of time; only moved supports are displaced."""
     copy = Model()
     for name, table in model.tables.items():
         kept = [field.name for field in table.fields_in(Role.DOCUMENT)] + ["plastic_strain"] * (name == "rods")
         columns = {field: table.column(field) for field in kept}
+        if name == "particles":
+            columns["displacement"] = np.where(table.fixed, table.displacement, 0.0)
         if table.kind.single:
             [one] = copy.tables[name]
             for field, column in columns.items():
@@ -313,12 +315,14 @@ def exact_forces(model: Model, unknowns: Sequence[Unknown]) -> list[float] | Non
 
 
 def _unload(model: Model) -> None:
-    """No load, no acceleration, no lack of fit, no warmth: only what is added acts."""
+    """No load, no acceleration, no lack of fit, no warmth, no moved support: only what is added acts."""
     model.delete(list(model.loads))
     model.environment.force = model.environment.acceleration = (0.0, 0.0)
     particles = list(model.particles)
     model.assign(particles, "acceleration", [(0.0, 0.0)] * len(particles))
+    model.assign(particles, "displacement", [(0.0, 0.0)] * len(particles))
     rods = list(model.rods)
+    model.assign(rods, "plastic_strain", [0.0] * len(rods))
     model.assign(rods, "prescribed_rest_length", model.rods.original_length.tolist())
     model.assign(rods, "temperature_change", [0.0] * len(rods))
 

@@ -118,7 +118,7 @@ def find_unknown(model: Model, name: str) -> Unknown:
 
 
 class _Linear:
-    """First-order theory of a model with some unknowns released (masses and loads stay)."""
+    """First-order theory of a model with some unknowns released (masses, loads and moved supports stay)."""
 
     def __init__(self, model: Model, released: Sequence[Unknown] = ()) -> None:
         whole = Structure.of(model)
@@ -131,8 +131,11 @@ class _Linear:
         self.structure = structure = replace(whole, unknown=unknown_directions)
         self.model = model
         self._along = along
+        self._supports = np.where(whole.fixed & ~unknown_directions, model.particles.displacement, 0.0)
         response = structure.respond(np.zeros_like(whole.position), model.rods.plastic_strain)
-        self._prestress = along * response.elongation - np.where(along > 0.0, whole.stiffness, 0.0) * (
+        first, second = self._supports[whole.ends].swapaxes(0, 1)
+        elongation = response.elongation + ((second - first) * whole.original_axis).sum(axis=1)
+        self._prestress = along * elongation - np.where(along > 0.0, whole.stiffness, 0.0) * (
             model.rods.plastic_strain
         )
         self._compatibility = structure.compatibility(response)
@@ -154,12 +157,13 @@ class _Linear:
         )
 
     def under(self, force: Array, *, prestressed: bool) -> SetState:
-        """The state under forces (n, 2); `prestressed`: with what the rods' lack of fit adds."""
+        """The state under forces (n, 2); `prestressed`: with what lack of fit and moved supports add."""
         initial = self._prestress if prestressed else np.zeros_like(self._prestress)
+        supports = self._supports if prestressed else np.zeros_like(self._supports)
         right = self.structure.gather(force) - self._compatibility.T @ initial
         moved = self._factor.solve(right)
         axial = self._along * (self._compatibility @ moved) + initial
-        return SetState(self.structure.spread(moved), axial)
+        return SetState(supports + self.structure.spread(moved), axial)
 
 
 def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
@@ -168,8 +172,8 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     Rod: Δ is the change of distance between its ends (apart +), the unit pair pulls them together, p > 0 is
     tension. Support: Δ and p along +x or +y, p is the force on the structure.
 
-    Several unknowns are solved with what is known of Δ_real: a support does not move, a rod's Δ is
-    p L₀/EA less its lack of fit. Then they are unique even where the base structure has fewer rods than
+    Several unknowns are solved with what is known of Δ_real: a support is where it was moved, if it was; a
+    rod's Δ is p L₀/EA less its lack of fit. Then they are unique even where the base structure has fewer rods than
     there are unknowns, and Δ₁ alone is singular.
     """
     problem = incomputable(model)
@@ -212,6 +216,8 @@ def _flexibility(model: Model, unknowns: Sequence[Unknown]) -> tuple[Array, Arra
             rod = unknown.element
             own[index] = rod.rest_length / rod.stiffness
             unstrained[index] = rod.rest_length * rod.plastic_strain - rod.misfit
+        elif unknown.axis is not None:
+            unstrained[index] = unknown.element.displacement[unknown.axis]
     return own, unstrained
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,8 +13,10 @@ from hypothesis import strategies as st
 from components.model import Model
 from components.particle import Particle
 from components.rod import spawn_rods
-from game import models
+from game import Session, models
+from game.force_method.guide import exact_forces
 from systems.statics.force_method import ForceMethodError, find_unknown, redundants, solve
+from systems.statics.theory import linear
 from tests.reference.models import panel_truss
 from tests.reference.statics import direct_stiffness
 
@@ -112,3 +115,47 @@ def test_lack_of_fit_counts() -> None:
     along = rod.stiffness / rod.rest_length * (solution.delta_real[0] - 1e-4)
     assert solution.force[0] == pytest.approx(along, rel=1e-10)
     assert solution.force[0] < 0.0
+
+
+THREE_BARS: dict[str, Any] = {
+    "format": "pinjoint model",
+    "version": 1,
+    "particles": [
+        {"name": "A", "position": [0, 0], "fixed": [True, True]},
+        {"name": "B", "position": [1, 0], "fixed": [True, True], "displacement": [1e-3, -5e-3]},
+        {"name": "C", "position": [2, 0], "fixed": [True, True]},
+        {"name": "D", "position": [1, 1], "force": [3, -7]},
+    ],
+    "rods": [{"name": f"{end}D", "between": [end, "D"]} for end in "ABC"],
+}
+
+
+@pytest.mark.parametrize("name", ["AD", "BD", "CD", "B.y"])
+def test_moved_supports_count(name: str) -> None:
+    model = models.load(THREE_BARS)
+    unknown = find_unknown(model, name)
+    solution, theory = solve(model, [unknown]), linear(model)
+    by_theory = theory.reaction[1, 1] if name == "B.y" else theory.axial_force[model.rods[name].row]
+    assert solution.force[0] == pytest.approx(by_theory, rel=1e-12)
+    assert solution.delta_real[0] - solution.delta_base[0] == pytest.approx(
+        solution.delta_unit[0, 0] * solution.force[0], rel=1e-9
+    )
+    assert solution.real.displacement == pytest.approx(theory.displacement, rel=1e-12, abs=1e-15)
+    assert solution.superposed.displacement == pytest.approx(theory.displacement, rel=1e-9, abs=1e-14)
+    [exact] = exact_forces(model, [unknown]) or []
+    assert exact == pytest.approx(by_theory, rel=1e-2)
+
+
+def test_set_3_is_without_moved_supports_and_plastic_strain() -> None:
+    rods = [{**rod, "plastic_strain": 1e-3} for rod in THREE_BARS["rods"]]
+    session = Session.open({**THREE_BARS, "rods": rods})
+    session.press("k")
+    session.press("k")
+    session.click(1, 0.5)
+    session.press("k")
+    session.press("k")
+    worlds = (world for world, _ in session.scenes.active.stages(session))
+    first, second, third = (world for world in worlds if world.particles.count)
+    assert first.particles["B"].displacement == second.particles["B"].displacement == (1e-3, -5e-3)
+    assert third.particles["B"].displacement == (0.0, 0.0)
+    assert not third.rods.plastic_strain.any()
