@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from components.field import Role
@@ -21,28 +22,30 @@ LARGEST = 2000  # rods up to which theory is found without being asked for; more
 
 
 class Assessment:
-    """A run beside theory, from the moment it began; what was computed is kept until the model is edited.
-
-    undisturbed: nobody has edited the model or pulled a particle since.
-    """
+    """A run beside theory, from the moment it began; what was computed is kept until the model is edited."""
 
     def __init__(self, model: Model, simulation: Simulation) -> None:
         self._model = model
         self._simulation = simulation
         self._beginning: Snapshot | None = None
-        self.undisturbed = True
+        self._disturbed_at = math.inf  # the first step at which it was
         self._theories: tuple[int, Theories] | None = None
         self._remarks: tuple[tuple[int, int], tuple[Event, ...]] | None = None
         self._error: tuple[tuple[int, int], MeasuredError | None] | None = None
 
     def begin(self, beginning: Snapshot) -> None:
         """A run begins in this state."""
-        self._beginning, self.undisturbed = beginning, True
+        self._beginning, self._disturbed_at = beginning, math.inf
         self._theories = self._remarks = self._error = None
 
     def disturb(self) -> None:
-        """Something was changed during the run."""
-        self.undisturbed = False
+        """Something is changed during the run, now."""
+        self._disturbed_at = min(self._disturbed_at, self._model.clock.steps)
+
+    @property
+    def undisturbed(self) -> bool:
+        """True if nobody has edited the model or pulled a particle since the run began; undo may go back to then."""
+        return bool(self._model.clock.steps < self._disturbed_at)
 
     @property
     def theories(self) -> Theories:

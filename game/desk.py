@@ -13,6 +13,7 @@ from components.snapshot import Snapshot
 from game import models
 from game.assessment import Assessment
 from game.history.history import History
+from game.history.log import Edit, Entry
 from game.history.timeline import Timeline
 from game.live import Live
 from game.schedule import Schedule
@@ -61,7 +62,7 @@ class Desk:
         self._pull = pull
         self.simulation = Simulation(model, schedule)
         self.timeline = Timeline(self.simulation, pull)
-        self.history = History(model, self.simulation, on_edit=self._edited)
+        self.history = History(model, self.simulation, on_change=self._changed)
         self.live = Live(self.simulation)
         self.beginning: Snapshot | None = None
         self.assessment = Assessment(model, self.simulation)
@@ -70,10 +71,11 @@ class Desk:
         self.spare: Path | None = None
         self.saved = self._last_edit = model.revision
 
-    def _edited(self) -> None:
+    def _changed(self, entry: Entry) -> None:
         self._last_edit = self.model.revision
         self.timeline.clear()
-        self.assessment.disturb()
+        if isinstance(entry, Edit):
+            self.assessment.disturb()
 
     def begin(self) -> None:
         """Time begins to pass from the present state."""

@@ -79,8 +79,8 @@ def _overview(session: Session, theory: Theories, comparison: Comparison) -> Ite
                 f"largest error, {_WAYS[way].split()[0]}",
                 f"{getattr(worst, f'{way}_error'):.1e} ({_symbol(worst)})",
             )
-    if not session.desk.assessment.undisturbed:
-        yield "edited during the run: theory", "without that history"
+    if not session.desk.assessment.undisturbed and not session.at_beginning:
+        yield "edited during the run", "theory is without that"
 
 
 def _verdict(session: Session, comparison: Comparison) -> Iterator[tuple[str, str]]:

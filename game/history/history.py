@@ -18,20 +18,23 @@ MEMORY = 256 * 2**20  # bytes that the states before runs may take; older ones a
 
 
 class History:
-    """The log of one model, from when it was opened. `on_edit` is called after every entry but runs."""
+    """The log of one model, from when it was opened.
+
+    on_change: called after every edit, and after every undo and redo, with the entry of the log.
+    """
 
     def __init__(
         self,
         model: Model,
         simulation: Simulation,
-        on_edit: Callable[[], None],
+        on_change: Callable[[Entry], None],
         memory: int = MEMORY,
     ) -> None:
         shelf = Shelf()
         self._done, self._undone = Log(shelf, memory), Log(shelf, memory)
         self._model = model
         self._simulation = simulation
-        self._on_edit = on_edit
+        self._on_change = on_change
         self._run: Run | None = None
         self._run_revision = -1
         self._key: Hashable | None = None
@@ -56,7 +59,7 @@ class History:
         if self._key is not None and _key_of(self._done.last) == self._key:
             edit = merged(self._done.pop(), edit)
         self._add(edit)
-        self._on_edit()
+        self._on_change(edit)
         if run is not None:
             self.begin_run(single=run.single)
 
@@ -152,7 +155,7 @@ class History:
             self._simulation.resume(entry.clock)
             title = _title(entry.inverse)
         self._clock = None
-        self._on_edit()
+        self._on_change(entry)
         return title
 
 

@@ -78,7 +78,23 @@ def test_theory_follows_edits_and_says_when_it_does_not_know_the_history() -> No
     assert shown(session)["Axial force of rod CA"]["exact theory"] != before
     session.run(steps=10)
     session.particles["B"].force = (0, -100)
-    assert shown(session)["Theory beside the run"]["edited during the run: theory"] == "without that history"
+    assert shown(session)["Theory beside the run"]["edited during the run"] == "theory is without that"
+    assert [session.undo() for _ in range(2)] == ["applied force of particle B", "run"]
+    assert [session.redo() for _ in range(2)] == ["run", "applied force of particle B"]
+    assert shown(session)["Theory beside the run"]["edited during the run"] == "theory is without that"
+
+
+def test_a_run_taken_back_and_repeated_is_not_called_edited() -> None:
+    session = Session.open("isostatic")
+    session.press("m")
+    session.particles["B"].force = (0, -160)
+    assert "edited during the run" not in shown(session)["Theory beside the run"]
+    session.run(steps=10)
+    session.undo()
+    assert "edited during the run" not in shown(session)["Theory beside the run"]
+    session.redo()
+    assert session.model.clock.steps == 10
+    assert "edited during the run" not in shown(session)["Theory beside the run"]
 
 
 def test_without_rods_or_with_very_many_it_says_so() -> None:
