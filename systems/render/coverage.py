@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 Points = NDArray[np.float64]
 
+BLOCK = 32  # pixels side by side, of which compiled drawing knows whether any is covered, and which it blends at once
+
 
 def stroke_pixels_estimate(start: Points, end: Points, width: float) -> float:
     """About how many pixels stroke_coverage would look at."""

@@ -11,11 +11,13 @@ import math
 import numpy as np
 
 from systems.kernels import compiled
+from systems.render.coverage import BLOCK
 
 _EVEN = np.uint32(0x00FF00FF)  # every second channel of a pixel
 _ODD = np.uint32(0xFF00FF00)
 _HALVES = np.uint32(0x00800080)  # 0.5 in both of them, for rounding
 _EIGHT = np.uint32(8)
+_BLOCK = np.uint64(BLOCK)
 _ONE = 16  # bits behind the point of a length
 
 
@@ -36,8 +38,10 @@ def mixed(old, new, part):
 
 
 @compiled
-def cover_strokes(cover, clip, start, end, width):
+def cover_strokes(cover, touched, clip, start, end, width):
     """Raise `cover` (uint8, rows × columns) to what strokes from `start` to `end`, each (n, 2), cover.
+
+    touched (uint8, rows × blocks of columns): set where they do.
 
     The compiled form of coverage.stroke_coverage: where strokes cross, the one that covers most counts. Along a
     stroke, where it begins and how much of a column it crosses are whole numbers of 1 / 2¹⁶.
@@ -66,29 +70,26 @@ def cover_strokes(cover, clip, start, end, width):
                 row, column = (major, minor) if steep else (minor, major)
                 at = np.uint64(row), np.uint64(column)  # a place that may be negative would be looked at twice
                 cover[at] = max(cover[at], amount)
+                touched[at[0], at[1] // _BLOCK] = 1
             low += rise
 
 
 @compiled
-def blend_cover(pixels, cover, groups, clip, colour, opacity):
-    """Blend a colour into `pixels` (uint32, rows × columns) where they are covered, and clear `cover`.
-
-    groups: the same memory as `cover`, eight pixels each, shape (rows, blocks, groups of a block), uint64. Most
-    blocks hold no stroke.
-    """
+def blend_cover(pixels, cover, touched, clip, colour, opacity):
+    """Blend a colour into `pixels` (uint32, rows × columns) where they are covered; clear `cover` and `touched`."""
     left, top, right, bottom = clip
-    opaque, block = np.uint32(opacity), 8 * groups.shape[2]
+    opaque = np.uint32(opacity)
     for row in range(top, bottom):
-        for index in range(left // block, (right + block - 1) // block):
-            held = groups[row, index]
-            if not held.any():
+        for block in range(left // BLOCK, (right + BLOCK - 1) // BLOCK):
+            if not touched[row, block]:
                 continue
-            first = index * block
-            line, covered = pixels[row, first : first + block], cover[row, first : first + block]
+            first = block * BLOCK
+            line, covered = pixels[row, first : first + BLOCK], cover[row, first : first + BLOCK]
             for column in range(len(line)):
                 product = np.uint32(np.uint32(covered[column]) * opaque + np.uint32(128))
                 line[column] = mixed(line[column], colour, (product + (product >> _EIGHT)) >> _EIGHT)
-            held[:] = 0
+            covered[:] = 0
+            touched[row, block] = 0
 
 
 @compiled

@@ -7,20 +7,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from systems.render.coverage import BLOCK
 from systems.render.marks import Bars, Discs, Strokes
 
 Pixels = NDArray[np.uint32]
 Clip = tuple[int, int, int, int]
 
-_BLOCK = (
-    4  # groups of eight pixels side by side: looked at as one number each, blended together if any is covered
-)
-
 # What is compiled, and for which types: those of kernels.py.
 _POINTS, _CLIP, _PIXELS = "float64[:, ::1]", "UniTuple(int64, 4)", "uint32[:, ::1]"
+_COVER = "uint8[:, ::1], uint8[:, ::1]"
 SIGNATURES = {
-    "cover_strokes": f"void(uint8[:, ::1], {_CLIP}, {_POINTS}, {_POINTS}, float64)",
-    "blend_cover": f"void({_PIXELS}, uint8[:, ::1], uint64[:, :, ::1], {_CLIP}, uint32, int64)",
+    "cover_strokes": f"void({_COVER}, {_CLIP}, {_POINTS}, {_POINTS}, float64)",
+    "blend_cover": f"void({_PIXELS}, {_COVER}, {_CLIP}, uint32, int64)",
     "draw_bars": f"void({_PIXELS}, {_CLIP}, {_POINTS}, {_POINTS}, {_POINTS}, uint32, int64)",
     "draw_discs": f"void({_PIXELS}, {_CLIP}, {_POINTS}, float64[::1], float64, uint32, int64, uint32, int64)",
 }
@@ -35,13 +33,13 @@ class Raster:
     def __init__(self, kernels: Any) -> None:
         """kernels: a module with those of kernels.py, compiled."""
         self._kernels = kernels
-        self._prepare((1, 1))
+        self._prepare((0, 0))
 
     def _prepare(self, shape: tuple[int, int]) -> None:
-        """How much of each pixel is covered, and the same memory in blocks of groups; rows are of whole blocks."""
+        """How much of each pixel is covered, and in which blocks of a row there are any; rows are of whole blocks."""
         self._shape = shape
-        self._groups = np.zeros((shape[0], -(-shape[1] // (8 * _BLOCK)), _BLOCK), dtype=np.uint64)
-        self._cover = self._groups.view(np.uint8).reshape(shape[0], -1)
+        self._touched = np.zeros((shape[0], -(-shape[1] // BLOCK)), dtype=np.uint8)
+        self._cover = np.zeros((shape[0], BLOCK * self._touched.shape[1]), dtype=np.uint8)
 
     def strokes(self, pixels: Pixels, clip: Clip, mark: Strokes, colour: np.uint32) -> None:
         """Each pixel takes the colour by what the stroke that covers most of it does."""
@@ -49,8 +47,8 @@ class Raster:
             self._prepare(pixels.shape)
         ends = _contiguous(mark.start), _contiguous(mark.end)
         clip = _around(clip, mark)
-        self._kernels.cover_strokes(self._cover, clip, *ends, mark.width)
-        self._kernels.blend_cover(pixels, self._cover, self._groups, clip, colour, mark.colour[3])
+        self._kernels.cover_strokes(self._cover, self._touched, clip, *ends, mark.width)
+        self._kernels.blend_cover(pixels, self._cover, self._touched, clip, colour, mark.colour[3])
 
     def bars(self, pixels: Pixels, clip: Clip, mark: Bars, colour: np.uint32) -> None:
         """One rectangle over the other."""
