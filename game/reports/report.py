@@ -107,11 +107,9 @@ def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> R
     settlement = settle(simulation.model, factors)
     seconds = time.perf_counter() - started
     states = [_static_state(simulation, found) for found in settlement.states]
-    return _run(simulation, name, settlement.status, states) | {
+    return _run(simulation, name, settlement.status, states, moves=False) | {
         "message": " ".join(filter(None, [settlement.message, left_out])),
         "wall_seconds": seconds,
-        "time_step": None,
-        "integrator": None,
         "events": _records(simulation.model, settlement.events),
     }
 
@@ -149,7 +147,10 @@ def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
     return [event_record(model, event) for event in events]
 
 
-def _run(simulation: Simulation, name: str, status: str, states: list[State]) -> dict[str, Any]:
+def _run(
+    simulation: Simulation, name: str, status: str, states: list[State], *, moves: bool = True
+) -> dict[str, Any]:
+    """moves: it went through time, by an integrator, which takes a while to choose."""
     clock = simulation.model.clock
     return {
         "model": name,
@@ -157,8 +158,8 @@ def _run(simulation: Simulation, name: str, status: str, states: list[State]) ->
         "message": simulation.message or simulation.warning,
         "time": clock.time,
         "steps": clock.steps,
-        "time_step": clock.step_size,
-        "integrator": simulation.integrator,
+        "time_step": clock.step_size if moves else None,
+        "integrator": simulation.integrator if moves else None,
         "wall_seconds": simulation.compute_seconds,
         "compile_seconds": simulation.compile_seconds,
         "events": [],
