@@ -16,6 +16,7 @@ from game.models import replace
 
 if TYPE_CHECKING:
     from game.session import Session
+    from systems.render.labels import Placed
 
 FRAME = 0.05  # s shown by each picture; viewers of GIFs slow down what is quicker
 LONGEST = 12.0  # s shown at most: what takes longer is shown faster, or only how it ends
@@ -37,9 +38,10 @@ def render_gif(
     status, moments = _run(session, until, limit)
     around = np.concatenate([_drawn_at(session, moment) for moment in moments])
     images = []
+    placed: Placed = {}
     for moment in moments:
         moment.restore(session.model)
-        image = Image.fromarray(picture(session, size, theme, around))
+        image = Image.fromarray(picture(session, size, theme, around, placed))
         images.append(image.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE))
     durations = [round(1000 * FRAME)] * (len(images) - 1) + [round(1000 * HELD)]
     made = io.BytesIO()

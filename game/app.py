@@ -40,6 +40,7 @@ from game.session import Frame, Session
 from systems.base import System
 from systems.edit.hover import Hover
 from systems.input.pygame_input import PygameInput
+from systems.render.labels import Placed
 from systems.render.marks import Picture
 from systems.render.picture import compose
 from systems.render.plots import draw_plot
@@ -310,20 +311,27 @@ def render_png(session: Session, path: str, size: tuple[int, int], theme: str = 
     _save(surface, Path(path))
 
 
-def picture(session: Session, size: tuple[int, int], theme: str, around: Points) -> Colours:
-    """A session as colours, shape (height, width, 3), showing all these points (n, 2) of the model."""
-    surface = _drawn(session, size, theme, around)
+def picture(
+    session: Session, size: tuple[int, int], theme: str, around: Points, placed: Placed | None = None
+) -> Colours:
+    """A session as colours, shape (height, width, 3), showing all these points (n, 2) of the model.
+
+    placed: where labels were in the last of several pictures, see compose().
+    """
+    surface = _drawn(session, size, theme, around, placed)
     return np.ascontiguousarray(pygame.surfarray.array3d(surface).transpose(1, 0, 2))
 
 
-def _drawn(session: Session, size: tuple[int, int], theme: str, around: Points) -> pygame.Surface:
+def _drawn(
+    session: Session, size: tuple[int, int], theme: str, around: Points, placed: Placed | None = None
+) -> pygame.Surface:
     surface = pygame.Surface(size, depth=32)
     session.update_view()
     status = replace(session.view.status, hint="")  # nobody presses keys in a picture
     camera = Camera(viewport=Viewport(0, 0, *size))
     view = replace(session.view, camera=camera, toolbar=Toolbar(), heading="", status=status)
     view.camera.fit(around, MARGIN, view.room, view.pixel_ratio)
-    Canvas(load_raster).draw(surface, compose(session.model, view, load_theme(theme)))
+    Canvas(load_raster).draw(surface, compose(session.model, view, load_theme(theme), placed))
     return surface
 
 

@@ -16,6 +16,8 @@ from game import models
 from game.app import SELDOM, App
 from systems.edit.picking import pick
 from systems.input import pygame_input
+from systems.render import pygame_render
+from systems.render.picture import compose
 
 
 @pytest.fixture
@@ -87,3 +89,23 @@ def test_garbage_is_looked_for_while_nothing_happens(app: App, monkeypatch: pyte
     app.run()
     assert seen == [SELDOM]
     assert gc.get_threshold() == before
+
+
+def test_labels_are_told_where_they_stood_until_one_looks_from_elsewhere(
+    app: App, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    known: list[bool] = []
+
+    def composed(shown: Any, view: Any, theme: Any, placed: Any) -> Any:
+        if shown is app.session.model:
+            known.append(bool(placed))
+        return compose(shown, view, theme, placed)
+
+    monkeypatch.setattr(pygame_render, "compose", composed)
+    app.session.view.camera.pan((3.0, 0.0))
+    frames(app, 1)
+    app.session.particles["B"].force = (1.0, 2.0)
+    frames(app, 1)
+    app.session.view.camera.pan((3.0, 0.0))
+    frames(app, 1)
+    assert known == [False, True, False]
