@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from game.arguments import Parser, UsageError, count, finite, write
 from game.cli.options import ANSWERED, NOT_ANSWERED, add_model, add_output, session_of
-from game.reports.curve import as_csv
+from game.reports.curve import as_csv, why_nothing_follows
 
 
 def command(words: Sequence[str]) -> int:
@@ -34,5 +34,9 @@ def command(words: Sequence[str]) -> int:
         raise UsageError(str(error)) from None
     write(as_csv(session.model, found), options.output)
     if not found.complete:
-        print(f"pinjoint: The curve ends at the load factor {found.load_factor[-1]:.6g}.", file=sys.stderr)
+        print(
+            f"pinjoint: The curve ends at the load factor {found.load_factor[-1]:.6g}."
+            f"{why_nothing_follows(session.model) if len(found.load_factor) == 1 else ''}",
+            file=sys.stderr,
+        )
     return ANSWERED if found.complete else NOT_ANSWERED

@@ -42,6 +42,19 @@ def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal
     return Goal(value, (particle.row, direction))
 
 
+def why_nothing_follows(model: Model) -> str:
+    """Why no equilibrium is next to that without load: what a mechanism moves; "" if it is none."""
+    from systems.statics.explain import describe_motion
+    from systems.statics.theory import mechanisms
+
+    moving = mechanisms(model)
+    if not len(moving):
+        return ""
+    return (
+        f" The structure is a mechanism: {describe_motion(model, moving)} can move. Add rods or supports there."
+    )
+
+
 def as_csv(model: Model, curve: Curve) -> str:
     """One equilibrium a line: load factor, stable (1 or 0), displacements of free directions (m), forces (kN)."""
     free = np.argwhere(~model.particles.fixed).tolist()

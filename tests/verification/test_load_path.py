@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import io
+import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -92,3 +94,22 @@ def test_what_has_no_curve_is_refused(words: list[str], said: str, capsys: pytes
 def test_a_curve_that_ends_early_says_so(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["curve", "von_mises", "--until", "B.y=-2.2", "--points", "5"]) == 1
     assert "The curve ends at the load factor" in capsys.readouterr().err
+
+
+def test_a_curve_of_a_mechanism_says_what_moves(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    square = {
+        "format": "pinjoint model",
+        "version": 1,
+        "particles": [
+            {"name": "A", "position": [0, 0], "fixed": [True, True]},
+            {"name": "B", "position": [1, 0], "fixed": [True, True]},
+            {"name": "C", "position": [1, 1], "force": [1, 0]},
+            {"name": "D", "position": [0, 1]},
+        ],
+        "rods": [{"name": name, "between": list(name)} for name in ("BC", "CD", "DA")],
+    }
+    (tmp_path / "square.json").write_text(json.dumps(square))
+    assert main(["curve", str(tmp_path / "square.json")]) == 1
+    assert "ends at the load factor 0. The structure is a mechanism: C and D along x can move." in (
+        capsys.readouterr().err
+    )
