@@ -124,6 +124,8 @@ def _listed(path: str, values: Sequence[Value]) -> str:
 def _read(model: Model, text: str) -> Variation:
     try:
         target, rest = locate(model, text, settable)
+        if not target.handles:
+            raise PathError(f"the model has no {target.table.name}.")
         if target.field.shape and not target.axis:
             raise PathError(f"vary one component, {target.field.key}.x or {target.field.key}.y.")
         if rest.startswith("="):

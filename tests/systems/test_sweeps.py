@@ -345,6 +345,13 @@ def test_measures_that_do_not_exist(text: str, reason: str) -> None:
     assert reason in str(caught.value)
 
 
+@pytest.mark.parametrize("values", ["=1,2", "~normal(1,1)"])
+def test_all_of_none_cannot_be_varied(values: str) -> None:
+    """The discs of collision_ii have no rods."""
+    with pytest.raises(SweepError, match=r"--vary rods\.\*\.stiffness.*: the model has no rods"):
+        sweep("collision_ii", [f"rods.*.stiffness{values}"], ["residual"], samples=2)
+
+
 SWEEPS = {
     "Nothing is varied": {"vary": []},
     "Nothing is measured": {"measure": []},
