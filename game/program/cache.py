@@ -89,6 +89,7 @@ def cache_folder() -> Path:
 
 
 _modules: dict[str, ModuleType] = {}
+_compiled = set[str]()  # of these, those of which this process has called all
 
 
 def compile_module(source: str, kernels: Mapping[str, Callable[..., Any]]) -> ModuleType:
@@ -132,7 +133,7 @@ def load_compiler() -> None:
 def is_compiled(source: str, kernels: Mapping[str, Callable[..., Any]]) -> bool:
     """True if another process, or an earlier one, has compiled all of this module."""
     name = _name_of(source, kernels)
-    return name in _modules or (cache_folder() / f"{name}.done").exists()
+    return name in _compiled or (cache_folder() / f"{name}.done").exists()
 
 
 def is_blank() -> bool:
@@ -142,6 +143,7 @@ def is_blank() -> bool:
 
 def note_compiled(module: ModuleType) -> None:
     """Let other processes know that all of a module is compiled, and later ones that it is in use."""
+    _compiled.add(module.__name__)
     with contextlib.suppress(OSError):
         (cache_folder() / f"{module.__name__}.done").touch()
 

@@ -385,3 +385,25 @@ def test_a_folder_of_somebody_else_is_not_used(tmp_path: Path, monkeypatch: pyte
     monkeypatch.setattr(os, "getuid", lambda: 12345)
     find: Callable[[], Path] = cache.cache_folder.__wrapped__
     assert find().parent != tmp_path or find().name != "pinjoint-programs-12345"
+
+
+PARTS = """
+from game.collisions.flight_kernels import EVENTS, PILES, WINDOWS, engine, has_parts
+
+engine()
+print(*(has_parts(part) for part in (EVENTS, WINDOWS, PILES)))
+"""
+
+
+def test_parts_that_nobody_has_called_are_not_taken_for_compiled(tmp_path: Path) -> None:
+    """The window compiled the steps of piles itself, and stood still for 8 s, for discs that cannot pile up."""
+    folders = {"XDG_CACHE_HOME": str(tmp_path), "LOCALAPPDATA": str(tmp_path), "HOME": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-c", PARTS],
+        env=os.environ | folders,
+        check=True,
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.stdout.split() == ["False"] * 3
