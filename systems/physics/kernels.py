@@ -2,7 +2,7 @@
 
 import math
 
-from systems.kernels import compiled
+from systems.kernels import compiled, part
 
 REST_RESIDUAL = 2e-9  # of the largest force, so that sums of residuals are within 1e-8; larger: rests sooner
 SMALL_SHARE = 1e-3  # of the largest force ever, taken as scale where all forces die out
@@ -70,7 +70,7 @@ def drag(particles_mass, particles_velocity, environment_drag):
     return factor * particles_velocity[0], factor * particles_velocity[1]
 
 
-@compiled
+@part()
 def conserved(measures, account, dt, shadow):
     """Kinetic − (h²/8) fᵀM⁻¹f + elastic + lost by yielding and impacts − supplied (J), as in judge().
 
@@ -86,7 +86,7 @@ def conserved(measures, account, dt, shadow):
     return kinetic + elastic - max(shadow, 0.0) * dt * dt / 8.0 * power_norm + lost - supplied
 
 
-@compiled
+@part()
 def judge(measures, account, dt, shadow, ahead, loads_are_over):
     """Decide from the measures of a state whether the run stops: 0 go on, 2 rest, 3 diverged.
 
@@ -127,7 +127,7 @@ def judge(measures, account, dt, shadow, ahead, loads_are_over):
     return 0
 
 
-@compiled
+@part()
 def lowest(before, slope_before, after, slope_after, dt):
     """The least value of the cubic with these values and slopes, falling first and rising last, dt apart."""
     first = slope_before * dt
