@@ -128,7 +128,9 @@ GIVEN = 5  # impulse of the present projection
 IMPULSE = 6  # of the whole impact
 FORCE = 7  # that has kept the discs apart since the group's last change, N; 0: none
 ROUND = 8  # 1: the normal turns as the discs move around each other; 0: along a flat side it stays
-CONTACT_WIDTH = 9
+BEFORE = 9  # impulse before a sweep to and fro
+DIRECTION = 10  # in which sweeps so far led
+CONTACT_WIDTH = 11
 
 ACTIVE, STATE, CHOSEN = 0, 1, 2  # rows of marks: contacts of a projection; how they fare; those fitted now
 DIRECT = 48  # contacts up to which a projection is solved directly; more: by sweeps

@@ -45,7 +45,7 @@ from systems.collision.kernels.gap import (
     speed_noise,
     touch_speed,
 )
-from systems.collision.kernels.projection import begin, copy_motion, opening_rate, project
+from systems.collision.kernels.projection import MOST_SWEEPS, begin, copy_motion, opening_rate, project
 
 STILL = 1e-10  # of the speed and acceleration that gravity gives; what moves less is at rest
 STEP_ANGLE = 0.0156  # by which discs turn around one another in a step; discs sink by its cube / 8 of a radius
@@ -115,7 +115,7 @@ def stop_sinking(count, touching, group):
             active += 1
     if active > 0:
         begin(count, group)
-        project(count, active, 0.0, group)
+        project(count, active, 0.0, MOST_SWEEPS, group)
 
 
 # --- the forces from now on ---------------------------------------------------------------------------------
@@ -156,7 +156,7 @@ def _push_now(count, touching, discs, group, numbers):
         group.contacts[c, FORCE] = 0.0
     _pull(count, discs, group)
     begin(count, group)
-    project(count, closed, 0.0, group)
+    project(count, closed, 0.0, MOST_SWEEPS, group)
     for k in range(closed):
         c = group.marks[ACTIVE, k]
         group.contacts[c, FORCE] = group.contacts[c, GIVEN]
@@ -322,5 +322,5 @@ def _meet_at_end(h, count, closed, discs, group, numbers):
             return met
         before = worst
         _pull(count, discs, group)
-        project(count, closed, 0.0, group)
+        project(count, closed, 0.0, MOST_SWEEPS, group)
     return False

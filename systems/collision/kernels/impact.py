@@ -9,7 +9,14 @@ v = e v_elastic + (1 − e) v_plastic. For a single contact it is Newton's law.
 
 from systems.collision.arrays import ACTIVE, BIAS, GIVEN, IMPULSE, OPENING
 from systems.collision.kernels import compiled
-from systems.collision.kernels.projection import begin, copy_motion, opening_rate, project, push_apart
+from systems.collision.kernels.projection import (
+    MOST_SWEEPS,
+    begin,
+    copy_motion,
+    opening_rate,
+    project,
+    push_apart,
+)
 
 MANY_REFLECTIONS = 256  # in one impact, after which to look whether there ever is an end to them
 MOST_REFLECTIONS = 1000000  # after these, or where there is none, the rest of it is taken as plastic
@@ -62,7 +69,7 @@ def _reflect(members, count, group):
                 approaching += 1
         if approaching == 0:
             return
-        project(members, approaching, 0.0, group)
+        project(members, approaching, 0.0, MOST_SWEEPS, group)
         for m in range(members):
             for d in range(2):
                 motion[m, d] += motion[m, d] - start[m, d]
@@ -92,7 +99,7 @@ def _is_jammed(members, count, group):
             group.contacts[c, BIAS], group.contacts[c, GIVEN] = -speed, 0.0
             group.marks[ACTIVE, active] = c
             active += 1
-    project(members, active, 0.0, group)
+    project(members, active, 0.0, MOST_SWEEPS, group)
     jammed = False
     for k in range(active):
         c = group.marks[ACTIVE, k]
@@ -111,7 +118,7 @@ def _make_plastic(members, count, group):
         if group.contacts[c, OPENING] > 0.0:
             group.marks[ACTIVE, active] = c
             active += 1
-    project(members, active, 0.0, group)
+    project(members, active, 0.0, MOST_SWEEPS, group)
 
 
 @compiled

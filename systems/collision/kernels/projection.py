@@ -9,9 +9,11 @@ import math
 
 from systems.collision.arrays import (
     ACTIVE,
+    BEFORE,
     BIAS,
     CHOSEN,
     DIRECT,
+    DIRECTION,
     EPSILON,
     GIVEN,
     NX,
@@ -23,7 +25,7 @@ from systems.collision.arrays import (
 from systems.collision.kernels import compiled
 
 IDLE, FITTED, DEPENDENT = 0, 1, 2
-MOST_SWEEPS = 20000  # over the contacts of a projection; more: nearer to round-off in large groups, slower
+MOST_SWEEPS = 20000  # over the contacts of a large group; more: nearer to round-off, slower
 
 
 @compiled
@@ -86,11 +88,11 @@ def begin(members, group):
 
 
 @compiled
-def project(members, active, tolerance, group):
+def project(members, active, tolerance, most, group):
     """Project the motion for the first `active` contacts of marks[ACTIVE]; impulses in column GIVEN.
 
-    tolerance: rate at which a contact of a large group may still close. Large groups start from the
-    impulses that GIVEN holds, small ones from none.
+    tolerance: rate at which a contact of a large group may still close. most: sweeps over its contacts. Large groups
+    start from the impulses that GIVEN holds, small ones from none.
     """
     copy_motion(group.motion, group.start, members)
     if active <= DIRECT:
@@ -104,7 +106,7 @@ def project(members, active, tolerance, group):
         for k in range(active):
             c = group.marks[ACTIVE, k]
             push_apart(c, group.contacts[c, GIVEN], group)
-    sweep(active, MOST_SWEEPS, tolerance, group)
+    sweep(active, most, tolerance, group)
 
 
 @compiled
@@ -202,18 +204,47 @@ def _solve(count, group):
 
 @compiled
 def sweep(active, most, tolerance, group):
-    """Gauss–Seidel, to and fro, from the impulses GIVEN so far, until rates change by less than the tolerance."""
-    contacts = group.contacts
+    """Gauss–Seidel, to and fro, from the impulses GIVEN so far, until rates change by less than the tolerance.
+
+    Accelerated by conjugate directions: Silcowitz, Niebe, Erleben, "A nonsmooth nonlinear conjugate gradient method for
+    interactive contact force problems", Vis. Comput. 26 (2010).
+    """
+    contacts, size = group.contacts, 0.0
     for turn in range(most):
-        settled = True
         for k in range(active):
-            c = group.marks[ACTIVE, k if turn % 2 == 0 else active - 1 - k]
-            rate = opening_rate(c, group.motion, group)
-            impulse = max(contacts[c, GIVEN] - rate / contacts[c, OPENING], 0.0)
-            change = impulse - contacts[c, GIVEN]
-            if abs(change) * contacts[c, OPENING] > max(tolerance, group.noise[0]):
-                push_apart(c, change, group)
-                contacts[c, GIVEN] = impulse
-                settled = False
+            c = group.marks[ACTIVE, k]
+            contacts[c, BEFORE] = contacts[c, GIVEN]
+        settled = _relax_all(active, 1, tolerance, group)
         if settled:
             return
+        _relax_all(active, -1, tolerance, group)
+        previous, size = size, 0.0
+        for k in range(active):
+            c = group.marks[ACTIVE, k]
+            change = contacts[c, GIVEN] - contacts[c, BEFORE]
+            size += change * change * contacts[c, OPENING]
+        share = size / previous if size <= previous and previous > 0.0 else 0.0
+        keep = 1.0 if turn == 0 or share > 0.0 else 0.0
+        for k in range(active):
+            c = group.marks[ACTIVE, k]
+            more = share * contacts[c, DIRECTION] if turn > 0 else 0.0
+            contacts[c, DIRECTION] = keep * (more + contacts[c, GIVEN] - contacts[c, BEFORE])
+            if more != 0.0:
+                contacts[c, GIVEN] += more
+                push_apart(c, more, group)
+
+
+@compiled
+def _relax_all(active, way, tolerance, group):
+    """Change the impulse of every contact, one by one, so that it neither closes nor pulls; True if none had to."""
+    contacts, settled = group.contacts, True
+    for k in range(active):
+        c = group.marks[ACTIVE, k if way > 0 else active - 1 - k]
+        rate = opening_rate(c, group.motion, group)
+        impulse = max(contacts[c, GIVEN] - rate / contacts[c, OPENING], 0.0)
+        change = impulse - contacts[c, GIVEN]
+        if abs(change) * contacts[c, OPENING] > max(tolerance, group.noise[0]):
+            push_apart(c, change, group)
+            contacts[c, GIVEN] = impulse
+            settled = False
+    return settled
