@@ -48,7 +48,7 @@ class Contacts:
         """
         contacts = contacts_of(self.model)
         if contacts is None:
-            _push(program, self.model, 0.0)
+            push(program, self.model, 0.0)
             return take(until)
         clock, start = self.model.clock, float(before.columns["clock.time"][0])
         longest = longest_step(contacts)
@@ -91,8 +91,8 @@ class Contacts:
         for turn in range(MOST_TRIES):
             if turn > 0:
                 before.restore(self.model)
-            self._note_energy(float((forces * size).sum()))
-            _push(program, self.model, support_forces(normal, pairs, forces, self.model.particles.count))
+            note_energy(self.model, float((forces * size).sum()))
+            push(program, self.model, support_forces(normal, pairs, forces, self.model.particles.count))
             reason = take(until)
             h = float(self.model.clock.time - before.columns["clock.time"][0])
             if h == 0.0 or reason is StopReason.DIVERGED:
@@ -117,14 +117,6 @@ class Contacts:
         if len(pairs) >= CROWD:
             lasts |= np.maximum(gap, later) <= CROWD_HEIGHT * size
         self.model.writable("clock.paths")[0] = resting(pairs[lasts], forces[lasts])
-
-    def _note_energy(self, energy: float) -> None:
-        """Energies (J) are small or large beside what forces in contact would do along the radii of what they hold.
-
-        What begins in contact is supplied none, and would be told neither to rest nor from what appears from nowhere.
-        """
-        if energy > self.model.clock.energy_scale:
-            self.model.writable("clock.energy_scale")[0] = energy
 
 
 class _Search:
@@ -164,7 +156,16 @@ class _Search:
         return found
 
 
-def _push(program: Program, model: Model, force: Floats | float) -> None:
+def note_energy(model: Model, energy: float) -> None:
+    """Energies (J) are small or large beside what forces in contact would do along the radii of what they hold.
+
+    What begins in contact is supplied none, and would be told neither to rest nor from what appears from nowhere.
+    """
+    if energy > model.clock.energy_scale:
+        model.writable("clock.energy_scale")[0] = energy
+
+
+def push(program: Program, model: Model, force: Floats | float) -> None:
     """Push the particles by these forces (kN) in the next step."""
     for system in program.systems:
         if isinstance(system, Support):

@@ -48,8 +48,11 @@ def forces(slope, gap, forces, found, matrix, scale, offset, sides, wrong):
 
 
 @entry
-def impact(members, count, restitution, group):
-    return strike(members, count, restitution, group)
+def push(members, count, restitution, tolerance, group):  # one entry, so that what both share is compiled once
+    if restitution < 0.0:
+        hold_apart(members, count, tolerance, group)
+    else:
+        strike(members, count, restitution, group)
 
 
 @entry
@@ -69,6 +72,7 @@ def _kernels() -> dict[str, Callable[..., Any]]:
         pairs.yield_to_forces,
         encounter.bend,
         encounter.first_meeting,
+        encounter.hold_apart,
         encounter.strike,
         complementary,
         separate,

@@ -15,9 +15,10 @@ import numpy as np
 from components.field import Role
 from components.model import Model
 from components.particle import Particle
-from components.paths import Paths
+from components.paths import Paths, resting
 from components.snapshot import Snapshot
 from game.collisions.contacts import Contacts, complementary
+from game.collisions.crowds import Crowds
 from game.collisions.encounter_kernels import note_encounters
 from game.collisions.flight import part_overlaps
 from game.collisions.impacts import Impacts
@@ -52,6 +53,7 @@ class Encounters:
         self._near = Vicinity(model)
         self._contacts = Contacts(model, self._near)
         self._strikes = Strikes(model, impacts, self._near)
+        self._crowds = Crowds(model, self._near, self._strikes)
         self._land = land
         self._rebind = rebind
 
@@ -104,10 +106,20 @@ class Encounters:
         before, clock = Snapshot.take(self.model), self.model.clock
         start, steps, held = clock.time, clock.steps, contacts_of(self.model)
 
-        def take(target: float | None) -> StopReason:
-            def once(end: float | None) -> StopReason:
-                return program.advance(1, until)[1] if end is None else self._land(end)
+        def once(end: float | None) -> StopReason:
+            return program.advance(1, until)[1] if end is None else self._land(end)
 
+        crowd = self._crowds.found(until, landing)
+        if crowd is not None:
+            if held is None:
+                self.model.writable("clock.paths")[0] = resting(crowd.pairs, np.zeros(len(crowd.pairs)))
+                program = self._rebind()
+            reason = self._crowds.step(crowd, program, before, once, until, landing)
+            if contacts_of(self.model) is None:
+                program = self._rebind()
+            return clock.steps - steps, reason, program
+
+        def take(target: float | None) -> StopReason:
             return self._contacts.step(program, before, once, target)
 
         reason = take(until if landing else None)
@@ -117,14 +129,14 @@ class Encounters:
             reason = take(half)
         if clock.time == start or reason is StopReason.DIVERGED:
             return clock.steps - steps, reason, program
-        time, resting, tried = start + after, None, clock.time
+        time, slow, tried = start + after, None, clock.time
         if time == start:  # what is pressed together from rest is told from the step that was tried
-            resting = self._strikes.rest_speed(before)
+            slow = self._strikes.rest_speed(before)
             before.restore(self.model)
         elif time <= clock.time:
             reason = self._end_at_meeting(before, held, take, time)
         as_found = self.model.newest(Role.STATE)
-        lasts = self._strikes.happen(before, resting)
+        lasts = self._strikes.happen(before, slow)
         if time == start and self.model.newest(Role.STATE) == as_found:  # only round-off presses it
             reason = take(tried)
             lasts = self._strikes.happen(before)

@@ -88,7 +88,7 @@ class Strikes:
         group.mobility[...] = self._near.weight[members]
         velocity = self.model.writable("particles.velocity")
         group.motion[...] = self._near.everywhere(velocity)[members]
-        kernels().impact(len(members), count, restitution if fast.any() else 0.0, group)
+        kernels().push(len(members), count, restitution if fast.any() else 0.0, 0.0, group)
         moves = members < len(velocity)
         velocity[members[moves]] = group.motion[moves]
         impulse = group.contacts[:count, IMPULSE]
@@ -96,15 +96,18 @@ class Strikes:
         clock = self.model.clock
         self.model.writable("clock.dissipated_impact")[0] = clock.dissipated_impact + loss
         if fast.any() and impulse.any():
-            self._record(pairs, normal[chosen], impulse, loss)
+            self.record(pairs, normal[chosen], impulse, loss, clock.time, self.model.particles.displacement)
 
-    def _record(self, pairs: Rows, normal: Floats, impulse: Floats, loss: float) -> None:
+    def record(
+        self, pairs: Rows, normal: Floats, impulse: Floats, loss: float, time: float, displacement: Floats
+    ) -> None:
+        """Enter impacts of pairs at a time (s) at these displacements, where there are impulses (N·s), and the loss (J)."""
         felt, clock = impulse > 0.0, self.model.clock
         pairs, impulse = pairs[felt], impulse[felt]
-        place = self._near.position + self._near.everywhere(self.model.particles.displacement)
+        place = self._near.position + self._near.everywhere(displacement)
         point = place[pairs[:, 0]] + normal[felt] * self._near.radius[pairs[:, 0]][:, None]
         share = loss * impulse / impulse.sum()
-        self._impacts.record(np.column_stack((np.full(len(pairs), clock.time), pairs, impulse, share, point)))
+        self._impacts.record(np.column_stack((np.full(len(pairs), time), pairs, impulse, share, point)))
         self.model.writable("clock.collisions")[0] = clock.collisions + len(pairs)
 
     def _note_contacts(self, pairs: Rows, normal: Floats, slow: Floats) -> bool:

@@ -34,8 +34,9 @@ class Vicinity:
     """The pairs of one model's particles that are near each other.
 
     pairs: rows i < j in ascending order, shape (k, 2); without those that a rod joins or that cannot move.
-    position, radius: of the particles and, after them, the obstacles. weight: inverse mass in each direction
-    (1/kg), 0 where it is held. restitution: of impacts with each. size: m; of which gaps are small shares.
+    count: of the particles; loose: of those that are no nodes. position, radius: of all particles and, after them, the
+    obstacles. weight: inverse mass in each direction (1/kg), 0 where it is held. restitution: of impacts with each.
+    size: m; of which gaps are small shares.
     """
 
     def __init__(self, model: Model) -> None:
@@ -50,24 +51,25 @@ class Vicinity:
         self._revision = revision
         particles, ends = self.model.particles, np.sort(self.model.rods.between.astype(np.int64), axis=1)
         self.obstacles = others = obstacles(self.model)
-        self._count = particles.count
-        joined = np.sort(ends[:, 0] * (self._count + len(others)) + ends[:, 1])
+        self.count = particles.count
+        joined = np.sort(ends[:, 0] * (self.count + len(others)) + ends[:, 1])
         self._joined = np.append(joined, -1)  # what is looked up and would come last meets no pair
-        self._node = np.ones(self._count + len(others), dtype=bool)
-        self._node[: self._count] = nodes(self.model)
+        self._node = np.ones(self.count + len(others), dtype=bool)
+        self._node[: self.count] = nodes(self.model)
+        self.loose = self.count - int(np.count_nonzero(self._node[: self.count]))
         self._moves: NDArray[np.bool_] = self.everywhere(np.any(particles.mobility > 0.0, axis=1))
         self.position = np.concatenate([particles.position, others.start])
         self.radius = np.concatenate([particles.radius, others.radius])
         self.size = np.concatenate([particles.radius, np.full(len(others), np.inf)])
         self.weight: Floats = self.everywhere(np.where(particles.fixed, 0.0, 1.0 / particles.mass[:, None]))
-        alike = np.full(self._count, self.model.settings.restitution)
+        alike = np.full(self.count, self.model.settings.restitution)
         self.restitution = np.concatenate([alike, others.restitution])
-        self.span = self.everywhere(np.zeros((self._count, 2)))
-        self.span[self._count :] = others.span
+        self.span = self.everywhere(np.zeros((self.count, 2)))
+        self.span[self.count :] = others.span
         self._island = islands(self.model)
         self._least: Floats = FAR * particles.radius
-        self._margin: Floats = np.full(self._count, -1.0)  # nothing is listed yet
-        self._listed: Floats = np.zeros((self._count, 2))
+        self._margin: Floats = np.full(self.count, -1.0)  # nothing is listed yet
+        self._listed: Floats = np.zeros((self.count, 2))
 
     @property
     def displacement(self) -> Floats:
@@ -87,7 +89,7 @@ class Vicinity:
 
     def _list(self, margin: Floats, displacement: Floats) -> None:
         """List the pairs that can meet before any particle has moved by its margin (m) from there."""
-        place, radius = self.position[: self._count] + displacement, self.radius[: self._count]
+        place, radius = self.position[: self.count] + displacement, self.radius[: self.count]
         near = near_pairs(place, radius + margin, self.obstacles)
         may = np.logical_or(self._moves[near[:, 0]], self._moves[near[:, 1]])
         keys = near[:, 0] * len(self.position) + near[:, 1]
@@ -95,6 +97,17 @@ class Vicinity:
         self.pairs: Rows = near[np.flatnonzero(may & ~joined)]
         self._margin = margin
         self._listed = displacement.copy()
+
+    def list_within(self, travel: float) -> None:
+        """See to it that all pairs are listed that can meet before any particle has gone farther than this (m)."""
+        displacement = self.displacement
+        if (lengths(displacement - self._listed) + travel > self._margin).any():
+            self._list(np.maximum(self._least, 2.0 * travel), displacement)
+
+    def are_nodes(self, pairs: Rows) -> NDArray[np.bool_]:
+        """Which of pairs are nodes of structures, shape (k, 2)."""
+        nodes: NDArray[np.bool_] = self._node[pairs] & (pairs < self.count)
+        return nodes
 
     # --- how near ------------------------------------------------------------------------------------
 
@@ -158,7 +171,7 @@ class Vicinity:
         h = float(self.model.clock.time - before.columns["clock.time"][0])
         if h == 0.0:
             return math.inf
-        after, sway = self.displacement, np.empty(self._count)
+        after, sway = self.displacement, np.empty(self.count)
         span = kernels().sway(h, old, velocity, after, self.velocity, self._listed, self._margin, sway)
         if span > 0.0:
             self._list(np.maximum(self._least, 2.0 * span), old)
@@ -201,7 +214,7 @@ class Vicinity:
             dE/dt ≤ F · v ≤ √(Σ F²/m) √(2E),   so that   √m v ≤ √(2E) ≤ √(2E₀) + t √(Σ F²/m).
         """
         particles, rods, count = self.model.particles, self.model.rods, int(self._island.max(initial=0)) + 1
-        awake = self._moves[: self._count] & ~particles.asleep
+        awake = self._moves[: self.count] & ~particles.asleep
         of_rods = self._island[rods.between].max(axis=1, initial=0)
         with _any_force():
             stored = 1000.0 * rods.axial_force**2 * rods.rest_length / rods.stiffness

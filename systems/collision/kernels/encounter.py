@@ -2,16 +2,17 @@
 
 import math
 
-from systems.collision.arrays import BIAS, EPSILON, LASTING, LEFT_ALONE, OPENING, WATCHED
+from systems.collision.arrays import ACTIVE, BIAS, EPSILON, GIVEN, LASTING, LEFT_ALONE, OPENING, WATCHED
 from systems.collision.kernels import compiled
 from systems.collision.kernels.gap import NEVER, first_touch
 from systems.collision.kernels.impact import respond
 from systems.collision.kernels.pairs import gap_of
-from systems.collision.kernels.projection import compliance
+from systems.collision.kernels.projection import begin, compliance, opening_rate, project
 
 DOUBT = 1e-3  # of a radius, by which a path may differ from a parabola where particles meet
 SWAY = 0.15  # times h |Δv|: by how much a cubic path differs from the parabola through its ends (4/27)
 DOUBTFUL = -1.0
+FEW_SWEEPS = 200  # over the contacts of a crowd; its next step goes on from there
 NOISE = 16.0 * EPSILON  # of speeds and accelerations: slower approaches are round-off
 
 
@@ -91,3 +92,41 @@ def strike(members, count, restitution, group):
         group.contacts[c, BIAS] = 0.0
         group.contacts[c, OPENING] = compliance(c, c, group)
     respond(members, count, restitution, group)
+
+
+@compiled
+def hold_apart(members, count, tolerance, group):
+    """Change the motion of a group as little as possible so that no contact closes faster than its bias; see projection.py.
+
+    Links, normals, biases and impulses to begin with are set; GIVEN then holds the impulses. Where sweeps are too few to
+    find them, they are less: what pushes does no work, all in all.
+    """
+    active = 0
+    for c in range(count):
+        opening = compliance(c, c, group)
+        group.contacts[c, OPENING] = opening
+        if opening > 0.0:
+            group.marks[ACTIVE, active] = c
+            active += 1
+    begin(members, group)
+    project(members, active, tolerance, FEW_SWEEPS, group)
+    _take_no_work(members, active, group)
+
+
+@compiled
+def _take_no_work(members, active, group):
+    """Lessen all impulses p alike if contacts that they push open: p · (N m + b) ≤ 0 for the motion m after them."""
+    before, after = 0.0, 0.0
+    for k in range(active):
+        c = group.marks[ACTIVE, k]
+        group.contacts[c, GIVEN] = max(group.contacts[c, GIVEN], 0.0)
+        before += group.contacts[c, GIVEN] * opening_rate(c, group.initial, group)
+        after += group.contacts[c, GIVEN] * opening_rate(c, group.motion, group)
+    if after <= 0.0:
+        return
+    share = -before / (after - before) if before < 0.0 else 0.0
+    for k in range(active):
+        group.contacts[group.marks[ACTIVE, k], GIVEN] *= share
+    for m in range(members):
+        for d in range(2):
+            group.motion[m, d] = group.initial[m, d] + share * (group.motion[m, d] - group.initial[m, d])
