@@ -107,7 +107,9 @@ class Encounters:
         start, steps, held = clock.time, clock.steps, contacts_of(self.model)
 
         def once(end: float | None) -> StopReason:
-            return program.advance(1, until)[1] if end is None else self._land(end)
+            if end is None:
+                return program.advance(1, until)[1]
+            return self._land(end) if end <= until else StopReason.DONE
 
         crowd = self._crowds.found(until, landing)
         if crowd is not None:
@@ -147,6 +149,7 @@ class Encounters:
     def _end_at_meeting(self, before: Snapshot, held: Paths | None, take: Take, time: float) -> StopReason:
         """Take the step again so that it ends where the first pair meets: Newton's method on the gap."""
         near, start, reason = self._near, float(before.columns["clock.time"][0]), StopReason.DONE
+        end = self.model.clock.time
         for _ in range(MOST_TRIES):
             before.restore(self.model)
             reason = take(time)
@@ -160,7 +163,7 @@ class Encounters:
             with np.errstate(over="ignore"):  # far from each other, nearly at rest: late by for ever
                 late = np.where(rate < 0.0, gap / np.where(rate < 0.0, rate, 1.0), -math.inf)
             first = int(np.argmax(late))  # the pair that met first, or is to meet first
-            better = time - float(late[first])
+            better = min(time - float(late[first]), end)
             if abs(gap[first]) <= TOUCH * near.reach(pairs)[first] or better == time:
                 break
             if not start < better < time + (time - start):

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from components.paths import resting
 from game import Session
 from game.collisions.encounter_kernels import has_encounters
 from game.collisions.encounters import load_encounters
@@ -367,3 +368,17 @@ def test_a_hand_presses_a_disc_onto_a_node() -> None:
     energy = session.energy
     assert len(session.impacts) > 0
     assert abs(energy.imbalance) < 1e-6 * (abs(energy.work) + energy.dissipated_damping)
+
+
+def test_a_step_that_is_cut_does_not_outlast_the_run() -> None:
+    """What is jammed is followed in steps that are short at first, but not shorter than a run that ends before."""
+    disc = {"position": [0.0, 0.05], "velocity": [0.05, 0.0]}
+    session = Session.open(box([disc], environment=GRAVITY | {"drag": 0.5}, settings={"restitution": 0.0}))
+    session.run(time=0.1)
+    paths = contacts_of(session.model)
+    assert paths is not None
+    session.model.writable("clock.paths")[0] = resting(
+        paths.contacts, paths.forces, 0.5 * session.model.clock.step_size
+    )
+    session.run(time=1e-4)
+    assert session.time == pytest.approx(0.1001, abs=1e-15)
