@@ -108,7 +108,7 @@ def test_where_particles_may_meet_that_is_waited_for_too(app: App, compiler: Com
     frames(app, 4)
     assert session.model.clock.steps > 0
     loaded = encounter_kernels.kernels()  # though nothing has met yet
-    for name in ("gaps", "kinds", "sway", "meeting", "compliance", "forces", "impact"):
+    for name in ("gaps", "kinds", "sway", "meeting", "compliance", "forces", "push"):
         assert getattr(loaded, name).signatures
 
 
