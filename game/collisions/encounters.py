@@ -30,7 +30,8 @@ from systems.collision.arrays import WATCHED
 from systems.collision.system import contacts_of
 
 FEW = 4  # steps; a shorter time is not worth letting pass unwatched
-SOME = 16  # steps that pass unwatched at once, at most, where others than ours decide what pushes particles
+SOME = 16  # steps that pass unwatched at once where others than ours decide what pushes particles
+WARY = 8.0  # or as many as end in that part of the time in which nothing could meet
 MOST_TRIES = 60  # of the length of a step that ends at an impact
 
 Take = Callable[[float | None], StopReason]  # takes a step: a whole one, or up to a time (s)
@@ -83,8 +84,9 @@ class Encounters:
     def _clear_steps(self, program: Program, steps: int, until: float) -> tuple[int, StopReason]:
         """As many steps as nothing can meet in, none of which has to be watched; returns as `advance` does."""
         clock, known = self.model.clock, self._knows_forces(program)
-        steps = steps if known else min(steps, SOME)
         clear = self._near.clear_time(min(until - clock.time, 2.0 * steps * clock.step_size))
+        if not known:
+            steps = int(min(steps, max(SOME, clear / (WARY * clock.step_size))))
         if clear < FEW * clock.step_size:
             return 0, StopReason.DONE
         before = None if known else Snapshot.take(self.model)
