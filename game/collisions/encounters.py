@@ -86,7 +86,7 @@ class Encounters:
         clock, known = self.model.clock, self._knows_forces(program)
         clear = self._near.clear_time(min(until - clock.time, 2.0 * steps * clock.step_size))
         if not known and WARY * steps * clock.step_size > clear:
-            steps = min(steps, max(SOME, int(clear / (WARY * clock.step_size))))
+            steps = int(min(steps, max(SOME, clear / (WARY * clock.step_size))))
         if clear < FEW * clock.step_size:
             return 0, StopReason.DONE
         before = None if known else Snapshot.take(self.model)
