@@ -85,10 +85,10 @@ class Encounters:
         """As many steps as nothing can meet in, none of which has to be watched; returns as `advance` does."""
         clock, known = self.model.clock, self._knows_forces(program)
         clear = self._near.clear_time(min(until - clock.time, 2.0 * steps * clock.step_size))
-        if not known and WARY * steps * clock.step_size > clear:
-            steps = int(min(steps, max(SOME, clear / (WARY * clock.step_size))))
         if clear < FEW * clock.step_size:
             return 0, StopReason.DONE
+        if not known and clear < WARY * steps * clock.step_size:
+            steps = min(steps, max(SOME, int(clear / (WARY * clock.step_size))))
         before = None if known else Snapshot.take(self.model)
         taken, reason = program.advance(steps, min(until, clock.time + clear))
         if before is not None and self._near.outran:
