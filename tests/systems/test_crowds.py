@@ -201,3 +201,12 @@ def test_a_disc_that_falls_on_a_heap_bounces() -> None:
         session.run(time=0.01)
         fastest = max(fastest, session.particles["ball"].velocity[1])
     assert 0.3 < fastest < 0.8 * math.sqrt(2 * GRAVITY_PULL * 0.5) + 0.1
+
+
+def test_an_edit_in_mid_run_does_not_speak_of_overlaps_that_steps_left() -> None:
+    session = heap(40, 0.9)
+    session.run(time=0.12)
+    assert 0.0 < deepest(session) < 1e-6
+    session.particles["p0"].force = (0.1, 0.0)
+    session.run(time=0.01)
+    assert session.simulation.note == ""
