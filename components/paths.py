@@ -17,7 +17,7 @@ _KEYS = ("motion", "contacts", "forces", "crowd")
 class Paths(Mapping[str, Any]):
     """The parabolas of all particles and their lasting contacts; with them a run goes on bit for bit.
 
-    motion: one row per particle, its columns those of systems.collision.arrays.MOVING. contacts: a particle
+    motion: one row per particle, its columns those of systems.collision.columns.MOVING. contacts: a particle
     and one that it touches, in the order in which they are looked at, shape (k, 2). forces: in them, N.
     crowd: how far a pile is with its steps, as Discs.paths has it; of particles that do not fly free, the longest step
     (s) to begin with, if that is short.

@@ -76,7 +76,7 @@ class World:
 
     def __reduce_ex__(self, protocol: object) -> NoReturn:
         raise TypeError(
-            "A model cannot be copied or pickled; save it, or open its document (game.models) again."
+            "A model cannot be copied or pickled; save it, or open its document (game.documents.models) again."
         )
 
     def activate(self) -> None:

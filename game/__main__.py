@@ -6,8 +6,8 @@ from game.interrupts import unheard
 def main() -> int:
     """Run the command line; returns the exit status."""
     with unheard():
-        from game import cli
-    return cli.main()
+        from game.commands import command_line
+    return command_line.main()
 
 
 if __name__ == "__main__":

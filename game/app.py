@@ -20,20 +20,18 @@ from components.field import Vector
 from components.model import Model
 from components.toolbar import Toolbar
 from components.view import MAGNIFICATIONS, MARGIN, Plot, View, drawn_places, magnified
-from game import models
-from game.desk import Desk, ModelFile
-from game.preparation import Preparation
-from game.raster_program import load_raster
-from game.saved import library
-from game.saved.autosave import Autosave, unkept
-from game.saved.preferences import (
+from game.documents import library, models
+from game.documents.autosave import Autosave, unkept
+from game.documents.open_documents import Desk, ModelFile
+from game.documents.preferences import (
     DEFAULT_THEME,
     preferred_magnification,
     preferred_theme,
     remember_magnification,
     remember_theme,
 )
-from game.scenes.load import Load
+from game.editor.scenes.load import Load
+from game.preparation import Preparation
 from game.scripts.performance import FOOTER, LARGER, Performance
 from game.scripts.script import Failure, Recorder, Script
 from game.session import Frame, Session
@@ -46,6 +44,7 @@ from systems.render.picture import compose
 from systems.render.plots import draw_plot
 from systems.render.pygame_canvas import Canvas
 from systems.render.pygame_render import PygameRender
+from systems.render.raster_program import load_raster
 from systems.render.theme import load_theme
 
 FRAME_RATE = 60  # Hz

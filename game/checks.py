@@ -13,15 +13,15 @@ import numpy as np
 from components.field import Column, Role, same
 from components.model import Model
 from components.settings import INTEGRATORS
-from game import models
-from game.catalogue import DRIVERS, register_driver, step_systems
-from game.program.binding import ProgramError, bind
-from game.program.rows import KernelRows
+from game.documents import models
 from game.registry import SYSTEMS
-from game.schedule import Schedule, ScheduleError
 from game.session import Frame, Session
-from game.simulation import Simulation
 from systems.base import Commit, Driver, Law, StepSystem, StopReason, System
+from systems.catalogue import DRIVERS, register_driver, step_systems
+from systems.program.binding import ProgramError, bind
+from systems.program.rows import KernelRows
+from systems.run.simulation import Simulation
+from systems.schedule import Schedule, ScheduleError
 
 STEPS = 40  # that step systems are run for
 FRAMES = 3  # that frame systems are run for

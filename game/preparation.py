@@ -13,25 +13,25 @@ from typing import TYPE_CHECKING, Any
 
 from components.obstacles import any_obstacles
 from components.rod import is_warm, nodes
-from game.catalogue import DRIVERS
-from game.collisions.encounter_kernels import has_encounters
-from game.collisions.encounters import load_encounters
-from game.collisions.flight import may_pile
-from game.collisions.flight_kernels import EVENTS, PILES, WINDOWS, has_parts
 from game.mods import MODS
 from game.prepare import ENCOUNTERS, FLIGHT, RASTER, WARM, Job, is_prepared, load_program
-from game.program.cache import is_blank, load_compiler
-from game.program.program import has_program
-from game.program.writer import form_of, read_sources
-from game.raster_program import has_raster, load_raster
 from systems.base import Phase, StepSystem, System
+from systems.catalogue import DRIVERS
+from systems.collision.driven.compiled import has_encounters
+from systems.collision.driven.stepper import load_encounters
+from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, has_parts
+from systems.collision.free.flight import may_pile
 from systems.collision.system import Collision, Support, contacts_of
 from systems.edit.pull import Pull
+from systems.program.compiler import is_blank, load_compiler
+from systems.program.program import has_program
+from systems.program.writer import form_of, read_sources
+from systems.render.raster_program import has_raster, load_raster
 
 if TYPE_CHECKING:
     from components.model import Model
-    from game.simulation import Simulation
     from systems.render.raster import Raster
+    from systems.run.simulation import Simulation
 
 FREE = (FLIGHT, EVENTS), (FLIGHT, WINDOWS)  # two processes compile the two halves of what free particles need
 PULLED = (FLIGHT, EVENTS), (FLIGHT, WINDOWS, PILES)  # and what they need where they may pile up

@@ -13,17 +13,17 @@ from collections.abc import Sequence
 from components.model import Model
 from components.particle import Particle
 from components.rod import spawn_rods
-from game.catalogue import DRIVERS
-from game.collisions.encounters import load_encounters
-from game.collisions.flight_kernels import load_part
 from game.mods.command import load_as_asked
-from game.program.cache import forget_unused
-from game.program.in_blocks import make_program
-from game.program.program import has_program
-from game.raster_program import load_raster
 from game.session import Session
 from systems.base import Driver, StepSystem
+from systems.catalogue import DRIVERS
+from systems.collision.driven.stepper import load_encounters
+from systems.collision.free.compiled import load_part
 from systems.edit.pull import Hand
+from systems.program.compiler import forget_unused
+from systems.program.parallel import make_program
+from systems.program.program import has_program
+from systems.render.raster_program import load_raster
 
 RASTER, FLIGHT, ENCOUNTERS = "raster", "free_flight", "encounters"
 WARM = "warm"  # the program is for rods whose temperature may have changed

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from components.view import Readout
-    from game.scenes.base import Scene
+    from game.editor.scenes.base import Scene
     from game.session import Session
     from systems.base import System
 
 SYSTEMS: list[Callable[[], System]] = []  # frame systems, laws and commits; made anew for every session
 SCENES: list[Callable[[], Scene]] = []  # made anew for every session
 PANELS: list[Callable[[Session], Sequence[Readout]]] = []  # what stands beside the model now
-COMMANDS: dict[str, Callable[[list[str]], int]] = {}  # of the command line, Pinjoint's own (game/cli) too
+COMMANDS: dict[str, Callable[[list[str]], int]] = {}  # of the command line, Pinjoint's own (game/commands) too
 ABOUT: dict[str, str] = {}  # what a command does, for --help

@@ -25,34 +25,34 @@ from components.spelling import missing
 from components.table import Table
 from components.tags import Selected
 from components.view import View
-from game import models
-from game.actions import ACTIONS, WHILE_DRAWING
-from game.catalogue import step_systems
-from game.clock import FrameClock
-from game.collisions.impacts import Impacts
-from game.desk import Desk, Desks, ModelFile, file_of
-from game.document import missing_mods
-from game.energy import Energy
-from game.gestures import Gesture
-from game.history.history import History
-from game.history.timeline import Timeline
+from game.commands.reports.curve import goal_of
+from game.documents import models
+from game.documents.document import missing_mods
+from game.documents.history.history import History
+from game.documents.history.timeline import Timeline
+from game.documents.open_documents import Desk, Desks, ModelFile, file_of
+from game.editor.actions import ACTIONS, WHILE_DRAWING
+from game.editor.gestures import Gesture
+from game.editor.host import Autosaves, Prepares, Window
+from game.editor.scenes import Scenes, Stage, all_scenes
+from game.editor.toolbar import toolbar_of
+from game.editor.view_model import make_room, show
 from game.mods.mod import FAULTS
 from game.registry import SYSTEMS
-from game.reports.curve import goal_of
-from game.scenes import Scenes, Stage, all_scenes
-from game.schedule import Schedule
-from game.showing import make_room, show
-from game.simulation import FREE_FLIGHT, Simulation
-from game.surroundings import Autosaves, Prepares, Window
-from game.toolbar import toolbar_of
 from systems.base import Phase, StopReason, System
+from systems.catalogue import step_systems
+from systems.collision.impacts import Impacts
 from systems.edit.pull import Pull
 from systems.edit.refusal import Refusal
 from systems.input.bindings import FORMS, TEXT, action_for, key_named
 from systems.physics.pace import natural_pace
+from systems.run.energy import Energy
+from systems.run.frame_clock import FrameClock
+from systems.run.simulation import FREE_FLIGHT, Simulation
+from systems.schedule import Schedule
 
 if TYPE_CHECKING:
-    from game.clipboard import Part
+    from game.editor.clipboard import Part
     from game.scripts.script import Script
     from systems.statics.events import Event
     from systems.statics.path import Curve

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from enum import Enum, IntEnum
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import esper
 from numpy.typing import NDArray
@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from components.model import Model
 
-__all__ = ["ACCOUNTS", "Commit", "Driver", "Law", "Phase", "StepSystem", "StopReason", "System"]
+__all__ = ["ACCOUNTS", "Commit", "Driver", "Law", "Mod", "Phase", "StepSystem", "StopReason", "System"]
 
 
 class Phase(Enum):
@@ -53,6 +53,17 @@ class StopReason(IntEnum):
 ACCOUNTS = ("work", "dissipated_damping", "dissipated_plastic", "dissipated_impact")
 
 
+class Mod(Protocol):
+    """The extension that brought a system; see game/mods/mod.py."""
+
+    @property
+    def off(self) -> bool:
+        """True if it was left out or switched off."""
+
+    def switch_off(self, reason: str, error: BaseException | None = None) -> None:
+        """Let nothing of it be called any more."""
+
+
 class System(esper.Processor):  # type: ignore[misc,unused-ignore]
     """Behaviour, run once in every frame of the scenes it is active in.
 
@@ -75,7 +86,7 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
     adds: ClassVar[tuple[str, ...]] = ()
     scenes: ClassVar[tuple[str, ...] | None] = None
     asks_esper: ClassVar[bool] = True
-    mod: Any = None
+    mod: Mod | None = None
 
     def needs(self, model: Model) -> bool:
         """False if this model has nothing for the system to do; it is then left out of the plan."""

@@ -18,11 +18,11 @@ from components.rod import Rod
 from components.table import Table
 from components.tags import Selected
 from components.view import View
+from game.editor.shapes import DRAWN_SHARE, extent
 from game.force_method import PARTS
-from game.live import Live
-from game.schedule import Schedule
-from game.shapes import DRAWN_SHARE, extent
-from game.simulation import Simulation
+from systems.run.real_time import Live
+from systems.run.simulation import Simulation
+from systems.schedule import Schedule
 from systems.statics.force_method import (
     ForceMethodError,
     SetState,

@@ -127,8 +127,8 @@ def shake(model: Model, record: History | dict[str, list[float] | str], directio
 
 def run(words: list[str]) -> int:
     """`pinjoint shake MODEL RECORD.csv --output FILE`."""
-    from game import models
-    from game.arguments import Parser, UsageError, writable
+    from game.commands.arguments import Parser, UsageError, writable
+    from game.documents import models
 
     parser = Parser(
         prog="pinjoint shake", description="Shake the supports of a model by a recorded acceleration."

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from components import Model, Particle, Plot, Readout, Rod, Vector
-from game.models import replace
-from game.quantities import TIME, Quantity, quantity
+from game.documents.models import replace
+from game.paths.quantities import TIME, Quantity, quantity
 from systems.base import Phase, System
 from systems.edit.refusal import Refusal
 
@@ -219,9 +219,9 @@ def _heading(probe: Probe) -> str:
 
 def run(words: list[str]) -> int:
     """`pinjoint plot MODEL --of QUANTITY --until T --output FILE`."""
-    from game.arguments import Parser, UsageError, count, positive, writable
-    from game.cli.options import add_model, session_of
-    from game.quantities import QuantityError
+    from game.commands.arguments import Parser, UsageError, count, positive, writable
+    from game.commands.options import add_model, session_of
+    from game.paths.quantities import QuantityError
 
     parser = Parser(
         prog="pinjoint plot", description="Run a model and write quantities against time or another."

@@ -18,17 +18,18 @@ from components.model import ADDED
 from components.obstacles import SHAPES, Pieces, Shape, check_pieces
 from components.settings import INTEGRATORS
 from components.view import Readout
-from game import models, registry
-from game.actions.drawing import use
-from game.actions.registry import ACTIONS, WHILE_DRAWING, Action, action
-from game.arguments import BAD_INPUT, UsageError
-from game.catalogue import DRIVERS, register_driver
-from game.gestures import TOOL_HINTS, TOOLS
-from game.gestures.drawing import drawing_of
+from game import registry
+from game.commands.arguments import BAD_INPUT, UsageError
+from game.documents import models
+from game.editor.actions.drawing import use
+from game.editor.actions.registry import ACTIONS, WHILE_DRAWING, Action, action
+from game.editor.gestures import TOOL_HINTS, TOOLS
+from game.editor.gestures.drawing import drawing_of
+from game.editor.scenes import Scene, all_scenes
 from game.mods.guard import guarded_history, guarded_integrator, guarded_scene, guarded_system
 from game.mods.mod import Mod, ModError
-from game.scenes import Scene, all_scenes
 from systems.base import Driver, System
+from systems.catalogue import DRIVERS, register_driver
 from systems.edit.refusal import Refusal
 from systems.input.bindings import (
     LIVE,

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from game.arguments import Parser
+from game.commands.arguments import Parser
 from game.mods.finding import mods_folder
 from game.mods.loading import MODS, load
 from game.mods.mod import FAULTS, INCLUDED, Mod, ModError

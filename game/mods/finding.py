@@ -7,9 +7,9 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
+from game.documents.library import data_folder
 from game.mods.manifest import MANIFEST, read_manifest
 from game.mods.mod import Mod
-from game.saved.library import data_folder
 
 GROUP = "pinjoint.mods"  # entry points of installed packages
 

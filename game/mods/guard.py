@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 from components.field import FieldError
 from components.load import History, HistoryKind
 from components.snapshot import Snapshot
+from game.editor.scenes import Scene
 from game.mods.mod import INCLUDED, Mod
 from game.mods.watchdog import interrupted_after, stop_after
-from game.scenes import Scene
 from systems.base import Driver, StepSystem, System
-from systems.physics.drivers import VelocityVerlet
+from systems.physics.integrators import VelocityVerlet
 
 if TYPE_CHECKING:
     from components.model import Model

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from types import ModuleType
 
-from game.catalogue import step_systems
+from game.documents.preferences import preferred_keys
 from game.mods import finding
 from game.mods.app import App, check_plugin
 from game.mods.manifest import MANIFEST
@@ -17,10 +17,10 @@ from game.mods.mod import FAULTS, Mod, ModError
 from game.mods.order import in_order, required
 from game.mods.watchdog import interrupted_after
 from game.registry import SYSTEMS
-from game.saved.preferences import preferred_keys
-from game.schedule import Schedule
 from game.version import __version__
+from systems.catalogue import step_systems
 from systems.input.bindings import prefer
+from systems.schedule import Schedule
 
 PATIENCE = 30.0  # s that loading one mod may take
 

@@ -6,15 +6,15 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from components.spelling import missing
-from game import models
-from game.catalogue import DRIVERS, step_systems
 from game.checks import EVERYTHING
-from game.program.binding import ProgramError, bind, problem_of
-from game.program.writer import read_sources
+from game.documents import models
+from game.editor.scenes import all_scenes
 from game.registry import SYSTEMS
-from game.scenes import all_scenes
 from systems.base import Commit, Law
+from systems.catalogue import DRIVERS, step_systems
 from systems.input.bindings import BINDINGS
+from systems.program.binding import ProgramError, bind, problem_of
+from systems.program.writer import read_sources
 
 if TYPE_CHECKING:
     from components.model import Model

@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from game.documents.library import data_folder
+from game.documents.locks import lock_file
 from game.mods.loading import MODS
 from game.mods.mod import INCLUDED, LOG
-from game.saved.library import data_folder
-from game.saved.locks import lock_file
 
 LEFT_OUT = (
     "Pinjoint crashed while your mods were loaded, so they are left out this time. The next"

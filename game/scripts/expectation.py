@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from components.spelling import missing
-from game.target import PathError, locate_one
+from game.paths.target import PathError, locate_one
 
 if TYPE_CHECKING:
     from game.session import Session

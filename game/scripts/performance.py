@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from components.field import Vector
 from components.view import Page, Status, View
-from game.desk import ModelFile
-from game.program.writer import REVIEW_INTERVAL
-from game.saved import library
+from game.documents import library
+from game.documents.open_documents import ModelFile
 from game.scripts.script import Failure, Script
+from systems.program.writer import REVIEW_INTERVAL
 
 if TYPE_CHECKING:
     from game.app import App

@@ -15,17 +15,17 @@ from numpy.typing import NDArray
 
 from components.field import Column
 from components.load import load_breaks, loads_end
-from game.energy import Energy
-from game.program.program import ACCOUNT, CONTROL
-from game.program.writer import REVIEW_INTERVAL
-from game.sleep import INTERVAL
-from game.step_size import automatic_step, first_step, is_outgrown, step_limit
 from game.sweeps.batch_program import BatchProgram
 from game.sweeps.stack import Stack
 from systems.base import StopReason
 from systems.islands import HELD, islands
 from systems.physics.rest import Stillness
 from systems.physics.spectrum import spectra
+from systems.program.program import ACCOUNT, CONTROL
+from systems.program.writer import REVIEW_INTERVAL
+from systems.run.energy import Energy
+from systems.run.sleep import INTERVAL
+from systems.run.step_size import automatic_step, first_step, is_outgrown, step_limit
 
 Mask = NDArray[np.bool_]
 _GOING_ON = (StopReason.DONE, StopReason.REVIEW)

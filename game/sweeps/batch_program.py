@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Column
-from game.program.cache import compile_module, note_compiled
-from game.program.lanes import lanes_for
-from game.program.program import Program
 from game.sweeps.lane_program import LaneProgram
+from game.sweeps.lanes import lanes_for
 from game.sweeps.stack import Stack
 from systems.base import ACCOUNTS
-from systems.physics.drivers import SEARCH
+from systems.physics.integrators import SEARCH
+from systems.program.compiler import compile_module, note_compiled
+from systems.program.program import Program
 
 _SHARED = (
     "fresh",

@@ -11,17 +11,17 @@ from numpy.typing import NDArray
 
 from components.field import Column, FieldError
 from components.settings import AUTOMATIC
-from game.program.program import Program
-from game.reports.results import ENERGIES, reported
-from game.simulation import at_rest_since
+from game.commands.reports.results import ENERGIES, reported
+from game.paths.target import EVERY, Target, locate, settable
 from game.sweeps.batch import Batch
 from game.sweeps.batch_program import BatchProgram
 from game.sweeps.measure import Measure
 from game.sweeps.plan import Plan, Record
 from game.sweeps.stack import Stack
 from game.sweeps.variation import Random, Value
-from game.target import EVERY, Target, locate, settable
 from systems.physics.automatic import SMALL, stiffnesses, suited_to
+from systems.program.program import Program
+from systems.run.simulation import at_rest_since
 
 if TYPE_CHECKING:
     from game.sweeps.specimen import Specimen

@@ -6,10 +6,10 @@ import logging
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from game.cores import VARIABLE, cores
 from game.sweeps.plan import Outcome, Plan
 from game.sweeps.variation import INSTALL, SweepError
 from game.sweeps.worker import Worker, compute
+from systems.program.cores import VARIABLE, cores
 
 MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
 TASKS_PER_WORKER = 16  # so that no worker waits long for another's last task

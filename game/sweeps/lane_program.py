@@ -1,4 +1,4 @@
-"""Lane programs: a step program for many blocks of a stack side by side; see game/program/lanes.py."""
+"""Lane programs: a step program for many blocks of a stack side by side; see game/sweeps/lanes.py."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Column
-from game.program.cache import compile_module, note_compiled
-from game.program.lanes import LaneFunction, functions, head, is_common
-from game.program.program import Program
+from game.sweeps.lanes import LaneFunction, functions, head, is_common
+from systems.program.compiler import compile_module, note_compiled
+from systems.program.program import Program
 
 _NUMBERS = ("steps", "total", "first", "origin", "tolerance", "limit", "dt")  # one for each block
 _SHARED = ("breaks", "until", "landing", "loads_end")

@@ -12,9 +12,9 @@ from typing import Any
 from components.field import Field
 from components.model import Model
 from components.table import Table
-from game.reports.results import ENERGIES, State, reported
+from game.commands.reports.results import ENERGIES, State, reported
+from game.paths.target import EVERY, PathError, locate
 from game.sweeps.variation import SweepError
-from game.target import EVERY, PathError, locate
 
 _OF_THE_RUN = ("residual", "collisions")
 _ANYWAY = ("time", "load_factor")  # columns that every result has

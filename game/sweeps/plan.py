@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from game.reports.report import Analysis
+from game.commands.reports.report import Analysis
 from game.sweeps.installation import Installation
 from game.sweeps.measure import Measure
 from game.sweeps.variation import Random, Value, Values, Variation, as_text

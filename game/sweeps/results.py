@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from game.models import replace
-from game.reports.report import FOUND
+from game.commands.reports.report import FOUND
+from game.documents.models import replace
 from game.sweeps.plan import RECORDED, Plan
 from game.sweeps.variation import INSTALL, Random, SweepError, Values
 

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from game import models
-from game.desk import file_of
-from game.overrides import apply_override
-from game.reports.report import Analysis
+from game.commands.reports.report import Analysis
+from game.documents import models
+from game.documents.open_documents import file_of
+from game.paths.overrides import apply_override
 from game.sweeps.execution import outcomes
 from game.sweeps.installation import Installation
 from game.sweeps.journal import Journal

@@ -6,14 +6,14 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 from components.snapshot import Snapshot
-from game import models
-from game.catalogue import step_systems
-from game.overrides import apply_override
+from game.documents import models
+from game.paths.overrides import apply_override
 from game.registry import SYSTEMS
-from game.schedule import Schedule
-from game.simulation import Simulation
 from game.sweeps.plan import Plan, Record
 from systems.base import StepSystem
+from systems.catalogue import step_systems
+from systems.run.simulation import Simulation
+from systems.schedule import Schedule
 
 
 class Specimen:

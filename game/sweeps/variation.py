@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from components.model import Model
-from game.overrides import read_value
-from game.target import EVERY, PathError, Target, locate, settable
+from game.paths.overrides import read_value
+from game.paths.target import EVERY, PathError, Target, locate, settable
 
 Value = float | bool | str | None
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.obstacles import NO_OBSTACLES, Obstacles
-from systems.near import Floats, Rows, near_pairs, nearest
+from systems.broad_phase import Floats, Rows, near_pairs, nearest
 
 SLACK = 1e-13  # of the reach of two discs; less is round-off
 AROUND = 1.5  # times its radius, within which a disc's neighbours are looked after at a time

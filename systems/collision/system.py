@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from components.obstacles import any_obstacles, obstacles
 from components.paths import Paths
 from systems.base import Driver, Law, StepSystem
-from systems.near import nearest
+from systems.broad_phase import nearest
 
 if TYPE_CHECKING:
     from components.model import Model
@@ -22,7 +22,7 @@ REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in
 
 
 class Collision(StepSystem):
-    """Discs that meet push one another apart; see game/collisions/flight.py for what drives them."""
+    """Discs that meet push one another apart; see systems/collision/free/flight.py for what drives them."""
 
     name = "collision.discs"
     reads = ("particles.radius", "particles.mobility", "settings.restitution")

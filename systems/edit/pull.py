@@ -92,6 +92,13 @@ class Pull(Law):
         )
         return x, y
 
+    def forces(self, count: int) -> NDArray[np.float64]:
+        """The hand's force on each of so many particles (kN), shape (count, 2)."""
+        forces = np.zeros((count, 2))
+        if self.hand is not None:
+            forces[self.hand.particle.row] = self.force
+        return forces
+
 
 def hand_on(model: Model, view: View, particle: Particle, pace: Callable[[], float]) -> Hand:
     """A hand that holds a particle where it is; `pace()`: seconds simulated per second shown.

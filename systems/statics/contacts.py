@@ -14,7 +14,7 @@ import numpy as np
 
 from components.model import Model
 from components.obstacles import Obstacles, obstacles
-from systems.near import near_pairs, nearest
+from systems.broad_phase import near_pairs, nearest
 from systems.statics.equations import Array, Flags, Rows, Structure
 from systems.statics.factor import regular
 from systems.statics.follow import Path, Point

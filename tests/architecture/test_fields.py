@@ -15,7 +15,7 @@ from components.load import HISTORIES
 from components.model import ADDED, KINDS
 from components.table import fields_of
 from game.mods.mod import INCLUDED
-from game.program.binding import find
+from systems.program.binding import find
 
 PAGE = Path(__file__).parents[2] / "components" / "README.md"
 HEAD = """\

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from game import models
-from game.cli import main
+from game.commands.command_line import main
+from game.documents import models
 from game.registry import COMMANDS
 from systems.input.bindings import BINDINGS
 

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from game import Session, models
+from game import Session
+from game.documents import models
 from tests.benchmarks.motion import equations
 from tests.benchmarks.problems import Array, Problem, problems
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pymunk  # here, so that a missing peer is told before anything is measured
 
-from game.collisions.flight_kernels import engine
-from systems.collision.discs import Discs
+from systems.collision.free.compiled import engine
+from systems.collision.free.discs import Discs
 from tests.reference.scenes_of_discs import GRAVITY, Scene, gas, packed, stacked
 
 STEP = 1 / 240  # s; pymunk's
@@ -168,7 +168,7 @@ def _unaccounted(discs: Discs, scene: Scene, seconds: float) -> float:
 
 def _sunk(place: np.ndarray, scene: Scene) -> float:
     """The deepest overlap, in the smallest radius."""
-    from systems.near import near_pairs
+    from systems.broad_phase import near_pairs
 
     pairs = near_pairs(place, scene["radius"])
     pairs = pairs[(scene["inverse_mass"][pairs] > 0).any(axis=(1, 2))]

@@ -15,10 +15,10 @@ from components.camera import Viewport
 from components.model import Model
 from components.view import View
 from game.app import App
-from game.raster_program import load_raster
 from systems.render.labels import Placed
 from systems.render.picture import compose
 from systems.render.pygame_canvas import Canvas
+from systems.render.raster_program import load_raster
 from systems.render.theme import load_theme
 from tests.benchmarks.models import mesh
 

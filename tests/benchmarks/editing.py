@@ -16,8 +16,8 @@ import pygame
 
 from components.field import Vector
 from game.app import SELDOM, App
+from game.documents import library
 from game.preparation import Preparation
-from game.saved import library
 from tests.benchmarks.models import lattice
 
 FRAME = 1.0 / 60.0

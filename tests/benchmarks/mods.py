@@ -13,15 +13,15 @@ from numba import njit
 
 from components.model import Model
 from game import Session, registry
-from game.catalogue import DRIVERS, step_systems
-from game.document import document
+from game.documents.document import document
 from game.mods import Mod
 from game.mods.guard import guarded_system
-from game.program.in_blocks import make_program
-from game.program.program import Program
-from game.schedule import Schedule
 from systems.base import StepSystem, System
+from systems.catalogue import DRIVERS, step_systems
 from systems.physics.system import Drag
+from systems.program.parallel import make_program
+from systems.program.program import Program
+from systems.schedule import Schedule
 from tests.benchmarks.models import lattice
 
 STEP = 1e-6  # s

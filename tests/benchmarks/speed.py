@@ -21,10 +21,11 @@ import numpy as np
 import pymunk  # here, so that a missing peer is told before anything is measured
 
 from components.model import Model
-from game import Session, models
-from game.cores import cores
-from game.document import document
-from game.program.writer import MANY, VERY_MANY
+from game import Session
+from game.documents import models
+from game.documents.document import document
+from systems.program.cores import cores
+from systems.program.writer import MANY, VERY_MANY
 from tests.benchmarks import skipping
 from tests.benchmarks.ceiling import BYTES_PER_PARTICLE, BYTES_PER_ROD, bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, truss
@@ -202,7 +203,7 @@ def start_up() -> list[Row]:
 
 _FIRST_FRAME = """
 import os; os.environ["SDL_VIDEODRIVER"] = "dummy"
-from game import models
+from game.documents import models
 from game.app import App
 app = App(models.load("isostatic"))
 if {frames} > 1: app.session.press("space")

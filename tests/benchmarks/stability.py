@@ -7,7 +7,7 @@ from typing import Any
 
 from components.settings import AUTOMATIC, INTEGRATORS
 from game import Session
-from game.document import document
+from game.documents.document import document
 from tests.benchmarks.models import lattice
 from tests.reference.elements import Model
 from tests.reference.models import oscillator

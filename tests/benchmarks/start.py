@@ -19,7 +19,7 @@ from typing import Any
 
 from game import Session
 from game.preparation import AHEAD
-from game.program.writer import form_of
+from systems.program.writer import form_of
 
 Row = dict[str, Any]
 
@@ -123,8 +123,8 @@ class Watched:
     """
 
     def __init__(self, model: str) -> None:
-        from game import models
         from game.app import App
+        from game.documents import models
         from game.preparation import Preparation
 
         self.app = App(models.load(model), preparation=Preparation())

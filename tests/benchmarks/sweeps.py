@@ -7,8 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from game.cores import cores
-from game.reports.report import Analysis
+from game.commands.reports.report import Analysis
 from game.session import Session
 from game.sweeps.batches import MANY
 from game.sweeps.execution import outcomes
@@ -16,6 +15,7 @@ from game.sweeps.plan import Plan
 from game.sweeps.run import plan_of, sweep
 from game.sweeps.specimen import Specimen
 from game.sweeps.worker import Worker
+from systems.program.cores import cores
 from tests.benchmarks.models import lattice
 
 ANALYSES = {"settled": Analysis(load_factors=(1.0,)), "run to rest": Analysis()}

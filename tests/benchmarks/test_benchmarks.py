@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from components.settings import INTEGRATORS
-from game import bench
+from game.commands import benchmarks as bench
 from tests.benchmarks import collisions, drawing, ratios, speed, stability
 from tests.benchmarks.ceiling import bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, mesh

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from game.saved import library
+from game.documents import library
 from tests.benchmarks import editing
 from tests.benchmarks.editing import ANNOUNCED, SESSION, Hand
 

@@ -10,10 +10,10 @@ from contextlib import contextmanager
 import numpy as np
 
 from components.model import Model
-from game.catalogue import DRIVERS, step_systems
-from game.cores import VARIABLE
-from game.program.in_blocks import make_program
-from game.schedule import Schedule
+from systems.catalogue import DRIVERS, step_systems
+from systems.program.cores import VARIABLE
+from systems.program.parallel import make_program
+from systems.schedule import Schedule
 
 STEP = 1e-6  # s, stable in all models of benchmarks
 

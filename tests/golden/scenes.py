@@ -16,7 +16,7 @@ import pygame
 
 from components.view import drawn_positions, magnified
 from game import Session
-from game.saved.library import data_in
+from game.documents.library import data_in
 from systems.render.marks import Picture
 from systems.render.picture import compose
 from systems.render.pygame_canvas import Canvas

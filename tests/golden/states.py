@@ -6,11 +6,12 @@ import tempfile
 from pathlib import Path
 
 from components.view import Page, Status, View
-from game import Session, models
-from game.saved.autosave import Autosave, unkept
-from game.saved.library import data_apart, data_folder, models_folder
-from game.scenes.load import Load
-from game.showing import COMPILING
+from game import Session
+from game.documents import models
+from game.documents.autosave import Autosave, unkept
+from game.documents.library import data_apart, data_folder, models_folder
+from game.editor.scenes.load import Load
+from game.editor.view_model import COMPILING
 from systems.render.marks import Picture
 from tests.golden.scenes import EMPTY, SCENES, Scene, Window, composed, opened, pictures, pressed
 

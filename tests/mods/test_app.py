@@ -9,8 +9,9 @@ import pytest
 
 from components import Environment, World
 from components.commands import Command
-from game import Session, models, mods
-from game.cli import main
+from game import Session, mods
+from game.commands.command_line import main
+from game.documents import models
 from systems.render.marks import Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
@@ -59,7 +60,7 @@ def test_a_command_gets_its_words_and_a_failing_one_ends_with_a_reason(
 
 def test_an_integrator_can_be_chosen(write_mod: Write) -> None:
     head = """
-from systems.physics.drivers import VelocityVerlet
+from systems.physics.integrators import VelocityVerlet
 def begins(i, dt, displacement, velocity, force, resisting, predicted, *columns):
     for d in range(2):
         a = (force[i, d] + resisting[i, d] if RATES else force[i, d]) * particles_mobility[i, d]

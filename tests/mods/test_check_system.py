@@ -15,20 +15,20 @@ from numpy.typing import NDArray
 
 from components import Model
 from game import Session, SystemCheckError, check_system
-from game.catalogue import DRIVERS, step_systems
 from game.checks import BODIES, ELASTIC, EVERYTHING
-from game.document import document
+from game.documents.autosave import Autosave
+from game.documents.document import document
 from game.included.probes import Sampling
 from game.preparation import Preparation
 from game.registry import SYSTEMS
-from game.saved.autosave import Autosave
 from systems.base import Law, Phase, StepSystem, System
+from systems.catalogue import DRIVERS, step_systems
 from systems.collision.system import Collision, Support
 from systems.edit.hover import Hover
 from systems.edit.pull import Hand, Pull
 from systems.input.pygame_input import PygameInput
 from systems.kernels import compiled
-from systems.physics.drivers import VelocityVerlet
+from systems.physics.integrators import VelocityVerlet
 from systems.render.pygame_render import PygameRender
 from tests.mods.conftest import Write
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from game import mods
-from game.cli import main
+from game.commands.command_line import main
 
 GUIDE = Path(__file__).parents[2] / "assets" / "mods" / "README.md"
 BLOCK = re.compile(r"(?:^`([\w./]+)`:\n\n)?^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)

@@ -8,7 +8,7 @@ import pytest
 
 from components.world import World
 from game import Session, mods
-from game.models import document
+from game.documents.models import document
 from game.mods import guard
 from tests.mods.conftest import Write
 
@@ -274,7 +274,7 @@ def test_a_layer_that_fails(session: Any) -> None:
 @pytest.mark.parametrize("method", ["enter", "advance", "hint", "busy"])
 def test_a_scene_that_fails_leads_back_to_pause(session: Any, method: str) -> None:
     code = f"""
-from game.scenes import Scene
+from game.editor.scenes import Scene
 
 class Bad(Scene):
     name = "bad"
@@ -303,7 +303,7 @@ def test_a_world_is_whole_after_its_entities_were_checked() -> None:
 
 
 INTEGRATOR = """
-from systems.physics.drivers import VelocityVerlet
+from systems.physics.integrators import VelocityVerlet
 
 class Mine(VelocityVerlet):
     name = "apple.mine"

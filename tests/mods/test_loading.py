@@ -10,11 +10,11 @@ import pytest
 
 from components import Particle
 from game import Session, mods
-from game.actions import ACTIONS
-from game.cli import main
+from game.commands.command_line import main
+from game.editor.actions import ACTIONS
 from game.registry import COMMANDS
 from systems.input.bindings import BINDINGS, action_for
-from systems.physics.drivers import VelocityVerlet
+from systems.physics.integrators import VelocityVerlet
 from tests.mods.conftest import Write
 
 BALL = {"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}]}
@@ -112,7 +112,7 @@ def test_what_requires_a_mod_that_fails_is_left_out(tmp_path: Path, write_mod: W
         ("def plugin(app): app.command('run', print)", "command 'run' already"),
         ("def plugin(app): app.models('nowhere')", "nowhere is not there"),
         (
-            "from game.scenes import Scene\nclass P(Scene):\n    name = 'pause'\n"
+            "from game.editor.scenes import Scene\nclass P(Scene):\n    name = 'pause'\n"
             "def plugin(app): app.scene(P)",
             "a scene 'pause' already",
         ),
@@ -183,7 +183,7 @@ def test_of_a_plugin_that_raises_nothing_stays(tmp_path: Path, write_mod: Write)
         "apple",
         """
         from components import Component, Field, Particle, HistoryKind
-        from game.scenes import Scene
+        from game.editor.scenes import Scene
 
         class Sail(Component):
             of = Particle
@@ -301,7 +301,7 @@ KERNEL = """
 from components import HistoryKind
 from numba import njit
 from systems.base import Law
-from systems.physics.drivers import VelocityVerlet
+from systems.physics.integrators import VelocityVerlet
 
 @njit
 def pull({parameter}):

@@ -11,9 +11,9 @@ import pytest
 
 from components.view import Plot
 from game import Session
-from game.cli import main
+from game.commands.command_line import main
 from game.included.probes import ENERGIES, probes_of, record
-from game.quantities import QuantityError, quantity
+from game.paths.quantities import QuantityError, quantity
 from systems.render.marks import Strokes, Text
 from systems.render.picture import compose
 from systems.render.plots import draw_plot, round_ticks

@@ -21,9 +21,9 @@ import numpy as np
 
 from components.field import Vector
 from components.view import drawn_positions
-from game import Session, models
-from game.desk import Desk
-from game.saved import library
+from game import Session
+from game.documents import library, models
+from game.documents.open_documents import Desk
 from game.scripts.script import EMPTY, Recorder, Script
 from systems.input.bindings import BINDINGS, LIVE, TEXT
 from systems.render.picture import compose

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 
 from components.field import Role, same
 from components.model import Model
-from game import models
-from game.models import ModelError
+from game.documents import models
+from game.documents.models import ModelError
 
 finite = st.sampled_from([0.0, -0.0]) | st.floats(allow_nan=False, allow_infinity=False)
 places = st.floats(-1e100, 1e100)

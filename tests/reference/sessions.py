@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from game import Session
-from game.history.history import History
-from game.history.log import Run
+from game.documents.history.history import History
+from game.documents.history.log import Run
 
 
 def put_states_aside(session: Session, beyond: int) -> None:

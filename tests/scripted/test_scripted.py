@@ -11,8 +11,8 @@ import pytest
 
 from components.field import Role
 from game import Session
-from game.cli import main
-from game.saved.library import DATA_VARIABLE
+from game.commands.command_line import main
+from game.documents.library import DATA_VARIABLE
 from game.scripts.script import Recorder, Script, ScriptError, lessons
 
 SCRIPTS = sorted(Path(__file__).parent.glob("*.jsonl"))

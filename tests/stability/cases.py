@@ -18,7 +18,7 @@ from scipy.integrate import solve_ivp
 from components.field import Role
 from components.settings import AUTOMATIC
 from game import Session
-from game.catalogue import DRIVERS
+from systems.catalogue import DRIVERS
 from tests.reference import closed_forms
 from tests.reference.elements import Model
 from tests.reference.models import model, oscillator, particle, pendulum, rod, von_mises_truss

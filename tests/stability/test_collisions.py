@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from game.collisions.encounter_kernels import kernels
-from game.collisions.flight_kernels import engine
-from systems.collision.arrays import Reason
-from systems.collision.discs import Discs
+from systems.collision.columns import Reason
+from systems.collision.driven.compiled import kernels
+from systems.collision.free.compiled import engine
+from systems.collision.free.discs import Discs
 from systems.collision.kernels.pile import begin_steps
 from systems.collision.overlaps import part
 from tests.reference.scenes_of_discs import (

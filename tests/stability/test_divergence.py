@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from components.field import Role
-from game import Session, models
+from game import Session
+from game.documents import models
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import chain, model, oscillator, particle, pendulum, rod, square, triangle

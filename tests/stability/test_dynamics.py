@@ -6,7 +6,7 @@ import pytest
 
 from components.settings import AUTOMATIC, INTEGRATORS
 from game import Session
-from game.catalogue import DRIVERS
+from systems.catalogue import DRIVERS
 from tests.reference.models import model, particle, rod
 from tests.stability.cases import SHARES, Case, cases, follow, stepping
 

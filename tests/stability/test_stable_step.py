@@ -7,7 +7,8 @@ import pytest
 from numpy.typing import NDArray
 
 from components.model import Model
-from game import Session, models
+from game import Session
+from game.documents import models
 from systems.physics.spectrum import spectrum
 from tests.reference.elements import Model as Document
 from tests.reference.models import chain, model, oscillator, particle, rod, square, triangle

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game import models
+from game.documents import models
 from systems.statics.settle import settle
 from tests.reference import closed_forms
 from tests.reference.elements import Model as Document

@@ -3,13 +3,15 @@
 import numpy as np
 import pytest
 
-from game import models
-from game.catalogue import DRIVERS, step_systems
-from game.program import in_blocks, layout, writer
-from game.program.arranged import ArrangedProgram
-from game.program.in_blocks import make_program
-from game.schedule import Schedule
+from game.documents import models
 from game.session import Session
+from systems.catalogue import DRIVERS, step_systems
+from systems.program import blocks as layout
+from systems.program import parallel as in_blocks
+from systems.program import writer
+from systems.program.parallel import make_program
+from systems.program.reordered import ArrangedProgram
+from systems.schedule import Schedule
 from tests.reference.elements import Model
 from tests.systems.test_cores import net
 

@@ -18,11 +18,11 @@ import pytest
 from components.model import Model
 from components.particle import Particle
 from components.rod import spawn_rods
-from game import Session, models
-from game.desk import ModelFile
-from game.saved import library
-from game.saved.autosave import LAST_SESSION, Autosave, spare_name
-from game.scenes.files import FileScene
+from game import Session
+from game.documents import library, models
+from game.documents.autosave import LAST_SESSION, Autosave, spare_name
+from game.documents.open_documents import ModelFile
+from game.editor.scenes.files import FileScene
 from tests.reference.lines import lines_run
 from tests.reference.models import triangle
 
@@ -32,10 +32,10 @@ INTERVAL = 0.2  # s between spares in these tests
 # A window (without a display) in which somebody never stops editing; it tells each value once it is set.
 WINDOW = """
 import sys, time
-from game import models
+from game.documents import models
 from game.app import App
-from game.desk import ModelFile
-from game.saved.autosave import Autosave
+from game.documents.open_documents import ModelFile
+from game.documents.autosave import Autosave
 app = App(models.load(sys.argv[1]), ModelFile(None, "work"), Autosave(interval=float(sys.argv[2])))
 value = 1000.0
 while not app.input.closed:

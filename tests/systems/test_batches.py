@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game.reports.report import Analysis
+from game.commands.reports.report import Analysis
 from game.sweeps import batch_program, batches
 from game.sweeps.lane_program import LaneProgram
 from game.sweeps.plan import Plan, Record

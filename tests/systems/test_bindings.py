@@ -11,9 +11,9 @@ import pytest
 
 from components.tags import DiagramShown
 from game import Session
-from game.saved.library import DATA_VARIABLE, models_folder
-from game.scenes.force_method import ForceMethod
-from game.scenes.form import FormScene
+from game.documents.library import DATA_VARIABLE, models_folder
+from game.editor.scenes.force_method import ForceMethod
+from game.editor.scenes.form import FormScene
 from systems.input.bindings import (
     BINDINGS,
     FORCE_METHOD,

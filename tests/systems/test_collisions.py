@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from game import Session
-from game.cli import main
-from game.collisions.vicinity import Vicinity
-from game.models import document
+from game.commands.command_line import main
+from game.documents.models import document
+from systems.collision.driven.neighbours import Vicinity
 from systems.edit.pull import hand_on
 from tests.systems.test_encounters import box, energy_of_discs
 

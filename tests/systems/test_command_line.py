@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from game.cli import main
+from game.commands.command_line import main
 from game.registry import COMMANDS
 
 ROOT = Path(__file__).parents[2]

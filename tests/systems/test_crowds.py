@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from game import Session
-from game.collisions.crowds import CROWDED, NO_IMPACT, Crowds
-from game.collisions.encounter_kernels import kernels
-from systems.collision.arrays import BIAS, GIVEN, NX, NY
-from systems.collision.discs import room_for
+from systems.collision.columns import BIAS, GIVEN, NX, NY
+from systems.collision.driven.compiled import kernels
+from systems.collision.driven.crowds import CROWDED, NO_IMPACT, Crowds
+from systems.collision.free.discs import room_for
 from systems.collision.system import contacts_of
 from tests.systems.test_encounters import GRAVITY, box, energy_of_discs
 

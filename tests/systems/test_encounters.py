@@ -8,9 +8,9 @@ import pytest
 
 from components.paths import resting
 from game import Session
-from game.collisions.encounter_kernels import has_encounters
-from game.collisions.encounters import load_encounters
-from game.collisions.vicinity import Vicinity
+from systems.collision.driven.compiled import has_encounters
+from systems.collision.driven.neighbours import Vicinity
+from systems.collision.driven.stepper import load_encounters
 from systems.collision.system import contacts_of
 from systems.edit.pull import hand_on
 

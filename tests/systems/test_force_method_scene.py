@@ -7,10 +7,11 @@ import pytest
 
 from components.model import Model
 from components.particle import Particle
-from game import Session, models
+from game import Session
+from game.documents import models
+from game.editor.scenes.force_method import ForceMethod
 from game.force_method import words
 from game.force_method.guide import Guide, elastic_copy
-from game.scenes.force_method import ForceMethod
 from systems.render.marks import Text
 from systems.render.page import draw_page
 from systems.render.picture import compose

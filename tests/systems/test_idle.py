@@ -12,8 +12,8 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 import pytest
 
 import systems.edit.hover
-from game import models
 from game.app import SELDOM, App
+from game.documents import models
 from systems.edit.picking import pick
 from systems.input import pygame_input
 from systems.render import pygame_render

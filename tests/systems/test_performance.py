@@ -12,11 +12,11 @@ import pygame
 import pytest
 
 from components.model import Model
-from game import Session, models
+from game import Session
 from game.app import App
-from game.desk import ModelFile
-from game.saved import library
-from game.scenes.load import LESSONS
+from game.documents import library, models
+from game.documents.open_documents import ModelFile
+from game.editor.scenes.load import LESSONS
 from game.scripts.performance import FOOTER, Performance
 from game.scripts.script import Script, lessons
 from tests.reference.bits import columns, different

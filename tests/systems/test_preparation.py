@@ -17,17 +17,18 @@ import pygame
 import pytest
 
 from components.field import Role
-from game import models, preparation
+from game import preparation
 from game.app import App
-from game.collisions import encounter_kernels
+from game.documents import models
+from game.editor.view_model import COMPILING
 from game.preparation import Preparation
 from game.prepare import Job, _example
-from game.program import cache
-from game.program.program import _writer
-from game.program.writer import FEW, form_of
 from game.session import Session
-from game.showing import COMPILING
+from systems.collision.driven import compiled as encounter_kernels
 from systems.input import pygame_input
+from systems.program import compiler as cache
+from systems.program.program import _writer
+from systems.program.writer import FEW, form_of
 
 
 class Compiler:
@@ -340,7 +341,7 @@ def test_another_process_compiles_what_this_one_loads(tmp_path: Path) -> None:
 
 SMALL = """
 from numba import njit
-from game.program.cache import compile_module
+from systems.program.compiler import compile_module
 double = njit(lambda x: 2.0 * x)
 source = "from numba import njit\\n\\n@njit(cache=True)\\ndef answer(x):\\n    return kernel(x)\\n"
 print(compile_module(source, {"kernel": double}).answer(21.0))
@@ -388,7 +389,7 @@ def test_a_folder_of_somebody_else_is_not_used(tmp_path: Path, monkeypatch: pyte
 
 
 PARTS = """
-from game.collisions.flight_kernels import EVENTS, PILES, WINDOWS, engine, has_parts
+from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, engine, has_parts
 
 engine()
 print(*(has_parts(part) for part in (EVENTS, WINDOWS, PILES)))

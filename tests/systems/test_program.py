@@ -12,12 +12,13 @@ import pytest
 from numba import njit
 
 from components.field import Field, Role
-from game import Session, models
-from game.program import loops, writer
-from game.program.binding import ProgramError
-from game.program.cache import compile_module
+from game import Session
+from game.documents import models
 from systems.base import Commit, Law
 from systems.kernels import compiled
+from systems.program import loops, writer
+from systems.program.binding import ProgramError
+from systems.program.compiler import compile_module
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import model, oscillator, particle, rod, square
@@ -454,7 +455,7 @@ CALLEE = "from numba import njit\n\nFACTOR = 2.0\n\n@njit\ndef twice(x):\n    re
 def test_an_edited_kernel_is_noticed_in_what_it_calls_too(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("game.program.cache.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("systems.program.compiler.cache_folder", lambda: tmp_path)
     answers = []
     for factor in ("2.0", "5.0"):
         (tmp_path / "edited_helpers.py").write_text(CALLEE.replace("2.0", factor))
@@ -476,7 +477,7 @@ def test_a_kernel_that_moved_to_another_module_is_compiled_anew(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What is cached may know what it calls by its module, and cannot be loaded where that is gone."""
-    monkeypatch.setattr("game.program.cache.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("systems.program.compiler.cache_folder", lambda: tmp_path)
     for name in ("kernels_before", "kernels_after"):
         spec = importlib.util.spec_from_loader(name, loader=None)
         assert spec is not None

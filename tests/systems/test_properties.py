@@ -13,8 +13,8 @@ from components.field import same
 from components.particle import Particle
 from components.tags import Selected
 from game import Session
-from game.scenes.form import FormScene
-from game.scenes.properties import Properties
+from game.editor.scenes.form import FormScene
+from game.editor.scenes.properties import Properties
 from game.scripts.script import Recorder, Script
 from systems.render.form_layout import FormLayout
 from systems.render.marks import Text

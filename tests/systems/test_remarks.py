@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 from numba import njit
 
-from game import Session, models
-from game.cli import main
+from game import Session
+from game.commands.command_line import main
+from game.documents import models
 from systems.base import Law
 from tests.reference.models import von_mises_truss
 

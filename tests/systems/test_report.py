@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from game import Session
-from game.reports.report import Analysis
+from game.commands.reports.report import Analysis
 from tests.reference.models import triangle
 
 DAMPED = triangle(damping=100, density=6.15)

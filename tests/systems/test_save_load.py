@@ -15,11 +15,11 @@ from components.box import Box
 from components.camera import Viewport
 from components.field import same
 from components.form import Tile
-from game import Session, models
-from game.saved import library
-from game.scenes import files
-from game.scenes.files import FileScene
-from game.scenes.load import Load
+from game import Session
+from game.documents import library, models
+from game.editor.scenes import files
+from game.editor.scenes.files import FileScene
+from game.editor.scenes.load import Load
 from game.scripts.script import lessons
 from systems.render.marks import Text
 from systems.render.picture import compose

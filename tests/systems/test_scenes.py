@@ -6,7 +6,7 @@ from components.particle import Particle
 from components.rod import Rod
 from components.tags import DiagramShown
 from game import Session
-from game.scenes import SceneError, all_scenes
+from game.editor.scenes import SceneError, all_scenes
 from systems.render.marks import Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme

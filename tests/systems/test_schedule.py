@@ -6,10 +6,11 @@ from typing import Any
 import pytest
 
 from components.model import Model
-from game import Session, models
-from game.catalogue import step_systems
-from game.schedule import Schedule, ScheduleError
+from game import Session
+from game.documents import models
 from systems.base import Phase, System
+from systems.catalogue import step_systems
+from systems.schedule import Schedule, ScheduleError
 from tests.reference.models import model, oscillator, particle
 
 

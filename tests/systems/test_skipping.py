@@ -11,7 +11,8 @@ import pytest
 
 from components.environment import Environment
 from components.rod import Rod
-from game import Session, models
+from game import Session
+from game.documents import models
 from systems.base import Phase
 
 STRENGTHS = ("tensile_strength", "compressive_strength")

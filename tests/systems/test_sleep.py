@@ -8,10 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from game import Session, models, sleep
+from game import Session
+from game.documents import models
 from systems.edit.pull import Hand
 from systems.islands import islands
 from systems.physics.rest import Stillness
+from systems.run import sleep
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import model, particle, rod

@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game import Session, models
-from game.cli import main
-from game.overrides import apply_override
-from game.reports.report import Analysis
+from game import Session
+from game.commands.command_line import main
+from game.commands.reports.report import Analysis
+from game.documents import models
+from game.paths.overrides import apply_override
 from game.sweeps import SweepError, sweep
 from game.sweeps.execution import outcomes
 from game.sweeps.results import Results

@@ -8,7 +8,7 @@ from components.camera import Viewport
 from components.toolbar import Button, Tool
 from components.view import drawn_positions
 from game import Session
-from game.actions import ACTIONS
+from game.editor.actions import ACTIONS
 from systems.input.bindings import ADDED_TOOLS, BINDINGS, TOOLBAR
 from systems.render.icons import ICONS
 from systems.render.marks import Stamps

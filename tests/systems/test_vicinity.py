@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from game import Session
-from game.collisions import vicinity
-from game.collisions.encounters import Encounters
-from game.collisions.vicinity import Vicinity
-from systems.near import FEW, near_pairs
+from systems.broad_phase import FEW, near_pairs
+from systems.collision.driven import neighbours as vicinity
+from systems.collision.driven.neighbours import Vicinity
+from systems.collision.driven.stepper import Encounters
 from tests.benchmarks.models import lattice
 from tests.systems.test_encounters import truss
 

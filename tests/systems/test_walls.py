@@ -11,8 +11,9 @@ import pytest
 from components import FieldError, Handle
 from components.camera import Viewport
 from components.view import Preview
-from game import Session, models
-from game.document import ModelError
+from game import Session
+from game.documents import models
+from game.documents.document import ModelError
 from systems.collision.system import normals
 from systems.render.marks import Strokes
 from systems.render.panel import thumbnail
@@ -254,7 +255,7 @@ def test_mistakes_in_files_are_explained(components: Any, problem: str) -> None:
 
 
 def test_scripts_and_the_command_line_set_it_by_its_name() -> None:
-    from game.overrides import apply_override
+    from game.paths.overrides import apply_override
 
     session = room(FLOOR)
     apply_override(session.model, "walls.floor.restitution=0.75")

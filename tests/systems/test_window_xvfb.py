@@ -18,11 +18,12 @@ import pytest
 from components.box import Box
 from components.camera import Viewport
 from components.field import Vector
-from game import Session, models
+from game import Session
 from game.app import FIRST_SIZE
-from game.saved.library import DATA_VARIABLE
-from game.saved.preferences import CONFIG_VARIABLE
-from game.scenes.form import FormScene
+from game.documents import models
+from game.documents.library import DATA_VARIABLE
+from game.documents.preferences import CONFIG_VARIABLE
+from game.editor.scenes.form import FormScene
 
 MISSING = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]
 pytestmark = pytest.mark.skipif(bool(MISSING), reason=f"{' and '.join(MISSING)} not installed")

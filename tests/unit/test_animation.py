@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from game.animation import FRAME, HELD, LONGEST
-from game.cli import main
+from game.commands.animation import FRAME, HELD, LONGEST
+from game.commands.command_line import main
 from game.session import Session
 
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-from game.collisions.contacts import complementary
+from systems.collision.driven.contacts import complementary
 from tests.reference.complementarity import complementary as plainly
 
 

@@ -10,7 +10,7 @@ import pytest
 from components.extremes import incomputable
 from components.field import FieldError
 from game import Session
-from game.cli import main
+from game.commands.command_line import main
 
 
 def test_usual_models_can_be_computed() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from game import models
+from game.documents import models
 from systems.islands import HELD, islands
 from tests.reference.models import model, particle, rod
 

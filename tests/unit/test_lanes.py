@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from game.program.lanes import LaneFunction, functions, lanes_for
+from game.sweeps.lanes import LaneFunction, functions, lanes_for
 
 LANES = 3
 SOURCE = '''

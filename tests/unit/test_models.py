@@ -15,10 +15,10 @@ import pytest
 from components.field import Column, FieldError, Role, same
 from components.load import Load
 from components.model import Model
-from game import document as documents
-from game import models
-from game.cli import main
-from game.models import ModelError
+from game.commands.command_line import main
+from game.documents import document as documents
+from game.documents import models
+from game.documents.models import ModelError
 from tests.reference.models import model, particle, rod, square, triangle
 
 BASE = {"format": "pinjoint model", "version": 1}

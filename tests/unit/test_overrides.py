@@ -6,8 +6,8 @@ import pytest
 
 from components.commands import Command
 from components.model import Model
-from game import models
-from game.overrides import OverrideError, apply_override
+from game.documents import models
+from game.paths.overrides import OverrideError, apply_override
 from tests.reference.models import model, particle, rod, triangle
 
 

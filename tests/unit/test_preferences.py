@@ -9,8 +9,8 @@ import pytest
 
 from components.view import magnified
 from game import Session
-from game.actions.view import THEMES
-from game.saved import preferences
+from game.documents import preferences
+from game.editor.actions.view import THEMES
 from systems.render.theme import theme_names
 
 

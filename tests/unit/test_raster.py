@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from components.camera import Viewport
 from components.field import Vector
-from game.raster_program import load_raster
 from systems.render.coverage import stroke_coverage
 from systems.render.marks import Bars, Discs, Mark, Picture, Points, Strokes
 from systems.render.pygame_canvas import Canvas
+from systems.render.raster_program import load_raster
 
 BLACK, WHITE = (0, 0, 0, 255), (255, 255, 255, 255)
 SIZE = 40

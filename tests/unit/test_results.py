@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from components.model import Model
-from game import models
-from game.reports.results import ENERGIES, ResultError, as_csv, as_json, as_table, state
+from game.commands.reports.results import ENERGIES, ResultError, as_csv, as_json, as_table, state
+from game.documents import models
 from tests.reference.models import triangle
 
 ENERGY = {name: float(n) for n, name in enumerate(ENERGIES)}

@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from game import Session, models
-from game.cli import main
+from game import Session
+from game.commands.command_line import main
+from game.documents import models
 from systems.statics.events import NoEquilibrium
 from systems.statics.force_method import ForceMethodError, solve
 from systems.statics.path import Goal, load_path

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from components.obstacles import obstacles
-from game import Session, models
-from game.collisions.flight_kernels import engine
+from game import Session
+from game.documents import models
 from game.included.collisions import panels
-from systems.collision.arrays import Reason
-from systems.collision.discs import Discs
+from systems.collision.columns import Reason
+from systems.collision.free.compiled import engine
+from systems.collision.free.discs import Discs
 from tests.reference import closed_forms
 from tests.reference.scenes_of_discs import deepest
 

@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
 
-from game.collisions.flight_kernels import engine
-from systems.collision.arrays import Reason
-from systems.collision.discs import Discs, Impacts
-from systems.collision.kernels.gap import NEVER, first_approach
+from systems.collision.columns import Reason
+from systems.collision.free.compiled import engine
+from systems.collision.free.discs import Discs, Impacts
+from systems.collision.kernels.time_of_impact import NEVER, first_approach
 from tests.reference import closed_forms, collisions
 from tests.reference.scenes_of_discs import GRAVITY, Scene, break_shot, gas, line, stacked, with_held
 

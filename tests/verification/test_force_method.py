@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from components.model import Model
 from components.particle import Particle
 from components.rod import spawn_rods
-from game import Session, models
+from game import Session
+from game.documents import models
 from game.force_method.guide import exact_forces
 from systems.statics.force_method import ForceMethodError, find_unknown, redundants, solve
 from systems.statics.theory import linear

@@ -11,7 +11,7 @@ import pytest
 
 from components import FieldError
 from game import Session
-from game.cli import main
+from game.commands.command_line import main
 from game.included.histories import read_record, shake
 
 STIFFNESS, MASS = 100.0, 100.0  # kN/m, kg

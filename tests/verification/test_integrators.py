@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from game import Session
-from game.catalogue import DRIVERS
+from systems.catalogue import DRIVERS
 from tests.benchmarks import accuracy, problems
 from tests.reference.closed_forms import free_vibration
 from tests.reference.elements import Model

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from game import Session
-from game.collisions.flight_kernels import engine
+from systems.collision.free.compiled import engine
 from tests.reference import lasting
 from tests.reference.scenes_of_discs import GRAVITY, Scene, stacked
 

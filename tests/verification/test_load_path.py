@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from game import Session
-from game.cli import main
+from game.commands.command_line import main
 from tests.reference import closed_forms
 from tests.reference.models import three_bar_truss, von_mises_truss
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from game import Session
-from game.cli import main
-from game.measured_error import FINEST_TOLERANCE
-from game.readouts import own_readouts
+from game.commands.command_line import main
+from game.editor.readouts import own_readouts
+from systems.run.measured_error import FINEST_TOLERANCE
 from tests.benchmarks.problems import Problem, tightly, transient, under_damped, yielding_step
 from tests.reference import bits
 from tests.reference.elements import Model
@@ -122,7 +122,7 @@ def test_no_frame_waits_for_the_error_of_a_long_run(monkeypatch: pytest.MonkeyPa
     session = Session.open(triangle(stiffness=164640))
     session.run(steps=100)
     evaluations = session.model.clock.steps * 3 * 12  # the stages of dop853
-    monkeypatch.setattr("game.measured_error.IN_A_FRAME", evaluations - 1)
+    monkeypatch.setattr("systems.run.measured_error.IN_A_FRAME", evaluations - 1)
     assert session.desk.assessment.error() is None
     assert session.desk.assessment.error(evaluations) is not None
 

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from game import Session, models
+from game import Session
+from game.documents import models
 from systems.statics.contacts import Discs
 from systems.statics.settle import Settlement, settle
 from tests.reference.elements import Model as Document

@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from components.model import Model
-from game import Session, models
-from game.cli import main
+from game import Session
+from game.commands.command_line import main
+from game.documents import models
 from systems.statics import loading
 from systems.statics.events import Event
 from systems.statics.follow import Path

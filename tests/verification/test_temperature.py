@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from components.field import FieldError
-from game import Session, models
-from game.cli import main
+from game import Session
+from game.commands.command_line import main
+from game.documents import models
 from systems.statics.settle import settle
 from systems.statics.theory import linear, self_stress
 from tests.reference import physics, statics

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from scipy.linalg import eigh
 
 from components.model import Model
-from game import models
-from game.cli import main
-from game.reports.verify import influence
+from game.commands.command_line import main
+from game.commands.reports.verify import influence
+from game.documents import models
 from systems.statics.events import NoEquilibrium
 from systems.statics.settle import settle
 from systems.statics.theory import indeterminacy, linear, mechanisms, self_stress

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from components import Vector
-from game.scenes import Scene
+from game.editor.scenes import Scene
 
 if TYPE_CHECKING:
     from game import Session

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from systems.collision.arrays import (
+from systems.collision.columns import (
     AX,
     AY,
     BIAS,
@@ -58,23 +58,6 @@ from systems.collision.arrays import (
     Reason,
 )
 from systems.collision.kernels import compiled
-from systems.collision.kernels.contact import (
-    find_lasting,
-    forget_lasting,
-    is_held,
-    note_lasting,
-    stop_sinking,
-    support,
-)
-from systems.collision.kernels.gap import (
-    NEVER,
-    is_answered_for,
-    nearest,
-    place_noise,
-    relative_motion,
-    rest_speed,
-    touch_speed,
-)
 from systems.collision.kernels.grid import (
     enclose,
     enter,
@@ -85,11 +68,28 @@ from systems.collision.kernels.grid import (
     place_box,
     sort,
 )
+from systems.collision.kernels.heap import drop_first, is_void
+from systems.collision.kernels.horizon import expect, is_joined
 from systems.collision.kernels.impact import respond
+from systems.collision.kernels.persistent_contact import (
+    find_lasting,
+    forget_lasting,
+    is_held,
+    note_lasting,
+    stop_sinking,
+    support,
+)
 from systems.collision.kernels.pile import begin_steps, crowded, note_pushes, step
 from systems.collision.kernels.projection import compliance, opening_rate
-from systems.collision.kernels.queue import drop_first, is_void
-from systems.collision.kernels.window import expect, is_joined
+from systems.collision.kernels.time_of_impact import (
+    NEVER,
+    is_answered_for,
+    nearest,
+    place_noise,
+    relative_motion,
+    rest_speed,
+    touch_speed,
+)
 
 DONE, BUSY, REPORT_FULL = int(Reason.DONE), int(Reason.BUSY), int(Reason.REPORT_FULL)
 GO_ON = int(Reason.GO_ON)

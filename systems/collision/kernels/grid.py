@@ -11,7 +11,7 @@ left top, right bottom, right top. Those of a bucket are chained; which cell one
 
 import math
 
-from systems.collision.arrays import (
+from systems.collision.columns import (
     AX,
     AY,
     EPOCH,
@@ -27,7 +27,7 @@ from systems.collision.arrays import (
     VY,
 )
 from systems.collision.kernels import compiled
-from systems.collision.kernels.gap import extent
+from systems.collision.kernels.time_of_impact import extent
 
 FARTHEST_CELL = 2.0**40  # cells from the origin; farther out cells grow, so that they can be told apart
 COARSEST = 63

@@ -7,7 +7,7 @@ Restitution e blends this with the plastic answer, the projection onto all conta
 v = e v_elastic + (1 − e) v_plastic. For a single contact it is Newton's law.
 """
 
-from systems.collision.arrays import ACTIVE, BIAS, GIVEN, IMPULSE, OPENING
+from systems.collision.columns import ACTIVE, BIAS, GIVEN, IMPULSE, OPENING
 from systems.collision.kernels import compiled
 from systems.collision.kernels.projection import (
     MOST_SWEEPS,

@@ -3,7 +3,7 @@
 import math
 
 from systems.collision.kernels import compiled
-from systems.collision.kernels.gap import nearest_of_piece
+from systems.collision.kernels.time_of_impact import nearest_of_piece
 
 MORE = 0.05  # of an overlap, by which discs are moved farther than apart: sweeps then come to an end
 MOST_SWEEPS = 400  # over the same pairs

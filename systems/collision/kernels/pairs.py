@@ -5,10 +5,10 @@ Obstacles count on after the particles and have no displacement.
 
 import math
 
-from systems.collision.arrays import LASTING, LEFT_ALONE, OVERLAP, WATCHED
+from systems.collision.columns import LASTING, LEFT_ALONE, OVERLAP, WATCHED
 from systems.collision.kernels import compiled
-from systems.collision.kernels.gap import nearest_of_piece
 from systems.collision.kernels.projection import coupling
+from systems.collision.kernels.time_of_impact import nearest_of_piece
 
 
 @compiled

@@ -14,7 +14,7 @@ are, and in which order, does not depend on when the list was made.
 
 import math
 
-from systems.collision.arrays import (
+from systems.collision.columns import (
     AX,
     AY,
     BOUNCE,
@@ -58,10 +58,10 @@ from systems.collision.arrays import (
     Reason,
 )
 from systems.collision.kernels import compiled
-from systems.collision.kernels.contact import find_lasting, forget_lasting, is_held, note_lasting
-from systems.collision.kernels.gap import NEVER, is_straight, nearest, relative_motion, rest_speed
 from systems.collision.kernels.grid import enclose, enter, neighbours, place_box, sort
-from systems.collision.kernels.window import is_joined, set_layers
+from systems.collision.kernels.horizon import is_joined, set_layers
+from systems.collision.kernels.persistent_contact import find_lasting, forget_lasting, is_held, note_lasting
+from systems.collision.kernels.time_of_impact import NEVER, is_straight, nearest, relative_motion, rest_speed
 
 DONE, SETTLE = int(Reason.DONE), int(Reason.SETTLE)
 GROUP_FULL, REPORT_FULL, GRID_FULL = int(Reason.GROUP_FULL), int(Reason.REPORT_FULL), int(Reason.GRID_FULL)

@@ -7,7 +7,7 @@ solution of many.
 
 import math
 
-from systems.collision.arrays import (
+from systems.collision.columns import (
     ACTIVE,
     BEFORE,
     BIAS,

@@ -7,8 +7,9 @@ from typing import Any
 
 from components.snapshot import Snapshot
 from components.view import Preview
-from game import Session, models
-from game.document import document
+from game import Session
+from game.documents import models
+from game.documents.document import document
 
 EMPTY = {"format": "pinjoint model", "version": 1}
 FRAME = 1.0 / 60.0

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from game import Session
-from game.document import document
+from game.documents.document import document
 
 
 def test_copy_and_paste_at_the_pointer(triangle: Session) -> None:

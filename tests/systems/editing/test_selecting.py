@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from game import Session
-from game.document import document
+from game.documents.document import document
 from tests.systems.editing.hand import FRAME, names, preview
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from components.snapshot import Snapshot
 from game import Session
-from game.history.timeline import Timeline
+from game.documents.history.timeline import Timeline
 from systems.edit.pull import Hand
 from tests.systems.editing.hand import FRAME, assert_same_state, opened, run_frames
 

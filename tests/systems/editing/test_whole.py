@@ -6,7 +6,7 @@ import numpy as np
 
 from components.snapshot import Snapshot
 from game import Session
-from game.actions import ACTIONS
+from game.editor.actions import ACTIONS
 from systems.input.bindings import BINDINGS, EVERY, action_for, help_lines
 from tests.systems.editing.hand import FRAME, assert_same_state, opened, press_at
 

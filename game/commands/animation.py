@@ -1,0 +1,83 @@
+"""Animation: a run as a GIF, at the pace at which a window shows it."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from components.snapshot import Snapshot
+from components.view import drawn_places
+from game.documents.models import replace
+
+if TYPE_CHECKING:
+    from game.session import Session
+    from systems.render.labels import Placed
+
+FRAME = 0.05  # s shown by each picture; viewers of GIFs slow down what is quicker
+LONGEST = 12.0  # s shown at most: what takes longer is shown faster, or only how it ends
+HELD = 1.5  # s for which the last picture stays
+COLOURS = 128
+
+
+def render_gif(
+    session: Session, path: str, size: tuple[int, int], theme: str, *, until: float | None, limit: float
+) -> str:
+    """Run on to a time (s; None: until at rest) and write what one sees on the way; returns how it ended.
+
+    Raises OSError if the file cannot be written.
+    """
+    from PIL import Image
+
+    from game.app import picture
+
+    status, moments = _run(session, until, limit)
+    around = np.concatenate([_drawn_at(session, moment) for moment in moments])
+    images = []
+    placed: Placed = {}
+    for moment in moments:
+        moment.restore(session.model)
+        image = Image.fromarray(picture(session, size, theme, around, placed))
+        images.append(image.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE))
+    durations = [round(1000 * FRAME)] * (len(images) - 1) + [round(1000 * HELD)]
+    made = io.BytesIO()
+    images[0].save(made, "GIF", save_all=True, append_images=images[1:], duration=durations, loop=0)
+    replace(path, made.getvalue())
+    return status
+
+
+def _run(session: Session, until: float | None, limit: float) -> tuple[str, list[Snapshot]]:
+    """How the run ends, and the states on the way."""
+    moments = [Snapshot.take(session.model)]
+    status = "time reached"
+    for begin, end in pairwise(_times(session, until, limit)):
+        status = session.run(time=end - begin)
+        moments.append(Snapshot.take(session.model))
+        if status != "time reached":
+            return status, moments
+    if until is None:  # what takes longer than one watches
+        status = session.run(until="rest", limit=limit)
+        moments.append(Snapshot.take(session.model))
+    return status, moments
+
+
+def _times(session: Session, until: float | None, limit: float) -> Iterator[float]:
+    """The simulated times of the pictures (s)."""
+    begin, most = session.time, math.floor(LONGEST / FRAME)
+    step = FRAME * session.pace
+    if until is None:
+        count = min(most, math.ceil(limit / step))
+    else:
+        count = max(min(most, math.ceil((until - begin) / step)), 1)
+        step = (until - begin) / count
+    yield from (begin + number * step for number in range(count + 1))
+
+
+def _drawn_at(session: Session, moment: Snapshot) -> np.ndarray:
+    """Where particles are drawn (m), shape (n, 2), in a state."""
+    moment.restore(session.model)
+    return drawn_places(session.model)

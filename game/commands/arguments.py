@@ -1,0 +1,115 @@
+"""What the words of a command line mean; what they cannot mean is refused in one sentence."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import re
+import sys
+from pathlib import Path
+from typing import Any, NoReturn
+
+from game.documents.models import replace
+
+BAD_INPUT = 2
+
+
+class UsageError(Exception):
+    """Bad usage or a bad model: one sentence for the person, and the exit status."""
+
+    def __init__(self, sentence: str, status: int = BAD_INPUT) -> None:
+        super().__init__(sentence)
+        self.status = status
+
+
+class Parser(argparse.ArgumentParser):
+    """Says what is wrong in one sentence, and where help is; an option's value may begin with a minus: -1,2."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self._negative_number_matcher = re.compile(r"-\.?\d")
+
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"{message[:1].upper()}{message[1:]}. See: {self.prog} --help")
+
+
+def positive(text: str) -> float:
+    """A finite number above 0."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text} is not a number of seconds above 0")
+    return value
+
+
+def count(text: str, least: int = 2) -> int:
+    """A whole number of at least 2, or what is the least."""
+    try:
+        value = int(text)
+    except ValueError:
+        value = least - 1
+    if value < least:
+        raise argparse.ArgumentTypeError(f"{text} is not a whole number of at least {least}")
+    return value
+
+
+def finite(text: str) -> float:
+    """A finite number."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text} is not a finite number")
+    return value
+
+
+def numbers(option: str, text: str) -> tuple[float, ...]:
+    """Finite numbers separated by commas. Raises UsageError."""
+    try:
+        found = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise UsageError(f"{option} {text}: write numbers separated by commas, such as 0.1,0.5.") from None
+    if not all(map(math.isfinite, found)):
+        raise UsageError(f"{option} {text}: write finite numbers.")
+    return found
+
+
+def times(text: str) -> tuple[float, ...]:
+    """Ascending times (s) of at least 0. Raises UsageError."""
+    found = numbers("--at", text)
+    if found[0] < 0.0 or list(found) != sorted(found):
+        raise UsageError(f"--at {text}: times must be at least 0 s and ascending.")
+    return found
+
+
+def writable(text: str) -> str:
+    """A file that can be written, found out before anything is computed for it."""
+    path = Path(text)
+    if path.is_dir():
+        reason = "it is a folder"
+    elif not path.parent.is_dir():
+        reason = f"there is no folder {path.parent}"
+    elif not os.access(path if path.exists() else path.parent, os.W_OK):
+        reason = "permission denied"
+    else:
+        return text
+    raise argparse.ArgumentTypeError(f"{text} cannot be written, {reason}; choose another file")
+
+
+def write(text: str, path: str | None) -> None:
+    """Write a result to a file, as a whole or not at all, or to standard output if None. Raises UsageError."""
+    try:
+        if path is None:
+            sys.stdout.write(text)
+            sys.stdout.flush()
+        else:
+            replace(path, text.encode())
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        place = path or "Standard output"
+        raise UsageError(f"{place} cannot be written: {error.strerror}. Choose another file.") from None

@@ -1,0 +1,93 @@
+"""`pinjoint render`: pictures of models, and their runs as GIFs."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from game.commands.arguments import Parser, UsageError, positive, writable
+from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from game.commands.reports.report import FOUND
+from game.editor.shapes import numbered
+from game.session import DEFAULT_LIMIT, Session
+from systems.render.theme import theme_names
+
+_PICTURES = (".png", ".gif", ".jpg", ".bmp")
+
+
+def command(words: Sequence[str]) -> int:
+    """Do what the words after the command ask for; returns the exit status."""
+    parser = Parser(
+        prog="pinjoint render",
+        description="Draw a model, or its run as a GIF, without a display.",
+    )
+    add_model(parser)
+    parser.add_argument(
+        "--output", type=writable, required=True, metavar="FILE", help="a .png, or a .gif that shows the run"
+    )
+    parser.add_argument("--size", default="1280x800", metavar="WIDTHxHEIGHT", help="pixels")
+    parser.add_argument("--until-rest", action="store_true", help="run until at rest first (a GIF's default)")
+    parser.add_argument("--at", type=positive, metavar="T", help="run to this time (s) first")
+    parser.add_argument("--diagrams", action="store_true", help="show all force diagrams")
+    shape = parser.add_mutually_exclusive_group()
+    shape.add_argument("--mechanism", type=int, metavar="N", help="draw a motion that elongates no rod over it")
+    shape.add_argument(
+        "--mode",
+        type=int,
+        metavar="N",
+        help="draw a natural mode over it, 1 the lowest; at rest, that under load",
+    )
+    parser.add_argument("--theme", choices=theme_names(), default="light", help="colours")
+    parser.add_argument("--limit", type=positive, default=DEFAULT_LIMIT, help=argparse.SUPPRESS)
+    options = parser.parse_args(words)
+    width, height = _size(options.size)
+    if Path(options.output).suffix.lower() not in _PICTURES:
+        raise UsageError(f"--output {options.output}: write a file that ends with {' or '.join(_PICTURES)}.")
+    session = session_of(options)
+    session.view.all_diagrams = options.diagrams
+    try:
+        if options.output.lower().endswith(".gif"):
+            status = _animate(session, options, (width, height))
+        else:
+            status = _draw(session, options, (width, height))
+    except OSError as error:
+        raise UsageError(
+            f"{options.output} cannot be written: {error.strerror or error}. Choose another --output."
+        ) from None
+    return ANSWERED if status in FOUND else NOT_ANSWERED
+
+
+def _show_shape(session: Session, options: argparse.Namespace) -> None:
+    """Raises NoShape if there is none with that number."""
+    for kind in ("mechanism", "mode"):
+        if (number := getattr(options, kind)) is not None:
+            session.desk.shapes.show(numbered(session.model, kind, number))
+
+
+def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:
+    from game.app import render_png
+
+    status = "time reached"
+    if options.until_rest:
+        status = session.run(until="rest", limit=options.limit)
+    elif options.at is not None:
+        status = session.run(time=options.at)
+    _show_shape(session, options)
+    render_png(session, options.output, size, options.theme)
+    return status
+
+
+def _animate(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:
+    from game.commands.animation import render_gif
+
+    _show_shape(session, options)
+    until = None if options.until_rest or options.at is None else session.time + options.at
+    return render_gif(session, options.output, size, options.theme, until=until, limit=options.limit)
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, _, height = text.partition("x")
+    if not (width.isdigit() and height.isdigit() and 16 <= int(width) <= 16384 and 16 <= int(height) <= 16384):
+        raise UsageError(f"--size {text}: write it like 1280x800, each from 16 to 16384 pixels.")
+    return int(width), int(height)

@@ -1,0 +1,167 @@
+"""Reports: running a model without a window, and what came of it as plain data; see results.py."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from components.model import Model
+from game.commands.reports.results import ENERGIES, ResultError, Run, State, state
+from game.session import DEFAULT_LIMIT
+from systems.base import StopReason
+from systems.run.measured_error import IN_A_COMMAND
+from systems.run.simulation import Simulation
+
+if TYPE_CHECKING:
+    from game.session import Session
+    from systems.statics.events import Event
+    from systems.statics.settle import StaticState
+
+FOUND = ("equilibrium", "at rest", "time reached")  # statuses of a run that found what was asked for
+
+
+class AnalysisError(ValueError):
+    """What is asked of a model cannot be had; the message says why and the remedy."""
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """What is asked of a model: its equilibria, its state at certain times, or its state at rest.
+
+    load_factors: settle at each in turn (statics). times: run through these, in s, ascending; None for both:
+    run until at rest, at most `limit` s of simulated time. measures_error: also where that takes long.
+    """
+
+    load_factors: tuple[float, ...] | None = None
+    times: tuple[float, ...] | None = None
+    limit: float = DEFAULT_LIMIT
+    measures_error: bool = False
+
+    def run(self, simulation: Simulation, name: str) -> Run:
+        """Compute it; `name` is what the result calls the model. Raises AnalysisError, ResultError, FieldError."""
+        if self.load_factors is not None:
+            return run_static(simulation, name, self.load_factors)
+        if self.times is not None:
+            return run_at(simulation, name, self.times)
+        return run_until_rest(simulation, name, self.limit)
+
+    def run_in(self, session: Session, name: str) -> Run:
+        """Compute it in a session, which adds what theory says about a run through time."""
+        if self.load_factors is not None:
+            return self.run(session.simulation, name)
+        session.run(steps=0)  # the beginning is noted, for theory beside the run
+        found = self.run(session.simulation, name)
+        error = session.desk.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
+        return {
+            **found,
+            "message": session.message,
+            "events": _records(session.model, session.remarks),
+            "error_estimate": asdict(error) if error is not None else None,
+        }
+
+
+def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
+    """Run until at rest, at most `limit` s of simulated time."""
+    simulation.smooth = False  # nobody watches
+    simulation.run_until_rest(simulation.model.clock.time + limit)
+    ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
+    status = ended.get(simulation.reason, "limit reached")
+    return _run(simulation, name, status, [_state(simulation)])
+
+
+def run_at(simulation: Simulation, name: str, times: Sequence[float]) -> Run:
+    """Run through the given times (s, ascending) and report the state at exactly each of them.
+
+    The short last step to a reported time is taken on a copy, so that a report never changes the run.
+    Raises AnalysisError for times that are over.
+    """
+    if times[0] < (present := simulation.model.clock.time):
+        raise AnalysisError(
+            f"The model is at t = {present:.9g} s already, after {times[0]:.9g} s; ask for later times."
+        )
+    states: list[State] = []
+    simulation.smooth = False  # nobody watches
+    for target in times:
+        simulation.run_to(target, whole_steps=True)
+        if simulation.reason is StopReason.DIVERGED:
+            return _run(simulation, name, "diverged", [*states, _state(simulation)])
+        if simulation.reason is StopReason.REST:  # time passes without steps
+            simulation.model.writable("clock.time")[0] = max(target, simulation.model.clock.time)
+        with simulation.at(target):
+            states.append(_state(simulation))
+            run = _run(simulation, name, "time reached", states)
+    return run
+
+
+def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> Run:
+    """Settle at each load factor in turn; the history (yielding) is kept from one to the next."""
+    from systems.statics.settle import settle
+
+    left_out = simulation.schedule.left_out_of_statics(simulation.model)
+    started = time.perf_counter()
+    settlement = settle(simulation.model, factors)
+    seconds = time.perf_counter() - started
+    states = [_static_state(simulation, found) for found in settlement.states]
+    return _run(simulation, name, settlement.status, states, moves=False) | {
+        "message": " ".join(filter(None, [settlement.message, left_out])),
+        "wall_seconds": seconds,
+        "events": _records(simulation.model, settlement.events),
+    }
+
+
+def _static_state(simulation: Simulation, found: StaticState) -> State:
+    """In statics, work is what the path of equilibria stores and dissipates."""
+    energy = dict.fromkeys(ENERGIES, 0.0) | {
+        "elastic": found.elastic_energy,
+        "dissipated_plastic": found.dissipated_plastic,
+        "work": found.elastic_energy + found.dissipated_plastic,
+    }
+    columns = {
+        "particles.displacement": found.displacement,
+        "particles.velocity": np.zeros_like(found.displacement),
+        "particles.reaction": found.reaction,
+        "rods.axial_force": found.axial_force,
+        "rods.length": found.length,
+        "rods.strain": found.strain,
+        "rods.plastic_strain": found.plastic_strain,
+        "rods.yielding": found.yielding,
+    }
+    return state(simulation.model, energy, found.load_factor, found.residual, columns)
+
+
+def _state(simulation: Simulation) -> State:
+    try:
+        return state(simulation.model, simulation.energy.as_dict(), None, simulation.residual)
+    except ResultError as error:
+        raise ResultError(simulation.message or str(error)) from None
+
+
+def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
+    from systems.statics.events import event_record
+
+    return [event_record(model, event) for event in events]
+
+
+def _run(
+    simulation: Simulation, name: str, status: str, states: list[State], *, moves: bool = True
+) -> dict[str, Any]:
+    """moves: it went through time, by an integrator, which takes a while to choose."""
+    clock = simulation.model.clock
+    return {
+        "model": name,
+        "status": status,
+        "message": simulation.message or simulation.warning,
+        "time": clock.time,
+        "steps": clock.steps,
+        "time_step": clock.step_size if moves else None,
+        "integrator": simulation.integrator if moves else None,
+        "wall_seconds": simulation.compute_seconds,
+        "compile_seconds": simulation.compile_seconds,
+        "events": [],
+        "states": states,
+    }

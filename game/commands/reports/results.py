@@ -1,0 +1,232 @@
+"""Results: what a run found, as data, as JSON, as a table to read and as CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from components.field import Column, Field
+from components.handle import Handle
+from components.model import Model
+from components.particle import Particle
+from components.rod import Rod
+from components.table import fields_of
+from game.documents.models import laid_out
+
+ENERGIES = (
+    "kinetic",
+    "elastic",
+    "dissipated_damping",
+    "dissipated_plastic",
+    "dissipated_impact",
+    "work",
+    "imbalance",
+)
+
+State = dict[str, Any]
+Run = Mapping[str, Any]
+
+
+def _facts(kind: type[Handle], *names: str) -> tuple[Field[Any], ...]:
+    fields = {field.name: field for field in fields_of(kind)}
+    return tuple(fields[name] for name in names)
+
+
+# What is reported of every element: key in a state → its facts, under their names and in their units.
+_OWN: Mapping[str, tuple[Field[Any], ...]] = {
+    "particles": _facts(Particle, "position", "displacement", "velocity", "reaction", "mass"),
+    "rods": _facts(Rod, "axial_force", "length", "strain", "plastic_strain", "yielding"),
+}
+_KINDS: Mapping[str, type[Handle]] = {"particles": Particle, "rods": Rod}
+_NOUNS = {"particles": Particle.noun, "rods": Rod.noun}
+_IN_TABLES = {Particle.displacement.name: ("mm", 1000.0)}  # else units as in files
+
+
+def reported(group: str) -> tuple[Field[Any], ...]:
+    """The facts that are reported of the elements of a table: Pinjoint's, then those of mods' components."""
+    of_mods = (
+        field for field in fields_of(_KINDS[group]) if field.component and field.dtype in (float, int, bool)
+    )
+    return (*_OWN[group], *of_mods)
+
+
+class ResultError(ValueError):
+    """A result that is not a finite number; the message names the element."""
+
+
+# --- one state -----------------------------------------------------------------------------------------
+
+
+def state(
+    model: Model,
+    energy: Mapping[str, float],
+    load_factor: float | None = None,
+    residual: float | None = None,
+    columns: Mapping[str, Column] | None = None,
+) -> State:
+    """The present state of a model as plain data: SI units with kN, vectors as [x, y].
+
+    energy: J, with the keys of ENERGIES. load_factor: of statics. residual: what is left of the
+    largest force that is out of balance. columns: what is reported in place of the model's own columns,
+    by "table.field". `position` is the original one. Raises ResultError.
+    """
+    made = {
+        "time": model.clock.time,
+        "load_factor": load_factor,
+        "particles": _elements(model, "particles", columns or {}),
+        "rods": _elements(model, "rods", columns or {}),
+        "energy": {name: energy[name] for name in ENERGIES},
+        "residual": residual,
+        "collisions": model.clock.collisions,
+    }
+    for key in ("time", "load_factor", "energy", "residual"):
+        made[key] = plain(made[key], key)
+    return made
+
+
+def _elements(model: Model, name: str, given: Mapping[str, Column]) -> dict[str, dict[str, Any]]:
+    table = model.tables[name]
+    columns = []
+    for field in reported(name):
+        key = f"{name}.{field.name}"
+        column = given[key] if key in given else table.column(field.name)
+        absent = np.isnan(column) if field.nullable else False
+        for row in np.argwhere(~(np.isfinite(column) | absent))[:1, 0].tolist():
+            element, value = model.describe(table[row]), field.loaded(column, row)
+            raise ResultError(f"{element}: {field.title} is {value}, not finite; report a state before it.")
+        values = column.tolist()
+        columns.append([None if v != v else v for v in values] if field.nullable else values)
+    keys = [field.name for field in reported(name)]
+    rows = zip(*columns, strict=True)
+    return {name: dict(zip(keys, row, strict=True)) for name, row in zip(table.names, rows, strict=True)}
+
+
+def plain(value: Any, where: str) -> Any:
+    """A value as JSON has them, numpy's included, every number finite."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ResultError(f"{where} is {value}, not finite; report a state before it.")
+    if isinstance(value, str):
+        return value.encode("utf-8", "replace").decode()  # names of files need not be UTF-8
+    if isinstance(value, Mapping):
+        return {str(key): plain(item, f"{where}.{key}") for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item, f"{where}[{index}]") for index, item in enumerate(value)]
+    return value
+
+
+# --- as text -------------------------------------------------------------------------------------------
+
+
+def as_json(run: Run) -> str:
+    """A run as JSON in full double precision, one element a line. Raises ResultError."""
+    return laid_out(plain(run, "run"), depth=4) + "\n"
+
+
+def as_csv(run: Run) -> str:
+    """A run as tidy CSV: one number a line, in full double precision. Raises ResultError.
+
+    Columns: time (s), load_factor (empty in dynamics), element ("particle", "rod", "energy" or "run"),
+    name, quantity (vectors as two: "velocity_x", "velocity_y"), value (yielding: 1 or 0), unit.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["time", "load_factor", "element", "name", "quantity", "value", "unit"])
+    for made in plain(run, "run")["states"]:
+        writer.writerows([made["time"], made["load_factor"], *row] for row in _quantities(made))
+    return text.getvalue()
+
+
+def _quantities(made: State) -> Iterator[tuple[Any, ...]]:
+    """(element, name, quantity, value, unit) of every number in a state."""
+    for group, noun in _NOUNS.items():
+        for name, values in made[group].items():
+            for field in reported(group):
+                value = values[field.name]
+                if field.shape:
+                    yield noun, name, f"{field.name}_x", value[0], field.unit
+                    yield noun, name, f"{field.name}_y", value[1], field.unit
+                else:
+                    yield noun, name, field.name, int(value) if field.dtype is bool else value, field.unit
+    for name, value in made["energy"].items():
+        yield "energy", "", name, value, "J"
+    for name in ("residual", "collisions"):
+        yield "run", "", name, made[name], ""
+
+
+def as_table(run: Run) -> str:
+    """A run as aligned tables to read: displacements in mm, all else in the units of files."""
+    run = plain(run, "run")
+    lines = [f"{run['model']}: {run['status']}"]
+    lines += [run["message"]] if run["message"] else []
+    if run["integrator"] is None:
+        lines.append("static equilibrium, exact geometry")
+    else:
+        step = f" of {as_written(run['time_step'])} s" if run["time_step"] else ""
+        taken = f"time {as_written(run['time'])} s, {run['steps']} steps{step}"
+        lines.append(f"{taken}, integrator {run['integrator']}")
+    if error := run.get("error_estimate"):
+        relative = as_written(error["relative"])
+        lines.append(f"error of the displacements, measured by finer steps: {relative} of the largest")
+    lines.append(
+        f"computed in {as_written(run['wall_seconds'])} s, compiled in {as_written(run['compile_seconds'])} s"
+    )
+    for made in run["states"]:
+        lines += ["", *_state_lines(made)]
+    return "\n".join(lines) + "\n"
+
+
+def _state_lines(made: State) -> Iterator[str]:
+    factor = made["load_factor"]
+    yield f"At time {as_written(made['time'])} s" if factor is None else f"At load factor {as_written(factor)}"
+    for group in _NOUNS:
+        if made[group]:
+            yield ""
+            yield from aligned(_element_rows(group, made[group]))
+    yield ""
+    energies = [[name.replace("_", " "), as_written(value)] for name, value in made["energy"].items()]
+    yield from aligned([["energy", "J"], *energies])
+    yield ""
+    residual = [] if made["residual"] is None else [f"residual {as_written(made['residual'])}"]
+    yield ", ".join([*residual, f"collisions {made['collisions']}"])
+
+
+def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list[list[str]]:
+    """Two rows of headings, then one row per element."""
+    columns = [
+        (field, axis, *_IN_TABLES.get(field.name, (field.unit, 1.0)))
+        for field in reported(group)
+        for axis in (range(2) if field.shape else (None,))
+    ]
+    titles = [field.title + ("" if axis is None else " " + "xy"[axis]) for field, axis, _, _ in columns]
+    rows = [[_NOUNS[group], *titles], ["", *(unit for _, _, unit, _ in columns)]]
+    for name, values in elements.items():
+        cells = [name]
+        for field, axis, _, factor in columns:
+            value = values[field.name] if axis is None else values[field.name][axis]
+            unscaled = value is None or isinstance(value, bool)
+            cells.append(as_written(value if unscaled else value * factor))
+        rows.append(cells)
+    return rows
+
+
+def as_written(value: Any) -> str:
+    if value is None:
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value + 0.0:.7g}"  # + 0.0: no minus before a zero
+
+
+def aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    """The rows with their first column to the left and the others to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for name, *numbers in rows:
+        cells = [name.ljust(widths[0]), *(n.rjust(w) for n, w in zip(numbers, widths[1:], strict=True))]
+        yield "  ".join(cells).rstrip()

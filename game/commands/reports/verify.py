@@ -1,0 +1,291 @@
+"""`pinjoint verify`: simulation, linear and exact theory of a model side by side, and what theory says of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from components.model import Model
+from game.commands.reports.results import aligned, as_written, plain
+from game.session import Session
+from systems.statics.equations import Array
+from systems.statics.events import NoEquilibrium, event_record
+from systems.statics.explain import describe_motion
+from systems.statics.force_method import find_unknown
+from systems.statics.theory import (
+    indeterminacy,
+    influence_on_displacement,
+    influence_on_reaction,
+    influence_on_rod,
+    mechanisms,
+    self_stress,
+)
+from systems.statics.verify import (
+    DEPARTURES,
+    ELSEWHERE,
+    QUANTITIES,
+    Comparison,
+    Row,
+    Theories,
+    compare,
+    differs,
+    observed,
+    theories,
+)
+from systems.statics.vibration import vibrations
+
+VERIFIED, DIFFERS = "verified", "differs from static theory"
+THEORY_ONLY, NOT_VERIFIED = "theory only", "not verified"
+SHOWN = 6  # mechanisms and frequencies in a table
+NOTHING = 1e-12  # of the largest value beside it: round-off
+_IN_TABLES = {"m": ("mm", 1000.0)}  # else units as in files
+
+_VALUES = ("simulation", "linear", "exact", "simulation_error", "linear_error")
+
+Found = dict[str, Any]
+
+
+def verify(session: Session, name: str, limit: float, *, simulate: bool = True) -> Found:
+    """Theory beside the simulation run to rest (at most `limit` s of simulated time), as plain data.
+
+    simulate: False for theory alone. `status` is "verified" if the simulation came to rest in the exact
+    equilibrium; "differs from static theory" if it did what a slowly growing load does not do, which `message`
+    tells first; "theory only" without a simulation; else "not verified", and `message` says what is missing.
+    """
+    model = session.model
+    theory = theories(model)
+    found = _found_by_theory(model, name, theory)
+    simulated = None
+    if simulate and model.rods.count:
+        status = session.run(until="rest", limit=limit)
+        found["simulation"] = {
+            "status": status,
+            "message": session.message,
+            "time": model.clock.time,
+            "steps": model.clock.steps,
+            "integrator": session.simulation.integrator,
+        }
+        simulated = observed(model) if status == "at rest" else None
+    comparison = compare(model, theory, simulated)
+    found |= _by_element(comparison if model.rods.count else None)
+    worst = {way: comparison.worst(way) for way in ("simulation", "linear")}
+    found["worst"] = {way: row and asdict(row) for way, row in worst.items() if model.rods.count}
+    found["remarks"] = [event_record(model, event) for event in session.remarks]
+    if theory.exact is not None and (simulated is not None or not simulate) and model.rods.count:
+        departed = any(remark["kind"] in DEPARTURES for remark in found["remarks"])
+        found["status"] = _status(comparison, simulate, departed)
+    found["message"] = "\n".join(_messages(found))
+    return found
+
+
+def _status(comparison: Comparison, simulated: bool, departed: bool) -> str:
+    """What to call answers of which none is missing."""
+    if not simulated:
+        return THEORY_ONLY
+    if not differs(comparison):
+        return VERIFIED
+    return DIFFERS if departed else NOT_VERIFIED
+
+
+def _by_element(comparison: Comparison | None) -> dict[str, dict[str, Any]]:
+    """The rows as {"rods": {name: {quantity: values}}, "particles": {name: {quantity: {axis: values}}}}."""
+    tables: dict[str, dict[str, Any]] = {"rods": {}, "particles": {}}
+    for row in comparison.rows if comparison is not None else ():
+        values = {key: value for key, value in vars(row).items() if key in _VALUES}
+        quantities = tables[f"{row.element}s"].setdefault(row.name, {})
+        if row.component:
+            quantities.setdefault(row.quantity, {})[row.component] = values
+        else:
+            quantities[row.quantity] = values
+    return tables
+
+
+def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
+    settlement = theory.settlement
+    loaded = vibrations(model, settlement.final).hertz.tolist() if theory.exact is not None else None
+    moving = mechanisms(model)
+    rods = model.rods.names
+    return {
+        "model": name,
+        "status": NOT_VERIFIED,
+        "message": "",
+        "indeterminacy": asdict(indeterminacy(model)),
+        "cables": [name for name, cable in zip(rods, model.rods.tension_only, strict=True) if cable],
+        "mechanisms": [
+            {"description": describe_motion(model, motion[None]), "motion": _by_particle(model, motion)}
+            for motion in moving
+        ],
+        "self_stress": [dict(zip(rods, state.tolist(), strict=True)) for state in self_stress(model)],
+        "frequencies": {"unloaded": vibrations(model).hertz.tolist(), "loaded": loaded},
+        "simulation": None,
+        "linear": {
+            "status": theory.refusal.status if theory.refusal else "equilibrium",
+            "message": str(theory.refusal or ""),
+        },
+        "exact": {
+            "status": settlement.status,
+            "message": settlement.message,
+            "events": [event_record(model, event) for event in settlement.events],
+        },
+    }
+
+
+def _by_particle(model: Model, field: Array) -> dict[str, list[float]]:
+    rows = np.flatnonzero(field.any(axis=1)).tolist()
+    return {model.particles.names[row]: field[row].tolist() for row in rows}
+
+
+def _messages(found: Found) -> Iterator[str]:
+    """What a person should know about the answers."""
+    if not found["rods"]:
+        yield "There are no rods, so statics has nothing to compare. Use: pinjoint run MODEL"
+        return
+    departures = [remark["message"] for remark in found["remarks"] if remark["kind"] in DEPARTURES]
+    yield from departures
+    worst = found["worst"]["simulation"]
+    if found["status"] == NOT_VERIFIED and worst is not None:
+        yield (
+            f"At rest elsewhere than in the exact equilibrium, by {worst['simulation_error']:.1e} in the"
+            f" {Row(**worst).title}. Statics lets lack of fit and moved supports grow slowly, and then all loads"
+            " together; what yields or snaps where they act at once, under loads that come one after another, or in"
+            " a model that starts in motion, may differ."
+        )
+    for way in ("simulation", "linear", "exact"):
+        if found[way] is not None and found[way]["message"] and found[way]["status"] != "at rest":
+            yield f"{way.capitalize()}: {found[way]['message']}"
+    for remark in found["remarks"]:
+        if remark["kind"] not in DEPARTURES and remark["message"] not in found["exact"]["message"]:
+            yield remark["message"]
+
+
+# --- influence lines -----------------------------------------------------------------------------------
+
+
+def influence(model: Model, names: Sequence[str]) -> Found:
+    """Influence lines by linear theory: the effect of 1 kN along x and y on each particle in turn.
+
+    names: a rod "AB" (its axial force), a constraint "A.y" (its reaction, kN per kN) or a free direction "B.y"
+    (its displacement, m per kN, by the unit-load method). Raises ForceMethodError for other names, and
+    NoEquilibrium for a mechanism.
+    """
+    if indeterminacy(model).mechanisms:
+        moving = describe_motion(model, mechanisms(model))
+        message = f"A mechanism has no influence lines: {moving} can move. Add rods or supports there."
+        raise NoEquilibrium("mechanism", message)
+    return {"influence": {name: _influence(model, name) for name in names}}
+
+
+def _influence(model: Model, name: str) -> Found:
+    particle, _, axis = name.rpartition(".")
+    if name not in model.rods and particle in model.particles and axis in ("x", "y"):
+        row, direction = model.particles[particle].row, "xy".index(axis)
+        if not model.particles.fixed[row, direction]:
+            line = influence_on_displacement(model, row, direction)
+            return {"quantity": "displacement", "unit": "m/kN", "of": _line(model, line)}
+    unknown = find_unknown(model, name)
+    if unknown.axis is None:
+        line = influence_on_rod(model, unknown.element.row)
+        return {"quantity": "axial_force", "unit": "kN/kN", "of": _line(model, line)}
+    line = influence_on_reaction(model, unknown.element.row, unknown.axis)
+    return {"quantity": "reaction", "unit": "kN/kN", "of": _line(model, line)}
+
+
+def _line(model: Model, field: Array) -> dict[str, list[float]]:
+    cleared = np.where(np.abs(field) > NOTHING * np.abs(field).max(), field, 0.0)
+    return dict(zip(model.particles.names, cleared.tolist(), strict=True))
+
+
+# --- as text -------------------------------------------------------------------------------------------
+
+
+def as_table(found: Found) -> str:
+    """What `verify` or `influence` found, as aligned tables to read."""
+    found = plain(found, "verify")
+    lines = _influence_lines(found["influence"]) if "influence" in found else _verify_lines(found)
+    return "\n".join(lines) + "\n"
+
+
+def _influence_lines(found: Found) -> Iterator[str]:
+    for name, line in found.items():
+        yield f"{line['quantity'].replace('_', ' ')} of {name}, {line['unit']}, for 1 kN at"
+        rows = [["particle", "along x", "along y"]]
+        rows += [[particle, *map(as_written, pair)] for particle, pair in line["of"].items()]
+        yield from aligned(rows)
+        yield ""
+
+
+def _degrees(found: Found) -> str:
+    """How much the rods and supports determine."""
+    degrees = found["indeterminacy"]
+    each = f"internal {degrees['internal']}, external {degrees['external']}"
+    static, moving = degrees["static"], degrees["mechanisms"]
+    cables = ", all cables counted as taut" if found["cables"] else ""
+    if not moving:
+        determinacy = f"indeterminate to degree {static} ({each})" if static else "determinate"
+        return f"statically {determinacy}, no mechanisms{cables}"
+    stressed = (
+        f"{static} state{'s' if static != 1 else ''} of self-stress ({each})" if static else "no self-stress"
+    )
+    mechanisms = f"{moving} mechanism{'s' if moving != 1 else ''}"
+    return f"kinematically indeterminate to degree {moving} ({mechanisms}), {stressed}{cables}"
+
+
+def _verify_lines(found: Found) -> Iterator[str]:
+    yield f"{found['model']}: {_verdict(found)}"
+    yield from filter(None, [found["message"]])
+    if found["rods"]:
+        yield _degrees(found)
+    for mechanism in found["mechanisms"][:SHOWN]:
+        yield f"mechanism: {mechanism['description']}"
+    for when, frequencies in found["frequencies"].items():
+        if frequencies:
+            values = [*map(as_written, frequencies[:SHOWN]), *(["…"] if len(frequencies) > SHOWN else [])]
+            yield f"natural frequencies {when}, Hz: {'  '.join(values)}"
+    for title, unit, factor, rows in _tables(found):
+        yield ""
+        yield from aligned(_cells(f"{title}, {unit}", factor, rows))
+    for way, row in found["worst"].items():
+        if row is not None:
+            whose = "the simulation" if way == "simulation" else "linear theory"
+            yield ""
+            yield f"largest error of {whose}: {row[f'{way}_error']:.1e}, {Row(**row).title}"
+
+
+def _verdict(found: Found) -> str:
+    """The status in words: how well the answers agree."""
+    worst = {way: row and row[f"{way}_error"] for way, row in found["worst"].items()}
+    if found["status"] != VERIFIED:
+        return str(found["status"])
+    agree = f"verified, simulation and exact theory agree to {worst['simulation']:.1e}"
+    linear = worst["linear"]
+    return f"{agree}; linear theory is off by {linear:.1e}" if linear and linear > ELSEWHERE else agree
+
+
+def _tables(found: Found) -> Iterator[tuple[str, str, float, dict[str, Found]]]:
+    """Of every quantity: title, unit, factor to that unit, and values by the element's name and axis."""
+    for quantity, (table, unit) in QUANTITIES.items():
+        rows: dict[str, Found] = {}
+        for name, quantities in found[table].items():
+            values = quantities.get(quantity, {})
+            rows |= {name: values} if "exact" in values else {f"{name} {axis}": v for axis, v in values.items()}
+        if rows:
+            yield quantity.replace("_", " "), *_IN_TABLES.get(unit, (unit, 1.0)), rows
+
+
+def _cells(title: str, factor: float, rows: dict[str, Found]) -> list[list[str]]:
+    largest = max(abs(values[way] or 0.0) for values in rows.values() for way in _VALUES[:3])
+    cells = [[title, *(way.replace("_", " ") for way in _VALUES)]]
+    for name, values in rows.items():
+        numbers = [
+            "—" if values[w] is None else _number(factor * values[w], factor * largest) for w in _VALUES[:3]
+        ]
+        errors = ["—" if values[w] is None else f"{values[w]:.1e}" for w in _VALUES[3:]]
+        cells.append([name, *numbers, *errors])
+    return cells
+
+
+def _number(value: float, largest: float) -> str:
+    return as_written(value if abs(value) > NOTHING * largest else 0.0)

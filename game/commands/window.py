@@ -1,0 +1,92 @@
+"""`pinjoint [MODEL]`: the window."""
+
+from __future__ import annotations
+
+import textwrap
+from argparse import RawDescriptionHelpFormatter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from components.model import Model
+from components.spelling import nearest
+from game.commands.arguments import Parser, UsageError, writable
+from game.commands.options import ANSWERED, NO_DISPLAY
+from game.documents import models
+from game.documents.open_documents import ModelFile, file_of
+from game.mods.safety import in_use
+from game.registry import ABOUT, COMMANDS
+from game.scripts import script
+from game.version import __version__
+from systems.render.theme import theme_names
+
+
+def _refuse_misspelt(word: str) -> None:
+    """Refuse a word that is no model but nearly a command. Raises UsageError."""
+    near = nearest(word, COMMANDS, cutoff=0.75)
+    if near and word not in models.bundled() and not Path(word).exists():
+        raise UsageError(f"There is no command '{word}'; did you mean '{near}'?")
+
+
+def _epilog() -> str:
+    """The commands, the options that all have, and the bundled models."""
+    width = max(map(len, COMMANDS))
+    paragraphs = [
+        "Every command takes --mods DIR, for mods in a folder, --no-mods, to leave yours out, and --cores N, to use"
+        " no more.",
+        f"Bundled models: {', '.join(models.bundled())}",
+    ]
+    return "\n".join(
+        [
+            "commands (each with --help):",
+            *(f"  {name.ljust(width)}  {ABOUT.get(name, '')}".rstrip() for name in sorted(COMMANDS)),
+            *(f"\n{textwrap.fill(paragraph, 78)}" for paragraph in paragraphs),
+        ]
+    )
+
+
+def command(words: Sequence[str]) -> int:
+    """Do what the words after the command ask for; returns the exit status."""
+    if words:
+        _refuse_misspelt(words[0])
+    parser = Parser(
+        prog="pinjoint",
+        description="A laboratory for particles and pin-jointed structures.",
+        epilog=_epilog(),
+        formatter_class=RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("model", nargs="?", help="a model file, or the name of a bundled model")
+    parser.add_argument(
+        "--record", type=writable, metavar="FILE", help="write what you do to a script for: pinjoint play"
+    )
+    parser.add_argument("--theme", choices=theme_names(), help="colours; default: those that were used last")
+    parser.add_argument("--version", action="version", version=f"pinjoint {__version__}")
+    options = parser.parse_args(words)
+    source = options.model or script.EMPTY
+    model, file = models.load(source), file_of(source)
+    try:
+        in_window(model, file, options.theme, record=(options.record, source))
+    except OSError as error:
+        raise UsageError(
+            f"{options.record} cannot be written: {error.strerror}. Choose another --record."
+        ) from None
+    return ANSWERED
+
+
+def in_window(model: Model, file: ModelFile, theme: str | None = None, **further: Any) -> list[script.Failure]:
+    """Show a model until the window is closed; returns what a script that was played expected in vain."""
+    try:
+        from game.app import NoDisplay, open_window
+    except ImportError as error:
+        raise UsageError(
+            f"The window needs pygame-ce, which cannot be imported: {error}.", NO_DISPLAY
+        ) from None
+    try:
+        with in_use():
+            return open_window(model, file, theme, **further)
+    except NoDisplay as error:
+        raise UsageError(
+            f"No window can be opened: {error}. Without a display, use: pinjoint run MODEL,"
+            " or pinjoint play SCRIPT without --window.",
+            NO_DISPLAY,
+        ) from None

@@ -1,0 +1,137 @@
+"""Assessment: how a run compares with theory, and how large its error is; computed when asked for."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from components.field import Role
+from components.load import CONSTANT, static_factor
+from components.model import Model
+from components.snapshot import Snapshot
+from systems.base import Law, StopReason
+from systems.catalogue import step_systems
+
+if TYPE_CHECKING:
+    from systems.run.measured_error import MeasuredError
+    from systems.run.simulation import Simulation
+    from systems.statics.events import Event
+    from systems.statics.verify import Comparison, Theories
+
+LARGEST = 2000  # rods up to which theory is found without being asked for; more would take noticeable time
+
+
+class Assessment:
+    """A run beside theory, from the moment it began; what was computed is kept until the model is edited."""
+
+    def __init__(self, model: Model, simulation: Simulation) -> None:
+        self._model = model
+        self._simulation = simulation
+        self._beginning: Snapshot | None = None
+        self._disturbed_at = math.inf  # the first step at which it was
+        self._theories: tuple[int, Theories] | None = None
+        self._remarks: tuple[tuple[int, int], tuple[Event, ...]] | None = None
+        self._error: tuple[tuple[int, int], MeasuredError | None] | None = None
+
+    def begin(self, beginning: Snapshot) -> None:
+        """A run begins in this state."""
+        self._beginning, self._disturbed_at = beginning, math.inf
+        self._theories = self._remarks = self._error = None
+
+    def disturb(self) -> None:
+        """Something is changed during the run, now."""
+        self._disturbed_at = min(self._disturbed_at, self._model.clock.steps)
+
+    @property
+    def undisturbed(self) -> bool:
+        """True if nobody has edited the model or pulled a particle since the run began; undo may go back to then."""
+        return bool(self._model.clock.steps < self._disturbed_at)
+
+    @property
+    def theories(self) -> Theories:
+        """Linear and exact answers from the beginning of the run, under the present load."""
+        from systems.statics.settle import Start
+        from systems.statics.verify import theories
+
+        begun = self._begun
+        revision = self._model.newest(Role.DOCUMENT, *(() if begun else (Role.STATE,)))
+        if self._theories is None or self._theories[0] != revision:
+            names = ("particles.displacement", "rods.plastic_strain")
+            start = Start(*(begun.column(self._model, name).copy() for name in names)) if begun else None
+            self._theories = revision, theories(self._model, start)
+        return self._theories[1]
+
+    @property
+    def _begun(self) -> Snapshot | None:
+        """The state in which the run began; None if it has not begun."""
+        begun = self._beginning
+        passed = begun is not None and begun.columns["clock.steps"][0] != self._model.clock.steps
+        return begun if passed else None
+
+    @property
+    def is_small(self) -> bool:
+        """True if theory is found without a noticeable wait."""
+        return self._model.rods.count <= LARGEST
+
+    def comparison(self) -> Comparison:
+        """The run as it is now beside theory."""
+        from systems.statics.verify import compare, observed
+
+        return compare(self._model, self.theories, observed(self._model))
+
+    @property
+    def remarks(self) -> tuple[Event, ...]:
+        """What a run that came to rest did and a slowly growing load would not have done; none if unsure."""
+        at_rest = self._simulation.halted and self._simulation.reason is StopReason.REST
+        if not at_rest or not self._is_comparable():
+            return ()
+        key = (self._simulation.armed_revision, self._model.clock.steps)
+        if self._remarks is None or self._remarks[0] != key:
+            from systems.statics.verify import remarks
+
+            self._remarks = key, tuple(remarks(self._model, self.theories))
+        return self._remarks[1]
+
+    def error(self, most_work: float | None = None) -> MeasuredError | None:
+        """How far the displacements are from the exact motion; None where that is not known.
+
+        most_work: evaluations of the forces of rods that measuring it may take; None: as many as no frame
+        would notice. What was measured before is known at once.
+        """
+        from systems.run.measured_error import IN_A_FRAME, measure_error, work
+
+        key = (self._simulation.armed_revision, self._model.clock.steps)
+        if self._error is not None and self._error[0] == key:
+            return self._error[1]
+        begun, most_work = self._begun, IN_A_FRAME if most_work is None else most_work
+        if begun is None or not self.undisturbed or work(self._simulation) > most_work:
+            return None
+        self._error = key, measure_error(self._simulation, begun)
+        return self._error[1]
+
+    def _is_comparable(self) -> bool:
+        """True if the run is that of a structure under one load, at once or by one history, and nothing else."""
+        beginning = self._beginning
+        if beginning is None or not (self.undisturbed and self._model.rods.count and self.is_small):
+            return False
+        if self._model.clock.collisions or not self._laws_are_known():
+            return False
+        moved = (beginning.columns[f"particles.{name}"].any() for name in ("displacement", "velocity"))
+        return not any(moved) and len(_histories(self._model)) == 1
+
+    def _laws_are_known(self) -> bool:
+        """True if statics knows all forces that act on the model."""
+        known = {system.name for system in step_systems()}
+        plan = self._simulation.schedule.step_plan(self._model)
+        return all(law.name in known or law.each == "loads" for law in plan if isinstance(law, Law))
+
+
+def _histories(model: Model) -> set[str]:
+    """The different ways in which the loads of a model change in time, as text."""
+    particles, environment = model.particles, model.environment
+    steady = particles.force.any() or particles.acceleration.any()
+    found = {repr(dict(load.history)) for load in model.loads if any(load.force)}
+    if steady or any(environment.force) or any(environment.acceleration):
+        found.add(repr(CONSTANT))
+    unsteady = (static_factor(load.history) != 1.0 for load in model.loads)
+    return set() if any(unsteady) else found

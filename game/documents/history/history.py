@@ -1,0 +1,188 @@
+"""History: undo and redo of everything, from one log of edits and runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+
+from components.commands import Assign, Command, Group
+from components.field import Role
+from components.model import Model
+from game.documents.history.log import Edit, Entry, Log, Run
+from game.documents.history.shelf import Shelf
+from systems.run.checkpoint import Moment
+from systems.run.simulation import Simulation
+
+MEMORY = 256 * 2**20  # bytes that the states before runs may take; older ones are put on a shelf
+
+
+class History:
+    """The log of one model, from when it was opened.
+
+    on_change: called after every edit, and after every undo and redo, with the entry of the log.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        simulation: Simulation,
+        on_change: Callable[[Entry], None],
+        memory: int = MEMORY,
+    ) -> None:
+        shelf = Shelf()
+        self._done, self._undone = Log(shelf, memory), Log(shelf, memory)
+        self._model = model
+        self._simulation = simulation
+        self._on_change = on_change
+        self._run: Run | None = None
+        self._run_revision = -1
+        self._key: Hashable | None = None
+        self._clock: Moment | None = None  # before the command that is being executed
+        model.before_change = self._before_change
+        model.on_command = self._record
+
+    # --- edits ---------------------------------------------------------------------------------------
+
+    def _before_change(self) -> None:
+        # A transaction consists of several changes, of which only the first finds all edits accounted for.
+        if self._clock is None or self._simulation.armed:
+            self._clock = self._simulation.moment("clock")
+        self._simulation.before_change()
+
+    def _record(self, inverse: Command) -> None:
+        assert self._clock is not None
+        edit, self._clock = Edit(inverse, self._clock, self._key), None
+        run, self._run = self._run, None
+        if run is not None and not self._add_run(run):
+            edit = replace(edit, clock=run.before)
+        if self._key is not None and _key_of(self._done.last) == self._key:
+            edit = merged(self._done.pop(), edit)
+        self._add(edit)
+        self._on_change(edit)
+        if run is not None:
+            self.begin_run(single=run.single)
+
+    def _add(self, entry: Entry) -> None:
+        self._done.push(entry)
+        self._undone.clear()
+
+    @contextmanager
+    def as_one(self, key: Hashable) -> Iterator[None]:
+        """What is edited inside is one entry together with the edits before it that had the same key."""
+        outer, self._key = self._key, key
+        try:
+            yield
+        finally:
+            self._key = outer
+
+    def retract(self, key: Hashable) -> None:
+        """Take back the last entry, if it has this key, as if it had never been."""
+        if _key_of(self._done.last) == key:
+            self.undo()
+            self._undone.pop()
+
+    # --- runs ----------------------------------------------------------------------------------------
+
+    def begin_run(self, *, single: bool = False) -> None:
+        """Time begins to pass."""
+        if self._run is None:
+            self._run = Run(self._simulation.moment(), single)
+            self._run_revision = self._model.newest(Role.STATE)
+
+    def end_run(self) -> None:
+        """Time stops; what passed since begin_run is one entry, if anything did."""
+        run, self._run = self._run, None
+        if run is None or self._add_run(run) or self._simulation.halted:
+            return  # also if it diverged at once: that it did is not forgotten
+        if self._model.newest(Role.STATE) != self._run_revision:
+            self._simulation.resume(run.before)  # it only got ready to run
+
+    def _add_run(self, run: Run) -> bool:
+        """Enter a run in the log; False if no time passed in it."""
+        if self._model.clock.steps == run.before.steps:
+            return False
+        last = self._done.last
+        if run.single and isinstance(last, Run) and last.single:
+            self._undone.clear()
+        else:
+            self._add(run)
+        return True
+
+    # --- going through the log -------------------------------------------------------------------------
+
+    @property
+    def can_undo(self) -> bool:
+        """True if there is something to take back."""
+        return len(self._done) > 0 or self._run is not None
+
+    @property
+    def can_redo(self) -> bool:
+        """True if there is something to repeat."""
+        return len(self._undone) > 0
+
+    def redo_all(self) -> None:
+        """Repeat all that was taken back."""
+        while self.redo():
+            pass
+
+    def forget_undone(self) -> None:
+        """What was taken back cannot be repeated any more, as after an edit."""
+        self._undone.clear()
+
+    def undo(self) -> str:
+        """Take the last entry back; returns what it was, "" if there is none."""
+        self.end_run()
+        return self._move(self._done, self._undone)
+
+    def redo(self) -> str:
+        """Repeat the entry last taken back; returns what it was, "" if there is none."""
+        self.end_run()
+        return self._move(self._undone, self._done)
+
+    def _move(self, source: Log, target: Log) -> str:
+        if len(source) == 0:
+            return ""
+        entry = source.pop()
+        if isinstance(entry, Run):
+            target.push(Run(self._simulation.moment(), entry.single))
+            self._simulation.resume(entry.before)
+            title = "run"
+        else:
+            # Where a run went before that no time passed in, but that moved discs apart, all of the state counts.
+            now = self._simulation.moment(*(() if entry.clock.whole else ("clock",)))
+            target.push(Edit(self._model.apply(entry.inverse), now, entry.key))
+            self._simulation.resume(entry.clock)
+            title = _title(entry.inverse)
+        self._clock = None
+        self._on_change(entry)
+        return title
+
+
+def _key_of(entry: Entry | None) -> Hashable | None:
+    return entry.key if isinstance(entry, Edit) else None
+
+
+def _title(command: Command) -> str:
+    return (command.title if isinstance(command, Group) else "") or "edit"
+
+
+def merged(earlier: Entry, later: Edit) -> Edit:
+    """One edit whose inverse takes back both; of values assigned twice only the first are kept."""
+    assert isinstance(earlier, Edit)
+    old, new = _parts(earlier.inverse), _parts(later.inverse)
+    if all(isinstance(command, Assign) for command in (*old, *new)):
+        known = {_target(command) for command in old}
+        new = tuple(command for command in new if _target(command) not in known)
+    return replace(earlier, inverse=Group((*new, *old), _title(earlier.inverse)))
+
+
+def _parts(command: Command) -> tuple[Command, ...]:
+    if isinstance(command, Group):
+        return tuple(part for inner in command.commands for part in _parts(inner))
+    return (command,)
+
+
+def _target(command: Command) -> tuple[object, ...]:
+    assert isinstance(command, Assign)
+    return command.table, command.field, command.entities

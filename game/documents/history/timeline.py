@@ -1,0 +1,140 @@
+"""Timeline: the moments of a run since the last edit, to step back through; those not kept are run again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from systems.edit.pull import Hand, Pull
+from systems.run.checkpoint import Moment
+from systems.run.simulation import Simulation
+
+MEMORY = 256 * 2**20  # bytes that kept moments may take; less: going back takes longer
+MOST_MOMENTS = 512
+FIRST_INTERVAL = 128  # steps between kept moments; doubled whenever there are too many
+RUN_UP = 64  # steps before the one gone back to, where a moment is kept for going back further
+
+
+class Timeline:
+    """Keeps moments at fixed step counts, so that what is kept does not depend on the frames.
+
+    Between them a run is a function of the step only, but for the hand that pulls a particle; what it did
+    is noted, and done again when a stretch of time is run again.
+    """
+
+    def __init__(self, simulation: Simulation, pull: Pull, memory: int = MEMORY) -> None:
+        self._simulation = simulation
+        self._pull = pull
+        self._memory = memory
+        self.clear()
+
+    def clear(self) -> None:
+        """Something was edited: what ran before cannot be run again as it was."""
+        self._moments: dict[int, Moment] = {}
+        self._hands: list[tuple[int, Hand | None]] = []  # the step at which the hand changed, and to what
+        self._interval = FIRST_INTERVAL
+        self._went_back = False
+
+    @property
+    def _now(self) -> int:
+        return self._simulation.model.clock.steps
+
+    @property
+    def first(self) -> int:
+        """The earliest step that one can go back to."""
+        return min(self._moments, default=self._now)
+
+    @property
+    def kept(self) -> int:
+        """How many moments are kept."""
+        return len(self._moments)
+
+    # --- recording -------------------------------------------------------------------------------------
+
+    def begin(self) -> None:
+        """Time is about to pass: after going back, what the hand did later does not happen again."""
+        if self._went_back:
+            self._went_back = False
+            if any(at >= self._now for at, _ in self._hands):
+                self._hands = [(at, hand) for at, hand in self._hands if at < self._now]
+                self._moments = {at: moment for at, moment in self._moments.items() if at <= self._now}
+        if not self._moments:
+            self._keep()
+
+    @contextmanager
+    def recording(self) -> Iterator[None]:
+        """Keep moments of the time that passes inside."""
+        self.begin()
+        self._simulation.watch = self._watch
+        try:
+            yield
+        finally:
+            self._simulation.watch = None
+
+    def _watch(self) -> int:
+        beyond = self._now % self._interval
+        if beyond == 0 or self._now in self._moments:
+            self._keep()
+        return self._interval - beyond
+
+    def _keep(self) -> None:
+        now = self._now
+        if now in self._moments and self._moments[now].armed:
+            return
+        moment = self._moments[now] = self._simulation.moment()
+        if len(self._moments) > max(min(MOST_MOMENTS, self._memory // max(moment.state.size, 1)), 2):
+            self._interval *= 2
+            kept = {self.first, now}
+            self._moments = {
+                at: moment for at, moment in self._moments.items() if at % self._interval == 0 or at in kept
+            }
+
+    def hold(self, hand: Hand | None) -> None:
+        """Pull by a hand from now on, differently, or (None) let go."""
+        self.begin()
+        anew = self._change_hand(hand)
+        self._hands.append((self._now, hand))
+        if anew or self._now in self._moments:  # what is kept of a step is what follows from the hand there
+            self._moments[self._now] = self._simulation.moment()
+
+    def _change_hand(self, hand: Hand | None) -> bool:
+        """True if the run goes on by another program, which takes longer to get ready than many steps do."""
+        held = self._pull.hand
+        if held is not None and hand is not None and held.particle is hand.particle:
+            self._pull.move(self._simulation.model, hand.anchor)
+            self._simulation.wake()
+            return False
+        self._simulation.before_change()
+        self._pull.take(hand)
+        return True
+
+    # --- going back ------------------------------------------------------------------------------------
+
+    def go_to(self, steps: int) -> bool:
+        """Return to a step between the first and the last that was run; False if it cannot be reached."""
+        if not self._moments or steps < self.first:
+            return False
+        start = max(at for at in self._moments if at <= steps)
+        self._resume(start)
+        for at, hand in self._hands:
+            if start < at < steps:
+                self._run_to(at)
+                self._change_hand(hand)
+        if self._now < steps - RUN_UP:
+            self._run_to(steps - RUN_UP)
+            self._keep()
+        self._run_to(steps)
+        if self._pull.hand is not None:
+            self._change_hand(None)
+        self._went_back = True
+        return self._now == steps
+
+    def _resume(self, at: int) -> None:
+        hand = next((hand for when, hand in reversed(self._hands) if when <= at), None)
+        if hand is not self._pull.hand:
+            self._simulation.before_change()  # it runs by another program now
+            self._pull.take(hand)
+        self._simulation.resume(self._moments[at])
+
+    def _run_to(self, steps: int) -> None:
+        self._simulation.advance(max(steps - self._now, 0))

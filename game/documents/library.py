@@ -1,0 +1,113 @@
+"""Library: the models that a person saved, by name, in a folder of their own."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from platformdirs import user_data_path
+
+from components import spelling
+from game.documents import models
+
+DATA_VARIABLE = "PINJOINT_DATA"  # names another folder than the system's own
+LONGEST_NAME = 100  # characters
+_KEPT_BY_WINDOWS = {"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(10))}
+
+
+class NameRefused(ValueError):
+    """A name that no file can have on every system; the message says why and what helps."""
+
+
+def data_folder() -> Path:
+    """Where this person's data lies; it need not exist yet."""
+    chosen = os.environ.get(DATA_VARIABLE)
+    return Path(chosen) if chosen else user_data_path("pinjoint", appauthor=False)
+
+
+@contextmanager
+def data_in(folder: Path) -> Iterator[None]:
+    """As long as this lasts, this person's data lies in another folder."""
+    before = os.environ.get(DATA_VARIABLE)
+    os.environ[DATA_VARIABLE] = str(folder)
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[DATA_VARIABLE]
+        else:
+            os.environ[DATA_VARIABLE] = before
+
+
+@contextmanager
+def data_apart() -> Iterator[Path]:
+    """As long as this lasts, data lies in an empty folder that is gone afterwards."""
+    with TemporaryDirectory() as folder, data_in(Path(folder)):
+        yield Path(folder)
+
+
+def models_folder() -> Path:
+    """Where saved models lie; it need not exist yet."""
+    return data_folder() / "models"
+
+
+def path_of(name: str) -> Path:
+    """The file for a name. Raises NameRefused."""
+    name = name.strip()
+    wrong = sorted({character for character in name if not (character.isalnum() or character in " -._")})
+    if not name:
+        raise NameRefused("The name is empty; type at least one character.")
+    if wrong:
+        raise NameRefused(f"A name cannot contain {wrong[0]!r}; use letters, digits, spaces, - and _.")
+    if name.startswith(".") or name.endswith("."):
+        raise NameRefused("A name cannot begin or end with a dot.")
+    if name.partition(".")[0].lower() in _KEPT_BY_WINDOWS:
+        raise NameRefused(f"'{name}' means a device on some systems; choose another name.")
+    if len(name) > LONGEST_NAME:
+        raise NameRefused(f"The name has {len(name)} characters; use at most {LONGEST_NAME}.")
+    return models_folder() / f"{name}.json"
+
+
+def saved() -> list[Path]:
+    """The files of the saved models, the newest first; none if the folder cannot be read."""
+    try:
+        found = [(path.stat().st_mtime, path) for path in models_folder().glob("[!.]*.json")]
+    except OSError:
+        return []
+    return [path for _, path in sorted(found, reverse=True)]
+
+
+def find(name: str) -> Path | str | None:
+    """The saved model of that name, else the bundled one; None if there is neither."""
+    try:
+        path = path_of(name)
+    except NameRefused:
+        return None
+    if path.is_file():
+        return path
+    return name.strip() if name.strip() in models.bundled() else None
+
+
+def nearest(name: str) -> str | None:
+    """The name of a saved or bundled model that comes nearest, if one does."""
+    known = [*(path.stem for path in saved()), *models.bundled()]
+    return spelling.nearest(name.strip(), known)
+
+
+def written_age(path: Path) -> str:
+    """How long ago a file was written, such as "3 minutes ago"; "" if it is gone."""
+    try:
+        seconds = max(time.time() - path.stat().st_mtime, 0.0)
+    except OSError:
+        return ""
+    for length, unit in ((86400.0, "day"), (3600.0, "hour"), (60.0, "minute")):
+        count = int(seconds / length)
+        if count >= 60 and unit == "day":
+            return time.strftime("%Y-%m-%d", time.localtime(time.time() - seconds))
+        if count:
+            return f"{count} {unit}{'s' * (count > 1)} ago"
+    return "just now"

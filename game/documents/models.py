@@ -1,0 +1,252 @@
+"""Models in files: found by path or name, mistakes explained, written as a whole or not at all."""
+
+from __future__ import annotations
+
+import codecs
+import gc
+import json
+import math
+import os
+import re
+import shutil
+import uuid
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import cache
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any, NoReturn
+
+import msgspec
+
+from components.model import Model
+from components.spelling import nearest
+from game.documents.document import ModelError, document, parse
+
+_ENCODER = msgspec.json.Encoder()
+
+__all__ = ["ModelError", "bundled", "document", "laid_out", "load", "parse", "replace", "save", "told"]
+
+
+FOLDERS: list[Path] = []  # of mods, with models that are opened by name
+
+
+def bundled() -> list[str]:
+    """Names of the models that come with the program and its mods, in alphabetical order."""
+    names = (entry.name for entry in _bundled_files())
+    return sorted(name.removesuffix(".json") for name in names if name.endswith(".json"))
+
+
+def _bundled_files() -> Iterable[Traversable]:
+    yield from files("assets").joinpath("models").iterdir()
+    for folder in FOLDERS:
+        yield from folder.iterdir()
+
+
+# --- reading ---------------------------------------------------------------------------------------
+
+
+class Told(msgspec.Struct):
+    """What a model file says about itself."""
+
+    title: str = ""
+    description: str = ""
+
+
+@cache
+def told(name: str) -> Told:
+    """What a bundled model says about itself, without reading the rest of it."""
+    try:
+        return msgspec.json.decode(_found(name).read_bytes(), type=Told)
+    except (OSError, msgspec.DecodeError):  # which is explained to who opens it
+        return Told()
+
+
+def load(source: str | Path | Mapping[str, Any]) -> Model:
+    """The model in a file, in the bundled model of that name, or in a document. Raises ModelError."""
+    if isinstance(source, Mapping):
+        return parse(source)
+    if not isinstance(source, str | os.PathLike):
+        raise ModelError(f"{source!r} is no model; give a file, a bundled model's name or a document.")
+    try:
+        raw = _found(source).read_bytes()
+    except IsADirectoryError:
+        raise ModelError(f"'{source}' is a folder; name a model file in it.") from None
+    except FileNotFoundError:
+        raise _missing(source) from None
+    except (OSError, ValueError) as error:
+        problem = f"{source} cannot be read: {_reason(error)}. Check its path and permissions."
+        raise ModelError(problem) from None
+    with _nothing_collected():
+        return parse(_decoded(raw, str(source)), str(source))
+
+
+@contextmanager
+def _nothing_collected() -> Iterator[None]:
+    """Garbage is not looked for meanwhile: among millions of new elements that takes a third of the time."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()
+
+
+def _found(source: str | Path) -> Path | Traversable:
+    """A bundled model's name wins over a file, so that it means the same in every folder."""
+    if isinstance(source, str):
+        for entry in _bundled_files():
+            if entry.name == f"{source}.json":
+                return entry
+    return Path(source)
+
+
+def _missing(source: str | Path) -> ModelError:
+    near = nearest(Path(source).stem, bundled(), cutoff=0.6)
+    hint = f"; did you mean '{near}'?" if near else "."
+    return ModelError(
+        f"There is no file and no bundled model '{source}'{hint} pinjoint --help lists the bundled models."
+    )
+
+
+def _reason(error: Exception) -> str:
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)
+
+
+def _decoded(raw: bytes, source: str) -> Any:
+    """What JSON bytes say. Raises ModelError if they are not JSON or an object repeats a key."""
+    _check_encoding(raw, source)
+    raw = raw.removeprefix(codecs.BOM_UTF8)
+    try:
+        content = msgspec.json.decode(raw)
+        # The decoder keeps the last of repeated keys only, and with the others some texts are gone.
+        if _count_texts(raw) != _count_texts(msgspec.json.encode(content)):
+            _refuse_repeated_keys(_decoded_strictly(raw, source), f"{source}: $")
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        _decoded_strictly(raw, source)  # knows the line
+        raise _not_json(source, error) from None
+    except RecursionError:
+        raise ModelError(f"{source} is nested too deeply to be a model.") from None
+    return content
+
+
+def _count_texts(valid: bytes) -> int:
+    """How many texts, keys included, valid JSON holds: without its escapes, quotes only delimit them."""
+    return re.sub(rb"\\.", b"", valid).count(b'"') // 2
+
+
+class _Pairs(list[tuple[str, Any]]):
+    """An object of a JSON text, repeated keys included."""
+
+
+def _decoded_strictly(raw: bytes, source: str) -> Any:
+    def refuse(constant: str) -> NoReturn:
+        raise ModelError(f"{source} contains {constant}; every number must be finite.")
+
+    def finite(number: str) -> float:
+        return (
+            float(number)
+            if math.isfinite(float(number))
+            else refuse(number if len(number) < 20 else f"{number[:9]}…")
+        )
+
+    try:
+        return json.loads(
+            raw, object_pairs_hook=_Pairs, parse_constant=refuse, parse_float=finite, parse_int=finite
+        )
+    except UnicodeDecodeError as error:
+        line = 1 + raw[: error.start].count(b"\n")
+        raise ModelError(
+            f"{source} has a character in line {line} that is not UTF-8; save it in UTF-8."
+        ) from None
+    except json.JSONDecodeError as error:
+        raise _not_json(source, error) from None
+
+
+def _not_json(source: str, error: Exception) -> ModelError:
+    return ModelError(f"{source} is not a JSON file ({error}); correct it or save the model anew.")
+
+
+def _check_encoding(raw: bytes, source: str) -> None:
+    """Raise ModelError for what editors and shells write besides UTF-8, or if there is nothing."""
+    if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        raise ModelError(f"{source} is written in UTF-16; save it in UTF-8.")
+    if not raw.strip():
+        raise ModelError(f"{source} is empty; save the model anew.")
+
+
+def _refuse_repeated_keys(value: Any, path: str) -> None:
+    if isinstance(value, _Pairs):
+        keys: set[str] = set()
+        for key, item in value:
+            if key in keys:
+                raise ModelError(f"{path}.{key}: this key stands twice in one object; keep one of the two.")
+            keys.add(key)
+            _refuse_repeated_keys(item, f"{path}.{key}")
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            _refuse_repeated_keys(item, f"{path}[{index}]")
+
+
+# --- writing ---------------------------------------------------------------------------------------
+
+
+def save(model: Model, path: str | Path) -> None:
+    """Write a model to a file, one element a line, as a whole or not at all. Raises ModelError."""
+    content = document(model)
+    try:
+        replace(path, laid_out(content, depth=2).encode() + b"\n")
+    except (OSError, ValueError) as error:
+        raise ModelError(
+            f"{path} was not saved: {_reason(error)}. What it held is unchanged; choose another folder"
+            " or name, or remove the cause."
+        ) from None
+
+
+def replace(path: str | Path, content: bytes) -> None:
+    """Give a file new content; at every moment it has either the old or the new one. Raises OSError, ValueError.
+
+    What is no file but a device or a pipe, and a file in whose folder nothing new can be made, is written into.
+    """
+    path = Path(os.path.realpath(path))
+    if path.exists() and not (path.is_file() and os.access(path.parent, os.W_OK)):
+        path.write_bytes(content)
+        return
+    temporary = path.with_name(f".{uuid.uuid4().hex}.tmp")
+    try:
+        with temporary.open("xb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        if path.exists():
+            shutil.copymode(path, temporary)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def laid_out(value: Any, depth: int, indent: str = "", *, spaced: bool = True) -> str:
+    """JSON text whose outermost `depth` levels have one entry a line, indented by 2 spaces.
+
+    spaced: also a space after every comma and colon, for people; else it is written sooner.
+    """
+    if depth == 0 or not isinstance(value, dict | list) or not value:
+        return msgspec.json.format(msgspec.json.encode(value), indent=0).decode()
+    inner = indent + "  "
+    if isinstance(value, dict):
+        entries = [
+            f"{laid_out(key, 0)}: {laid_out(item, depth - 1, inner, spaced=spaced)}"
+            for key, item in value.items()
+        ]
+        opening, closing = "{", "}"
+    elif depth == 1:  # quicker than one by one
+        entries = _ENCODER.encode_lines(value).decode().removesuffix("\n").split("\n")
+        if spaced:
+            entries = [msgspec.json.format(entry, indent=0) for entry in entries]
+        opening, closing = "[", "]"
+    else:
+        entries = [laid_out(item, depth - 1, inner, spaced=spaced) for item in value]
+        opening, closing = "[", "]"
+    return f"{opening}\n{inner}" + f",\n{inner}".join(entries) + f"\n{indent}{closing}"

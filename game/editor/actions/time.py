@@ -1,0 +1,112 @@
+"""Actions on time: stepping, restarting, pace, undo and redo."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from components.field import Vector
+from game.editor.actions.editing import nudge
+from game.editor.actions.registry import Action, action
+from systems.edit.refusal import Refusal
+
+if TYPE_CHECKING:
+    from game.session import Session
+
+
+PACE_STEP = 2.0
+FAR = 0.2  # s shown, by which time is skipped forward or back
+MOST_WORK = 1_000_000  # steps × elements that one skip takes, some 20 ms
+MANY = 2000  # elements of which finding the pace that suits them would take longer
+
+
+def _arrow(direction: Vector, steps: int, *, far: bool) -> Action:
+    """An arrow key moves what is selected; with nothing selected, to the right is forward in time."""
+
+    def act(session: Session, pixel: Vector) -> None:
+        if nudge(session, direction, far=far) or steps == 0:
+            return
+        _step(session, steps * (_far(session) if far else 1))
+
+    return act
+
+
+for _name, _direction, _steps in (
+    ("left", (-1.0, 0.0), -1),
+    ("right", (1.0, 0.0), 1),
+    ("up", (0.0, 1.0), 0),
+    ("down", (0.0, -1.0), 0),
+):
+    action(f"arrow {_name}")(_arrow(_direction, _steps, far=False))
+    action(f"far arrow {_name}")(_arrow(_direction, _steps, far=True))
+
+
+def _far(session: Session) -> int:
+    """How many steps to skip; fewer in large models, so that one does not wait."""
+    model = session.model
+    elements, size = model.particles.count + model.rods.count + 1, model.clock.step_size
+    most = max(MOST_WORK // elements, 1)
+    if elements > MANY or size == 0.0:
+        return most if size > 0.0 else 1
+    return min(max(round(FAR * session.pace / size), 1), most)
+
+
+def _step(session: Session, steps: int) -> None:
+    done = session.step(steps)
+    clock = session.model.clock
+    session.notice = f"Step {clock.steps}, t = {clock.time:.6g} s"
+    if not done and steps < 0:
+        session.notice += ": as far back as steps go. Ctrl+Z takes back what was done here, R restarts."
+    elif not done:
+        session.notice = session.simulation.message
+
+
+@action("step")
+def _step_forward(session: Session, pixel: Vector) -> None:
+    _step(session, 1)
+
+
+@action("step back")
+def _step_back(session: Session, pixel: Vector) -> None:
+    _step(session, -1)
+
+
+@action("restart")
+def _restart(session: Session, pixel: Vector) -> None:
+    if session.at_beginning:
+        raise Refusal("This is the beginning: no time has passed. Ctrl+Z takes back edits and settling.")
+    session.restart()
+    session.notice = "Back at the beginning; all edits are kept."
+
+
+@action("faster", while_drawing=True)
+def _faster(session: Session, pixel: Vector) -> None:
+    session.clock.faster(PACE_STEP)
+
+
+@action("slower", while_drawing=True)
+def _slower(session: Session, pixel: Vector) -> None:
+    session.clock.faster(1.0 / PACE_STEP)
+
+
+@action("natural pace", while_drawing=True)
+def _natural_pace(session: Session, pixel: Vector) -> None:
+    session.clock.factor = 1.0
+
+
+@action("undo")
+def _undo(session: Session, pixel: Vector) -> None:
+    title = session.undo()
+    session.notice = f"Undone: {title}" if title else "There is nothing to undo."
+
+
+@action("redo")
+def _redo(session: Session, pixel: Vector) -> None:
+    title = session.redo()
+    session.notice = f"Done again: {title}" if title else "There is nothing to do again."
+
+
+@action("settle")
+def _settle(session: Session, pixel: Vector) -> None:
+    """To the static equilibrium under the full load, without waiting."""
+    session.settle()
+    session.view.follow(session.model)

@@ -1,0 +1,145 @@
+"""Clipboard: a part of a model as data, as the text of a document, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import Role, Vector
+from components.handle import Handle
+from components.load import Load
+from components.model import ADDED, Model
+from components.particle import Particle
+from components.rod import Rod
+from components.table import Table, fields_of
+from components.tags import Selected
+from game.documents.document import ModelError, document_of, parse
+from game.documents.models import laid_out
+from systems.edit.moving import moving_rows
+from systems.edit.refusal import Refusal
+
+Rows = NDArray[np.int64]
+Kind = type[Handle]
+Chosen = Mapping[Kind, Rows]  # of particles first, then of rods and loads, then of what mods add
+
+REFERENCES = {"between", "on"}  # Fields that refer to particles
+
+
+@dataclass(frozen=True)
+class Part:
+    """Some particles, with rods between and loads on them, and elements of mods, that belong to no model.
+
+    columns: by kind, what they hold, by Field; particles are referred to by their place among these.
+    foreign: by kind and place, what belongs to mods that are not loaded.
+    """
+
+    columns: Mapping[Kind, Mapping[str, Any]]
+    foreign: Mapping[tuple[Kind, int], dict[str, Any]]
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """Original positions of the particles, and the points of other elements (m), shape (n, 2)."""
+        return np.concatenate([held[point] for kind, held in self.columns.items() for point in _points(kind)])
+
+
+def chosen(model: Model) -> Chosen:
+    """Rows of the selected particles and rods, of the ends of those rods, and of the loads on them.
+
+    And of the elements of mods among them. Raises Refusal if there are none.
+    """
+    rows = model.rows_tagged(Selected)
+    particles = moving_rows(model, rows)
+    others = {kind: rows[kind.table] for kind in _added() if len(rows[kind.table])}
+    if not len(particles) and not others:
+        raise Refusal("Nothing is selected that can be copied; click a particle or a rod first.")
+    loads = np.flatnonzero(np.isin(model.loads.on, particles))
+    return {Particle: particles, Rod: rows["rods"], Load: loads, **others}
+
+
+def written(model: Model, rows: Chosen) -> str:
+    """These rows as the text of a model document. Raises Refusal if they cannot be written."""
+    try:
+        return laid_out(document_of(model, rows), depth=2, spaced=False)
+    except ModelError as error:
+        raise Refusal(f"This cannot be copied: {error}") from None
+
+
+def parsed(text: str) -> Part:
+    """The part that such a text describes. Raises Refusal if it is none."""
+    try:
+        source = parse(msgspec.json.decode(text))
+    except (ModelError, msgspec.DecodeError):
+        source = Model()
+    kinds: list[Kind] = [Particle, Rod, Load, *_added()]
+    rows = {kind: np.arange(source.tables[kind.table].count) for kind in kinds}
+    part = taken(source, rows)
+    if not len(part.position):
+        raise Refusal("The clipboard holds no particles or rods; select some and copy them with Ctrl+C.")
+    return part
+
+
+def taken(model: Model, rows: Chosen) -> Part:
+    """What these rows hold."""
+    place = np.zeros(model.particles.count, dtype=np.int64)
+    place[rows[Particle]] = np.arange(len(rows[Particle]))
+    foreign: dict[tuple[Kind, int], dict[str, Any]] = {}
+    for kind in rows if model.foreign else ():
+        entities = enumerate(model.tables[kind.table].entities[rows[kind]].tolist())
+        foreign |= {(kind, n): model.foreign[entity] for n, entity in entities if entity in model.foreign}
+    return Part({kind: _columns(model, kind, rows[kind], place) for kind in rows}, foreign)
+
+
+def paste(model: Model, part: Part, offset: Vector) -> list[Handle]:
+    """New elements like those of a part, moved by an offset (m), as one edit.
+
+    Names that are taken are replaced by free ones. Returns all but the loads.
+    """
+    first = model.particles.count
+    made: dict[Kind, list[Handle]] = {}
+    with model.transaction("paste"):
+        for kind, held in part.columns.items():
+            columns = {**held, "name": _free_names(model.tables[kind.table], held["name"])}
+            for point in _points(kind):
+                columns[point] = columns[point] + offset
+            for reference in columns.keys() & REFERENCES:
+                columns[reference] = first + columns[reference]
+            made[kind] = model.create(kind, len(held["name"]), **columns)
+        for (kind, place), kept in part.foreign.items():
+            model.foreign[made[kind][place].entity] = kept
+    return [handle for kind, handles in made.items() if kind is not Load for handle in handles]
+
+
+def _points(kind: Kind) -> tuple[str, ...]:
+    """The Fields that are places in the plane."""
+    return ("position",) if kind is Particle else kind.points
+
+
+def _added() -> list[Kind]:
+    """The kinds of mods that can be copied: they have a place, and refer to nothing else."""
+    return [kind for kind in ADDED.values() if kind.points and not any(f.references for f in fields_of(kind))]
+
+
+def _columns(model: Model, kind: Kind, rows: Rows, place: Rows) -> dict[str, Any]:
+    """What some rows hold, by Field; particles that are referred to renumbered."""
+    table = model.tables[kind.table]
+    columns: dict[str, Any] = {
+        field.name: table.column(field.name)[rows] for field in table.fields_in(Role.DOCUMENT, Role.STATE)
+    }
+    for reference in columns.keys() & REFERENCES:
+        columns[reference] = place[columns[reference]]
+    columns["name"] = columns["name"].tolist()
+    return columns
+
+
+def _free_names(table: Table[Any], names: list[str]) -> list[str] | None:
+    """The names, those that are taken replaced by new ones; None: all are new."""
+    taken = table.taken(names)
+    if len(taken) == len(names):
+        return None
+    fresh = iter(table.free_names(len(taken), besides=set(names) - taken))
+    return [next(fresh) if name in taken else name for name in names]

@@ -1,0 +1,123 @@
+"""Readouts of a session: theory beside the run, and its energy account."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from components.field import FieldError
+from components.particle import Particle
+from components.rod import Rod
+from components.view import Readout
+from game.documents.assessment import LARGEST
+from systems.base import StopReason
+
+if TYPE_CHECKING:
+    from components.handle import Handle
+    from game.session import Session
+    from systems.statics.verify import Comparison, Row, Theories
+
+MOST_ELEMENTS = 3  # of the selected ones that have a readout of their own
+NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
+
+_SHOWN = {"axial_force": ("N", "kN", 1.0), "reaction": ("R", "kN", 1.0), "displacement": ("u", "mm", 1000.0)}
+_WAYS = {"simulation": "run", "linear": "linear theory", "exact": "exact theory"}
+
+
+def own_readouts(session: Session) -> Iterator[Readout]:
+    """Those that are switched on, for the view."""
+    if session.view.theory:
+        yield from _theory(session)
+    if session.view.energy:
+        yield _energy(session)
+
+
+def _energy(session: Session) -> Readout:
+    rows = [
+        (name.replace("_", " "), f"{value:.5g} J".replace("-", "−"))
+        for name, value in session.energy.as_dict().items()
+    ]
+    error = session.desk.assessment.error() if not session.busy else None  # measuring takes a run of its own
+    if error is not None:
+        rows.append(("displacement error", f"{error.relative:.1e} of the largest"))
+    return Readout("Energy account", tuple(rows))
+
+
+# --- theory ----------------------------------------------------------------------------------------------
+
+
+def _theory(session: Session) -> Iterator[Readout]:
+    if session.model.rods.count == 0:
+        yield Readout("Theory beside the run", (("no rods", ""),))
+    elif not session.desk.assessment.is_small:
+        yield Readout("Theory beside the run", ((f"more than {LARGEST} rods: use", "pinjoint verify"),))
+    else:
+        try:
+            theory, comparison = session.desk.assessment.theories, session.desk.assessment.comparison()
+        except FieldError:  # whoever runs or settles it is told which number it is
+            yield Readout("Theory beside the run", (("numbers too large or too small", ""),))
+            return
+        yield Readout("Theory beside the run", tuple(_overview(session, theory, comparison)))
+        for handle in session.selected[:MOST_ELEMENTS]:
+            yield from _of_element(handle, comparison)
+
+
+def _overview(session: Session, theory: Theories, comparison: Comparison) -> Iterator[tuple[str, str]]:
+    settlement = theory.settlement
+    yield from _verdict(session, comparison)
+    if theory.refusal is not None:
+        yield "linear theory", "a mechanism" if theory.refusal.status == "mechanism" else "not with cables"
+    if theory.exact is None:
+        yield "exact theory", f"{settlement.status} at {settlement.final.load_factor:.4g} of the load"
+    for event in settlement.events:
+        if event.kind in ("snap-through", "bifurcation"):
+            yield event.kind, f"at {event.load_factor:.4g} of the load"
+    for way in ("simulation", "linear"):
+        worst = comparison.worst(way)
+        if worst is not None:
+            yield (
+                f"largest error, {_WAYS[way].split()[0]}",
+                f"{getattr(worst, f'{way}_error'):.1e} ({_symbol(worst)})",
+            )
+    if not session.desk.assessment.undisturbed and not session.at_beginning:
+        yield "edited during the run", "theory is without that"
+
+
+def _verdict(session: Session, comparison: Comparison) -> Iterator[tuple[str, str]]:
+    """Of a run at rest: whether it is where a slowly growing load leads to, and why not."""
+    from systems.statics.verify import DEPARTURES, differs
+
+    if session.simulation.reason is not StopReason.REST or comparison.worst("simulation") is None:
+        return
+    if differs(comparison):
+        reasons = [DEPARTURES[remark.kind] for remark in session.remarks if remark.kind in DEPARTURES]
+        yield "differs from static theory", ", ".join(dict.fromkeys(reasons)) or "see pinjoint verify"
+    else:
+        yield "at rest", "where static theory says"
+
+
+def _symbol(row: Row) -> str:
+    """Such as "N of AB" or "u y of B"."""
+    return f"{_SHOWN[row.quantity][0]} {row.component}".rstrip() + f" of {row.name}"
+
+
+def _of_element(handle: Handle, comparison: Comparison) -> Iterator[Readout]:
+    """A readout for every quantity of an element that theory knows."""
+    if isinstance(handle, Rod):
+        yield _beside(comparison, "axial_force", (handle.row,))
+    elif isinstance(handle, Particle):
+        for axis, fixed in enumerate(handle.fixed):
+            yield _beside(comparison, "reaction" if fixed else "displacement", (handle.row, axis))
+
+
+def _beside(comparison: Comparison, quantity: str, place: tuple[int, ...]) -> Readout:
+    """One quantity of one element by the three ways, with errors."""
+    row, nothing = comparison.row(quantity, place), NOTHING * comparison.scale(quantity)
+    _, unit, factor = _SHOWN[row.quantity]
+    rows = []
+    for way, title in _WAYS.items():
+        value, error = getattr(row, way), getattr(row, f"{way}_error", None)
+        clear = 0.0 if value is None or abs(value) <= nothing else factor * value
+        shown = "—" if value is None else f"{clear:.7g} {unit}".replace("-", "−")
+        rows.append((title if error is None else f"{title}, error {error:.1e}", shown))
+    return Readout(row.title[:1].upper() + row.title[1:], tuple(rows))

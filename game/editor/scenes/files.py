@@ -1,0 +1,158 @@
+"""Files: what save and load have in common: a box for the name, and pictures of what there is."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from components.box import FILE_NAME, Box
+from components.form import Form, Tile
+from components.model import Model
+from game.documents import library, models
+from game.editor.scenes.form import FormScene
+from systems.forms import typing
+from systems.render.form_layout import tile_columns
+
+if TYPE_CHECKING:
+    from game.session import Session
+
+SAVED = "Saved models"
+LARGEST_PICTURED = 4 * 2**20  # bytes of a file that is read for its picture
+READING = 0.012  # s of each frame, or one picture if that takes longer
+
+
+class FileScene(FormScene):
+    """A mode in which a file is named or chosen."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._unread: list[Tile] = []
+
+    def exit(self, session: Session) -> None:
+        super().exit(session)
+        self._unread = []
+
+    def new_form(self, heading: str, name: str, tiles: Iterable[dict[str, Any]]) -> Form:
+        """A form with a box for the name and these tiles, one mapping of Fields for each."""
+        form = Form(heading)
+        form.create(Box, 1, title="name", target="name", accepts=FILE_NAME, text=name, opened=name)
+        rows = list(tiles)
+        if rows:
+            form.create(Tile, len(rows), **{key: [row[key] for row in rows] for key in rows[0]})
+        self._unread = [tile for tile in form.tiles if tile.picture is None and not tile.symbol]
+        return form
+
+    @property
+    def box(self) -> Box:
+        """The box for the name."""
+        return self.form.boxes[0]
+
+    def say(self, message: str) -> None:
+        """Show what is wrong, or asked."""
+        self.form.heading.message = message
+
+    # --- typing and choosing -----------------------------------------------------------------------
+
+    def type(self, session: Session, text: str) -> None:
+        if self.form.selected is None:
+            typing.select(self.form, self.box)
+        super().type(session, text)
+
+    def changed(self, session: Session) -> None:
+        self.say("")
+        self.form.choose(None)
+
+    def move(self, session: Session, direction: str) -> None:
+        """Arrows choose a tile; left and right move the caret until one is chosen."""
+        if direction in ("left", "right") and self.form.chosen is None and self.form.selected is not None:
+            super().move(session, direction)
+            return
+        tile = self._neighbour(session, direction)
+        if tile is not None:
+            self.form.choose(tile)
+            self.reveal(session, tile)
+
+    def _neighbour(self, session: Session, direction: str) -> Tile | None:
+        """The tile next to the chosen one; the first that is seen if none is chosen yet."""
+        layout = self.layout(session)
+        columns = tile_columns((layout.right - layout.left) / layout.unit)
+        tiles = [tile for tile in self.form.tiles if not tile.hidden]
+        chosen = self.form.chosen
+        if chosen is None or not tiles:
+            return next((place.item for place in layout.places if isinstance(place.item, Tile)), None)
+        at = tiles.index(chosen) + {"left": -1, "right": 1, "up": -columns, "down": columns}[direction]
+        return tiles[min(max(at, 0), len(tiles) - 1)]
+
+    def next_box(self, session: Session, by: int) -> None:
+        """Tab: there is one box only, so it selects or accepts that."""
+        typing.select(self.form, self.box if self.form.selected is None else None)
+
+    # --- pictures ----------------------------------------------------------------------------------
+
+    def busy(self, session: Session) -> bool:
+        return self._next_unread(session) is not None
+
+    def advance(self, session: Session, elapsed: float) -> None:
+        """Read the next pictures that are looked for, few in a frame so that typing stays fluent."""
+        super().advance(session, elapsed)
+        until = time.perf_counter() + READING
+        while (tile := self._next_unread(session)) is not None:
+            self._unread.remove(tile)
+            _read_picture(tile)
+            if time.perf_counter() >= until:
+                break
+
+    def _next_unread(self, session: Session) -> Tile | None:
+        if not self._unread:
+            return None
+        seen = [place.item for place in self.layout(session).places]
+        return next((tile for tile in self._unread if tile in seen), None)
+
+
+def tile(
+    section: str,
+    title: str,
+    caption: str,
+    file: str,
+    source: Any,
+    explanation: str = "",
+    picture: Any = None,
+    symbol: str = "",
+) -> dict[str, Any]:
+    """The Fields of a tile."""
+    return {
+        "section": section,
+        "title": title,
+        "caption": caption,
+        "file": file,
+        "source": source,
+        "explanation": explanation,
+        "picture": picture,
+        "symbol": symbol,
+    }
+
+
+def saved_tiles() -> list[dict[str, Any]]:
+    """Tiles of the person's own models, the newest first, their pictures to be read later."""
+    return [tile(SAVED, p.stem, library.written_age(p), p.stem, p) for p in library.saved()]
+
+
+@cache
+def example(name: str) -> Model:
+    """A bundled model, to look at only."""
+    return models.load(name)
+
+
+def _read_picture(tile: Tile) -> None:
+    try:
+        if isinstance(tile.source, str):
+            tile.picture = example(tile.source)
+        elif tile.source.stat().st_size <= LARGEST_PICTURED:
+            tile.picture = models.load(tile.source)
+            tile.explanation = tile.picture.description or tile.picture.title
+        else:
+            tile.caption = f"{tile.caption}, too large for a picture".lstrip(", ")
+    except (OSError, models.ModelError):
+        tile.caption = "cannot be read"

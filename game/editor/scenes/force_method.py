@@ -1,0 +1,258 @@
+"""Force method: the guided solution of a hyperstatic structure, three systems side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+from components.camera import Camera, Viewport
+from components.field import Vector
+from components.model import Model
+from components.view import Page, Status, View, drawn_positions
+from game.editor.scenes.base import Scene
+from game.force_method import PARTS, words
+from systems.render.overlays import heading_height
+from systems.render.page import page_height
+
+if TYPE_CHECKING:
+    from game.force_method.guide import Guide, Mechanism, Set
+    from game.session import Session
+
+WIDE = 1.1  # width / height from which the sets stand side by side
+MOST_OF_HEIGHT = 0.45  # that the working takes; more is scrolled
+LARGE = 500  # rods beyond which a picture says what is being worked on before it is
+LOW = 1.8  # width / height of a place from which a structure stands beside its caption
+LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; below or beside its caption
+CAPTION, SCALE, MARGIN = 66.0, 28.0, 40.0  # points above, below and at most about a structure in its set
+
+
+@dataclass
+class _Work:
+    """What takes a while, and what is said of it; `said` once a frame has shown that."""
+
+    text: str
+    do: Callable[[], object]
+    said: bool = False
+
+
+class ForceMethod(Scene):
+    """The seven parts of the force method. `shown_guide` has not done yet what is only announced."""
+
+    name = "force method"
+
+    def __init__(self) -> None:
+        self.shown_guide: Guide | None = None
+        self._work: _Work | None = None
+        self._problem = ""
+        self._mechanism: Mechanism | None = None  # what the whole structure is, if it cannot be solved
+        self._page, self._page_of, self._first = Page(), -1, 0
+        self._blank = Model()
+        self._places = [View(page=Page(), legend=False) for _ in range(3)]
+        self._head, self._foot = View(page=Page(), legend=False), View(page=Page(), legend=False)
+
+    @property
+    def message(self) -> str:
+        """What is expected, or why the structure cannot be solved."""
+        self.finish()
+        return self._told
+
+    @property
+    def _told(self) -> str:
+        return words.message(self.shown_guide) if self.shown_guide else self._problem
+
+    def enter(self, session: Session) -> None:
+        self._problem, self._mechanism, self._page_of = "", None, -1
+        self.work(session, "Solving the structure", partial(self._begin, session))
+
+    def _begin(self, session: Session) -> None:
+        from game.force_method.guide import (  # scipy is imported only here
+            Guide,
+            Mechanism,
+            base_structure,
+            view_like,
+        )
+        from systems.statics.force_method import ForceMethodError
+
+        try:
+            self.shown_guide = Guide(session.model, session.schedule, session.view)
+        except ForceMethodError as error:
+            self._problem = str(error)
+            if error.motion is not None:
+                copy = base_structure(session.model, [])
+                self._mechanism = Mechanism(copy, error.motion, view_like(session.view))
+
+    def exit(self, session: Session) -> None:
+        self.shown_guide = self._mechanism = self._work = None
+
+    @property
+    def guide(self) -> Guide | None:
+        """Where the person is, all work done; None if the structure cannot be solved."""
+        self.finish()
+        return self.shown_guide
+
+    def finish(self) -> None:
+        work, self._work = self._work, None
+        if work is not None:
+            work.do()
+
+    def work(self, session: Session, text: str, do: Callable[[], object]) -> None:
+        """Do something: if it may take a while, once a picture has said so, or when somebody asks for the guide."""
+        if session.model.rods.count <= LARGE:
+            do()
+        else:
+            self._work = _Work(f"{text} with {session.model.rods.count} rods …", do)
+
+    def _moving(self) -> list[Set | Mechanism]:
+        if self.shown_guide is not None:
+            return self.shown_guide.moving
+        return [self._mechanism] if self._mechanism is not None else []
+
+    def advance(self, session: Session, elapsed: float) -> None:
+        if self._work is not None and not self._work.said:
+            self._work.said = True
+            return
+        self.finish()
+        for moving in self._moving():
+            moving.view.forces_known = moving.simulation is None or session.has_program(moving.simulation)
+            if moving.view.forces_known:
+                moving.advance(elapsed)
+
+    def busy(self, session: Session) -> bool:
+        return self._work is not None or bool(self._moving())
+
+    def hint(self, session: Session) -> str:
+        return words.hint(self.shown_guide) if self.shown_guide else "Esc back to pause"
+
+    # --- what is seen ------------------------------------------------------------------------------
+
+    def focus(self, session: Session) -> tuple[Model, View]:
+        """Set 1, from which an unknown is picked."""
+        self._lay_out(session)
+        if self.shown_guide is None:
+            return self._blank, self._foot
+        return self.shown_guide.sets[0].model, self.shown_guide.sets[0].view
+
+    def stages(self, session: Session) -> list[tuple[Model, View]]:
+        """The message, the sets, and the working with the status line."""
+        return [(self._blank, self._head), *self._lay_out(session), (self._blank, self._foot)]
+
+    def _lay_out(self, session: Session) -> list[tuple[Model, View]]:
+        """Place everything in the window; returns what stands in the middle."""
+        guide, ratio, whole = self.shown_guide, session.view.pixel_ratio, session.view.canvas
+        self._head.heading = session.notice or self._told
+        part = f"Part {guide.part} of {PARTS}" if guide else "Not possible"
+        if self._work is not None:
+            self._head.heading, part = self._work.text, "Working"
+        self._foot.status = Status(time=None, state=part, hint=self.hint(session))
+        self._foot.page = self._working()
+        head = round(heading_height(self._head.heading, whole.width, ratio))
+        wanted = page_height(self._foot.page, whole.width, ratio)
+        foot = min(wanted, round(MOST_OF_HEIGHT * whole.height))
+        if foot < wanted:
+            self._foot.status = replace(self._foot.status, hint=f"Wheel more rows     {self.hint(session)}")
+        middle = Viewport(whole.left, whole.top + head, whole.width, max(whole.height - head - foot, 1))
+        _place(self._head, Viewport(whole.left, whole.top, whole.width, head), ratio)
+        _place(self._foot, Viewport(whole.left, middle.top + middle.height, whole.width, foot), ratio)
+        return self._sets(middle, ratio)
+
+    def _working(self) -> Page:
+        """The equations and the table; made anew in every part only, since a table may be long."""
+        guide = self.shown_guide
+        if guide is None:
+            return Page()
+        if guide.part != self._page_of:
+            self._page, self._page_of, self._first = (
+                Page(words.working(guide), words.table(guide)),
+                guide.part,
+                0,
+            )
+        return Page(self._page.lines, self._page.table, self._first)
+
+    def _sets(self, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
+        captions = words.captions(self.shown_guide) if self.shown_guide else [("",)] * 3
+        there: list[Set | Mechanism] = [*self.shown_guide.shown] if self.shown_guide else self._moving()
+        places = [(index, _third(middle, index)) for index in range(3)]
+        if there and not _readable(places[0][1], ratio):
+            places = [(0 if self._picks else len(there) - 1, middle)]
+        shown = []
+        for index, viewport in places:
+            caption = captions[index]
+            if index >= len(there):
+                view = self._places[index]
+                _place(view, viewport, ratio)
+            else:
+                view = there[index].view
+                if view.camera.viewport != viewport or view.pixel_ratio != ratio:
+                    _place(view, viewport, ratio)
+                    _fit(there[index].model, view)
+            view.caption = caption
+            shown.append((there[index].model if index < len(there) else self._blank, view))
+        return shown
+
+    @property
+    def _picks(self) -> bool:
+        """True while the unknown is picked from set 1."""
+        return self.shown_guide is not None and self.shown_guide.part == 2
+
+    # --- looking closer: all sets alike ----------------------------------------------------------------
+
+    def cameras(self, session: Session) -> list[Camera]:
+        """Those of the sets; what one shows, the others do."""
+        return [view.camera for _, view in self._lay_out(session)]
+
+    def zoom(self, session: Session, factor: float, pixel: Vector) -> None:
+        foot = self._foot.camera.viewport
+        if foot.contains(pixel):
+            self._scroll(session, 1 if factor < 1.0 else -1)
+            return
+        cameras = self.cameras(session)
+        under = next((c.viewport for c in cameras if c.viewport.contains(pixel)), cameras[0].viewport)
+        for camera in cameras:
+            v = camera.viewport
+            camera.zoom(factor, (pixel[0] - under.left + v.left, pixel[1] - under.top + v.top))
+
+    def _scroll(self, session: Session, rows: int) -> None:
+        last = max(len(self._page.table) - 2, 0)
+        self._first = min(max(self._first + rows, 0), last)
+
+    def pan(self, session: Session, pixels: Vector) -> None:
+        for camera in self.cameras(session):
+            camera.pan(pixels)
+
+    def fit(self, session: Session) -> None:
+        for model, view in self._lay_out(session):
+            _fit(model, view)
+
+
+def _place(view: View, viewport: Viewport, ratio: float) -> None:
+    view.camera.viewport, view.pixel_ratio = viewport, ratio
+
+
+def _fit(model: Model, view: View) -> None:
+    """Show the whole model below or, in a low place, beside the caption, which grows from part to part."""
+    v, u = view.camera.viewport, view.pixel_ratio
+    left, above = (v.width // 3, 0) if _is_low(v) else (0, round(min(CAPTION * u, 0.4 * v.height)))
+    below = round(min(SCALE * u, 0.1 * v.height))
+    within = Viewport(v.left + left, v.top + above, v.width - left, max(v.height - above - below, 1))
+    view.camera.fit(drawn_positions(model), min(MARGIN, 0.2 * v.height / u), within, u)
+
+
+def _readable(place: Viewport, ratio: float) -> bool:
+    """Whether a set has enough room beside or above others; else only the newest is shown, or what is picked from."""
+    height = LEAST_LOW if _is_low(place) else LEAST_HEIGHT
+    return place.width >= LEAST_WIDTH * ratio and place.height >= height * ratio
+
+
+def _is_low(place: Viewport) -> bool:
+    return place.width > LOW * place.height
+
+
+def _third(middle: Viewport, index: int) -> Viewport:
+    """One of three equal parts: beside each other in a wide window, else above each other."""
+    if middle.width >= WIDE * middle.height:
+        edges = [middle.left + middle.width * i // 3 for i in range(4)]
+        return Viewport(edges[index], middle.top, edges[index + 1] - edges[index], middle.height)
+    edges = [middle.top + middle.height * i // 3 for i in range(4)]
+    return Viewport(middle.left, edges[index], middle.width, edges[index + 1] - edges[index])

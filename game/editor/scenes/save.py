@@ -1,0 +1,73 @@
+"""Save: giving the model a name and a file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from components.form import Form, Tile
+from game.documents import library, models
+from game.editor.scenes.files import FileScene, saved_tiles
+from systems.forms import typing
+
+if TYPE_CHECKING:
+    from game.session import Session
+
+
+class Save(FileScene):
+    """Saving under a name; what has the name already is only replaced when asked twice."""
+
+    name = "save"
+    heading = "Save"
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._confirmed = ""
+
+    def make_form(self, session: Session) -> Form:
+        self._confirmed = ""
+        form = self.new_form("Save", session.file.name, saved_tiles())
+        form.boxes[0].explanation = f"A file in {library.models_folder()}"
+        return form
+
+    def choose(self, session: Session, tile: Tile) -> None:
+        """A tile's name may be used again, or changed a little."""
+        self.form.choose(None)
+        typing.select(self.form, self.box)
+        typing.put(self.form, self.box, tile.file)
+        self.changed(session)
+
+    def move(self, session: Session, direction: str) -> None:
+        super().move(session, direction)
+        chosen = self.form.chosen
+        if chosen is not None and self.box.text != chosen.file:
+            typing.put(self.form, self.box, chosen.file)
+            self.say("")
+
+    def accept(self, session: Session) -> None:
+        """Return: save."""
+        name = self.box.text.strip()
+        try:
+            path = library.path_of(name)
+            if path.exists() and self._confirmed != name:
+                self._confirmed = name
+                self.say(f"There is a model '{name}' already. Return again replaces it; Esc does not.")
+                return
+            path.parent.mkdir(parents=True, exist_ok=True)
+            session.save_as(path)
+        except OSError as error:
+            self.say(
+                f"{library.models_folder()} cannot be made: {error.strerror}. Start Pinjoint with {library.DATA_VARIABLE}"
+                " naming a folder where you may write."
+            )
+            return
+        except (library.NameRefused, models.ModelError) as error:
+            self.say(str(error))
+            return
+        session.scenes.request("pause")
+
+    def changed(self, session: Session) -> None:
+        super().changed(session)
+        self._confirmed = ""
+
+    def hint(self, session: Session) -> str:
+        return "Type a name     Return save     Esc back"

@@ -1,1 +1,0 @@
-"""What a person keeps between sessions: models, unsaved work, preferences."""

@@ -1,0 +1,1 @@
+"""Collisions of free particles: exact flight from impact to impact, and piles."""

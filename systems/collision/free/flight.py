@@ -1,0 +1,270 @@
+"""Flight: stands in for the step program where nothing but constant forces and impacts moves the particles."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import Role
+from components.model import Model
+from components.obstacles import obstacles
+from components.paths import Paths
+from components.rod import nodes
+from systems.base import StopReason
+from systems.collision.columns import CROWD_COUNTS, CROWD_NUMBERS, MOVING
+from systems.collision.driven.compiled import kernels
+from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, engine, has_parts, load_part
+from systems.collision.impacts import Impacts
+
+if TYPE_CHECKING:
+    from systems.collision.free.discs import Discs
+
+CROWD = len(CROWD_COUNTS) + len(CROWD_NUMBERS)
+UNSEEN = 1e-3  # of a radius: nobody draws overlaps as small, but steps of piles leave such
+CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
+
+
+def may_pile(model: Model, pulled: bool) -> bool:
+    """True if anything presses particles together for long: a hand that pulls, or forces."""
+    return pulled or bool(model.particles.constant_force.any())
+
+
+def part_overlaps(model: Model) -> str:
+    """Move particles apart that overlap, but for nodes of structures among themselves; says so, or "".
+
+    By how little steps let them sink in is not said.
+    """
+    from systems.broad_phase import near_pairs
+
+    particles, others = model.particles, obstacles(model)
+    node: NDArray[np.bool_] = np.ones(particles.count + len(others), dtype=bool)  # obstacles count as nodes
+    held = node.copy()
+    held[: particles.count] = (particles.mobility == 0.0).all(axis=1)
+    node[: particles.count] = nodes(model)
+
+    def among(pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
+        left_alone: NDArray[np.bool_] = np.logical_or(node[pairs].all(axis=1), held[pairs].all(axis=1))
+        return np.logical_not(left_alone)
+
+    displacement = particles.displacement.copy()
+    touching = near_pairs(particles.position + displacement, particles.radius, others)
+    if not among(touching).any():
+        return ""
+    from systems.collision.overlaps import overlaps, part
+
+    overlapping = overlaps(particles.position + displacement, particles.radius, others)
+    overlapping = overlapping[among(overlapping)]
+    count = len(overlapping)
+    if count == 0:
+        return ""
+    columns = particles.position, displacement, particles.radius, particles.mobility
+    left = part(*columns, among, kernels().part, others)
+    farthest = float(np.abs(displacement - particles.displacement).max())
+    model.writable("particles.displacement")[...] = displacement
+    if farthest <= UNSEEN * float(particles.radius.min()) and not left:
+        return ""
+    pairs = "1 pair of particles" if count == 1 else f"{count} pairs of particles"
+    note = f"{pairs} overlapped and were moved apart along their lines of centres."
+    if (overlapping[:, 1] >= particles.count).any():
+        pairs = "1 overlap" if count == 1 else f"{count} overlaps"
+        note = f"{pairs} of particles with others or with obstacles: they were moved apart."
+    return note if left == 0 else f"{note} {left} still overlap: move them, or free a direction."
+
+
+class PullingHand(Protocol):
+    """What pulls particles besides their constant forces; see systems/edit/pull.py."""
+
+    def forces(self, count: int) -> NDArray[np.float64]:
+        """Force on each of so many particles (kN), shape (count, 2)."""
+
+
+class Flight:
+    """The particles of one model on their exact paths from impact to impact.
+
+    measures: as of a step program. compile_seconds: what compiling it took, or loading it from the cache.
+    What the paths are is part of the model's state: clock.paths. pull: of a hand; its force is constant during a step,
+    so that the paths are exact in it.
+    """
+
+    def __init__(self, model: Model, impacts: Impacts, pull: PullingHand | None = None) -> None:
+        started = time.perf_counter()
+        self.model = model
+        self.measures = np.zeros(8)
+        self._impacts = impacts
+        self._pull = pull
+        for part in (EVENTS, WINDOWS):
+            load_part(part)
+        if has_parts(PILES):
+            load_part(PILES)  # an edit that needs it would wait for that
+        self.bind()
+        self.compile_seconds = time.perf_counter() - started
+
+    @property
+    def resists_motion(self) -> bool:
+        """True if impacts take energy."""
+        least = obstacles(self.model).restitution.min(initial=self.model.settings.restitution)
+        return bool(least < 1.0)
+
+    def bind(self) -> None:
+        """The document changed: paths are found anew."""
+        if may_pile(self.model, self._pull is not None):
+            load_part(PILES)
+        self._flying: Discs | None = None
+        self._state_revision = -1
+
+    @property
+    def _fresh(self) -> bool:
+        return self._flying is not None and self._state_revision == self.model.newest(Role.STATE)
+
+    @property
+    def discs(self) -> Discs:
+        """The engine, in the present state of the model."""
+        if not self._fresh:
+            particles, clock = self.model.particles, self.model.clock
+            self._flying = engine()(
+                particles.position,
+                particles.velocity,
+                particles.radius,
+                np.where(particles.fixed, 0.0, 1.0 / particles.mass[:, None]),
+                displacement=particles.displacement,
+                acceleration=particles.mobility * (particles.constant_force + self._hands_force()),
+                restitution=self.model.settings.restitution,
+                time=clock.time,
+                obstacles=obstacles(self.model),
+                lost=clock.dissipated_impact,
+            )
+            if self._pull is None and clock.paths is not None and self._fits(clock.paths):
+                self._flying.follow(clock.paths)
+            self._state_revision = self.model.newest(Role.STATE)
+        assert self._flying is not None
+        return self._flying
+
+    def _fits(self, paths: Paths) -> bool:
+        """True if the paths lead through the present state, bit for bit."""
+        particles, now = self.model.particles, self.model.clock.time
+        count = particles.count + len(obstacles(self.model))
+        inside = (paths.contacts < count).all() and len(paths.crowd) == CROWD
+        if paths.motion.shape != (particles.count, len(MOVING)) or not inside:
+            return False
+        u, v, a = paths.motion[:, 0:2], paths.motion[:, 2:4], paths.motion[:, 4:6]
+        s = (now - paths.motion[:, 6])[:, None]
+        here = u + s * (v + 0.5 * s * a)
+        return bool((here == particles.displacement).all() and (v + s * a == particles.velocity).all())
+
+    # --- running -----------------------------------------------------------------------------------
+
+    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
+        """Let the time of up to `steps` steps pass; returns how many, and why it stopped.
+
+        No step ends after `until` (s); one that would pass `landing` (s) is cut to end there. Steps are only
+        where one looks: what happens does not depend on them, unless a hand pulls.
+        """
+        if self._pull is None:
+            return self._pass(steps, until, landing)
+        taken, reason = 0, StopReason.DONE
+        while taken < steps and reason is StopReason.DONE and self._pulled_step(until, landing):
+            taken += 1
+        return taken, reason
+
+    def _pulled_step(self, until: float, landing: float) -> int:
+        """A step in which the hand's force stays as it is; its work is accounted for."""
+        force, particles = self._hands_force(), self.model.particles
+        self._flying, before = None, particles.displacement.copy()
+        taken, _ = self._pass(1, until, landing)
+        if taken:
+            work = 1000.0 * float((force * (particles.displacement - before)).sum())
+            self.model.writable("clock.work")[0] = self.model.clock.work + work
+            self._state_revision = self.model.newest(Role.STATE)
+        return taken
+
+    def _hands_force(self) -> NDArray[np.float64]:
+        """On each particle (kN)."""
+        count = self.model.particles.count
+        return np.zeros((count, 2)) if self._pull is None else self._pull.forces(count)
+
+    def _pass(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
+        clock = self.model.clock
+        first, origin, size = clock.steps - clock.origin_steps, clock.origin, clock.step_size
+        if until < math.inf:
+            steps = min(steps, max(math.floor((until - origin) / size * (1.0 + 1e-15)) - first, 0))
+        target = origin + (first + steps) * size
+        if landing < math.inf and origin + (first + steps + 1) * size > landing > clock.time:
+            return self._land(landing)
+        if steps == 0:
+            return 0, StopReason.DONE
+        discs = self._fly(target)
+        rest = self._steps_until_rest(discs)
+        if rest <= steps:
+            steps = int(rest)
+        self._enter(discs, steps, origin + (first + steps) * size)
+        return steps, StopReason.REST if rest <= steps else StopReason.DONE
+
+    def _land(self, landing: float) -> tuple[int, StopReason]:
+        discs = self._fly(landing)
+        self._enter(discs, 1, landing)
+        self.model.writable("clock.origin")[0] = landing
+        self.model.writable("clock.origin_steps")[0] = self.model.clock.steps
+        return 1, StopReason.DONE
+
+    def _fly(self, target: float) -> Discs:
+        """Advance the discs and record the impacts."""
+        discs = self.discs
+        _, happened = discs.advance(target)
+        if len(happened):
+            clock = self.model.clock
+            columns = (happened.time, happened.pairs, happened.impulse, happened.loss, happened.point)
+            self._impacts.record(np.column_stack(columns))
+            self.model.writable("clock.collisions")[0] = clock.collisions + len(happened)
+        return discs
+
+    def _steps_until_rest(self, discs: Discs) -> float:
+        """In how many steps a check will find everything at rest; infinite if it moves."""
+        if self._pull is not None or not discs.at_rest:
+            return math.inf
+        clock = self.model.clock
+        since = math.ceil((discs.last_change - clock.origin) / clock.step_size) + clock.origin_steps
+        return -(-max(since, clock.steps + 1) // CHECK_INTERVAL) * CHECK_INTERVAL - clock.steps
+
+    def _enter(self, discs: Discs, steps: int, now: float) -> None:
+        """Put the state at a time into the model."""
+        displacement, velocity = discs.state_at(now)
+        self.model.writable("particles.displacement")[...] = displacement
+        self.model.writable("particles.velocity")[...] = velocity
+        self.model.writable("clock.dissipated_impact")[0] = discs.lost_at(now)
+        self.model.writable("clock.time")[0] = now
+        self.model.writable("clock.steps")[0] += steps
+        self.model.writable("clock.paths")[0] = discs.paths()
+        self._state_revision = self.model.newest(Role.STATE)
+
+    # --- reading -----------------------------------------------------------------------------------
+
+    def commit(self) -> None:
+        """Nothing here has a history."""
+
+    @np.errstate(over="ignore", invalid="ignore")  # of forces that are too large to compute with, as is said
+    def observe(self) -> None:
+        """Bring forces, reactions and measures up to date."""
+        particles = self.model.particles
+        constant, fixed, velocity = particles.constant_force, particles.fixed, particles.velocity
+        force = constant + self._hands_force() + 0.001 * self.discs.contact_forces()
+        self.model.writable("particles.applied_force")[...] = force
+        self.model.writable("particles.reaction")[...] = np.where(fixed, 0.0 - force, 0.0)
+        free: NDArray[np.float64] = np.where(fixed, 0.0, force)
+        self.measures[:] = (
+            0.5 * float((particles.mass[:, None] * velocity * velocity).sum()),
+            1000.0 * float((free * particles.mobility * free).sum()),
+            0.0,
+            1000.0 * float((constant * particles.displacement).sum()),
+            float(np.abs(free).max(initial=0.0)),
+            float(np.abs(constant).max(initial=0.0)),
+            0.0,
+            1000.0 * float((free * velocity).sum()),
+        )
+
+    def conserved_energy(self) -> float:
+        """Energy is exact to round-off: nothing guards it."""
+        return 0.0

@@ -1,0 +1,206 @@
+"""Repose: the equilibrium near by in which a pile ends that hardly moves any more.
+
+What is sought is where the motion ends, not a short cut to it: an equilibrium counts only where no disc is farther
+from it than a fortieth of its radius; from farther away, the pile goes on moving.
+
+It is a least of the potential energy −f·x under gaps ≥ 0. Since discs are convex, a stable one has as many contacts
+as freedoms, and these alone determine it. It is found by the interior-point method: gaps s and forces λ follow
+    f + Nᵀ λ = 0,   s = gap(x),   λ s = μ,   μ → 0
+by Newton's method, with the normals N at the present x and a little inertia, so that discs that nothing holds yet do
+not run away (Nocedal, Wright, Numerical Optimization (2006), chapter 19).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix, diags
+from scipy.sparse.linalg import splu
+
+from components.obstacles import Obstacles
+from systems.broad_phase import Floats, Rows, near_pairs, nearest
+
+AROUND = 0.1  # of its radius around each disc, in which its neighbours are listed, and iterates are sought
+FARTHEST = 0.025  # of its radius: an equilibrium to which a disc would go farther is not near
+FREE_STRIDE = 1.0  # radii by which inertia lets a disc go in an iteration that nothing holds
+FIRST_BARRIER = 1e-5  # μ at first, in weight × radius of the lighter and the smaller of a pair
+QUICK, SLOW = 0.03, 0.8  # what is left of μ after an iteration that got far, and after others
+FAR = 0.5  # of the way that Newton's method wanted
+TO_EDGE = 0.995  # of the way to where a gap or a force vanishes
+STILL, BALANCED = 1e-10, 5e-10  # radii that discs move at the end, and what is unbalanced of the largest weight
+CLOSED = 1e-13  # μ at the end
+SOON = 10  # iterations after which discs move little, or no equilibrium is near
+LITTLE = 1e-2  # radii
+MOST_ITERATIONS = 60  # 10 to 30 are usual
+SYMMETRIC = {"SymmetricMode": True}
+
+
+@dataclass(frozen=True)
+class Repose:
+    """The equilibrium of a pile.
+
+    discs: that lie in the pile, shape (k,). displacement: of all to there, shape (n, 2), m. pairs: that push each
+    other, shape (c, 2). forces: how strongly, shape (c,), N.
+    """
+
+    discs: Rows
+    displacement: Floats
+    pairs: Rows
+    forces: Floats
+
+
+@dataclass
+class _Gaps:
+    """Pairs that may touch: their gaps (slack, m) and forces (N) as iterated, and what is natural for them (J)."""
+
+    pairs: Rows
+    slack: Floats
+    force: Floats
+    scale: Floats
+
+
+class Resting:
+    """Discs that lie on one another, on what is held and on obstacles.
+
+    place: centres, shape (n, 2), m. radius: shape (n,), m. inverse_mass: of each direction, shape (n, 2), 1/kg,
+    0 where it is held. pull: acceleration without contacts, shape (n, 2), m/s². may_collide: tells which of the
+    pairs it is given do, in which obstacles count on after the discs. pushing: pairs of which
+    it is known that they push, the lower number first, shape (c, 2); forces: how strongly, shape (c,), N. A disc in
+    none of these flies: it is not moved, and what it comes near is not at rest.
+    """
+
+    def __init__(
+        self,
+        place: Floats,
+        radius: Floats,
+        inverse_mass: Floats,
+        pull: Floats,
+        may_collide: Callable[[Rows], NDArray[np.bool_]],
+        obstacles: Obstacles,
+        pushing: Rows,
+        forces: Floats,
+    ) -> None:
+        self._start, self._place, self._radius = place, place.copy(), radius
+        self._may_collide, self._obstacles = may_collide, obstacles
+        count = len(place)
+        self._moves: NDArray[np.bool_] = np.zeros(count + len(obstacles), dtype=bool)
+        self._moves[pushing] = True
+        self._moves[:count] &= (inverse_mass > 0.0).any(axis=1)
+        self._moves[count:] = False
+        self._flies = np.zeros_like(self._moves)
+        self._flies[:count] = (inverse_mass > 0.0).any(axis=1) & ~self._moves[:count]
+        self._free = (inverse_mass > 0.0) & self._moves[:count, None]
+        self._unknown = np.full((len(self._moves), 2), -1)
+        self._unknown[:count][self._free] = np.arange(self._free.sum())
+        self._force: Floats = (pull / np.where(self._free, inverse_mass, 1.0))[self._free]
+        mass = 1.0 / np.where(self._free.any(axis=1), inverse_mass.max(axis=1), 1.0)
+        everywhere = np.full(len(obstacles), np.inf)
+        self._weight = np.append(mass * float(np.hypot(*pull.T).max(initial=0.0)), everywhere)
+        self._weight[~self._moves] = np.inf
+        self._size = np.append(radius, everywhere)
+        inertia = (self._weight[:count] / (FREE_STRIDE * radius))[:, None]
+        self._inertia = np.broadcast_to(inertia, place.shape)[self._free]
+        self._gaps = self._listed(pushing, forces)
+
+    def _near(self) -> Rows:
+        pairs = near_pairs(self._place, (1.0 + AROUND) * self._radius, self._obstacles)
+        return pairs[self._moves[pairs].any(axis=1) & self._may_collide(pairs)]
+
+    def repose(self) -> Repose | None:
+        """The equilibrium, if it is near and rests on nothing that flies by."""
+        if len(self._force) == 0 or not self._iterate():
+            return None
+        pairs, slack, force = self._gaps.pairs, self._gaps.slack, self._gaps.force
+        weight, size = self._weight[pairs].min(axis=1), self._size[pairs].min(axis=1)
+        pushing = force / weight > slack / size
+        if self._flies[pairs[pushing]].any():
+            return None
+        displacement = self._place - self._start
+        return Repose(np.flatnonzero(self._moves), displacement, pairs[pushing], force[pushing])
+
+    def _iterate(self) -> bool:
+        """Newton's method as far as it leads; True if to an equilibrium near by."""
+        barrier, gaps = FIRST_BARRIER, self._gaps
+        for turn in range(MOST_ITERATIONS):
+            try:
+                motion, opening, change, left = self._newton(barrier)
+            except RuntimeError:  # singular
+                return False
+            forward, stronger = _share(gaps.slack, opening), _share(gaps.force, change)
+            self._place = self._place + forward * motion
+            astray = turn >= SOON and self._farthest(motion) > LITTLE
+            if astray or not self._farthest(self._place - self._start) <= AROUND:
+                return False
+            gaps.slack += forward * opening
+            gaps.force += stronger * change
+            present = float((gaps.force * gaps.slack / gaps.scale).mean())
+            if self._farthest(motion) <= STILL and left <= BALANCED and present <= CLOSED:
+                return self._farthest(self._place - self._start) <= FARTHEST
+            barrier = max((QUICK if min(forward, stronger) > FAR else SLOW) * present, 0.1 * CLOSED)
+        return False
+
+    def _farthest(self, motion: Floats) -> float:
+        """The longest of displacements, in the radius of its disc."""
+        return float((np.abs(motion).max(axis=1) / self._radius).max())
+
+    def _listed(self, pushing: Rows, forces: Floats) -> _Gaps:
+        """The pairs that are near, with the forces of those that push, and such gaps that λ s = μ where they are small."""
+        pairs = self._near()
+        size = self._size[pairs].min(axis=1)
+        scale = self._weight[pairs].min(axis=1) * size
+        known, count = np.zeros(len(pairs)), len(self._moves)
+        _, here, there = np.intersect1d(pairs @ [count, 1], pushing @ [count, 1], return_indices=True)
+        known[here] = forces[there]
+        force = np.maximum(known, np.sqrt(FIRST_BARRIER) * scale / size)
+        gap, _ = self._gap(pairs)
+        slack = np.maximum(gap, FIRST_BARRIER * scale / force)
+        return _Gaps(pairs, slack, np.where(known > 0.0, force, FIRST_BARRIER * scale / slack), scale)
+
+    def _gap(self, pairs: Rows) -> tuple[Floats, Floats]:
+        """Gaps, and unit vectors from the first of each pair to what is nearest of the second."""
+        others = self._obstacles
+        place = np.concatenate([self._place, others.start])
+        span = np.concatenate([np.zeros_like(self._place), others.span])
+        radius = np.append(self._radius, others.radius)
+        line = nearest(place[pairs[:, 1]] - place[pairs[:, 0]], span[pairs[:, 1]])
+        distance = np.hypot(line[:, 0], line[:, 1])
+        return distance - radius[pairs].sum(axis=1), line / distance[:, None]
+
+    def _newton(self, barrier: float) -> tuple[Floats, Floats, Floats, float]:
+        """Newton's step: of places, gaps and forces; and how much of the largest weight is unbalanced before it."""
+        gaps = self._gaps
+        gap, normal = self._gap(gaps.pairs)
+        slack, force = gaps.slack, gaps.force
+        np.maximum(slack, gap, out=slack)
+        opens = self._derivative(gaps.pairs, normal)
+        pushes = opens.T.tocsr()
+        unbalanced = self._force + pushes @ force
+        stiffness = force / slack
+        matrix = (pushes @ diags(stiffness) @ opens + diags(self._inertia)).tocsc()
+        factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC)
+        missing = gap - slack
+        wanted = barrier * gaps.scale / slack
+        moved = factors.solve(self._force + pushes @ (wanted - stiffness * missing))
+        opening = opens @ moved + missing
+        motion = np.zeros_like(self._place)
+        motion[self._free] = moved
+        left = float(np.abs(unbalanced).max() / self._weight[self._moves].max())
+        return motion, opening, wanted - force - stiffness * opening, left
+
+    def _derivative(self, pairs: Rows, normal: Floats) -> csr_matrix:
+        """N: how gaps follow from the unknown displacements."""
+        unknown = self._unknown[pairs]
+        known = unknown >= 0
+        rows = np.broadcast_to(np.arange(len(pairs))[:, None, None], unknown.shape)
+        values = np.stack([-normal, normal], axis=1)
+        shape = len(pairs), len(self._force)
+        return csr_matrix((values[known], (rows[known], unknown[known])), shape=shape)
+
+
+def _share(value: Floats, change: Floats) -> float:
+    """How much of a change leaves all values positive, at most all of it."""
+    shrinking = change < 0.0
+    return min(1.0, TO_EDGE * float((-value[shrinking] / change[shrinking]).min(initial=np.inf)))

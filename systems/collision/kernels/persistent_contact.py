@@ -1,0 +1,326 @@
+"""Lasting contacts: discs that rest on one another or slide along one another.
+
+A contact lasts while its force pushes: forces F ≥ 0 and accelerations satisfy, at the contacts whose discs do not
+separate, n·Δa + |Δv|²/d ≥ 0, and F = 0 where it is > 0. Discs that are thereby at rest stay where they are, at
+no cost. Discs that slide take steps h of RATTLE (Andersen, J. Comput. Phys. 52, 1983) with one-sided constraints:
+constant forces along the normals at the start such that the discs touch at the end of the step,
+    u₁ = u₀ + h v₀ + h²/2 (g + W N F),   gap(u₁) ≥ 0 ⟂ F ≥ 0,
+and velocities v₁ = v₀ + h/2 (g + W N F) + h/2 g + W N₁ p with n₁·Δv₁ ≥ 0 ⟂ p ≥ 0. In between they are on
+parabolas like all others, so that impacts with them are found as exactly.
+"""
+
+import math
+
+from systems.collision.columns import (
+    ACTIVE,
+    BIAS,
+    DISTANCE,
+    FORCE,
+    GIVEN,
+    GX,
+    GY,
+    NEXT,
+    NONE,
+    NOW,
+    NX,
+    NY,
+    OPENING,
+    OTHER,
+    RADIUS,
+    ROUND,
+    SPARE,
+    SPARES,
+    TX,
+    TY,
+    WX,
+    WY,
+)
+from systems.collision.kernels import compiled
+from systems.collision.kernels.projection import MOST_SWEEPS, begin, copy_motion, opening_rate, project
+from systems.collision.kernels.time_of_impact import (
+    NEVER,
+    is_straight,
+    passing,
+    place_noise,
+    relative_motion,
+    speed_noise,
+    touch_speed,
+)
+
+STILL = 1e-10  # of the speed and acceleration that gravity gives; what moves less is at rest
+STEP_ANGLE = 0.0156  # by which discs turn around one another in a step; discs sink by its cube / 8 of a radius
+LEAST_SHARE = 1e-4  # of such a step, by which the end of a flat side, or of a contact, may be missed
+MOST_CORRECTIONS = 40  # of the forces in a step; 3 are usual
+MOST_IN_VAIN = 5  # of them, one after the other, that do not halve the largest gap
+
+
+@compiled
+def is_held(i, discs):
+    """True if a disc cannot move at all."""
+    return discs[i, WX] == 0.0 and discs[i, WY] == 0.0
+
+
+# --- the table ----------------------------------------------------------------------------------------------
+
+
+@compiled
+def find_lasting(i, j, ties):
+    """Entry of the lasting contact of two discs, in the list of either; −1 if they have none."""
+    for a, b in ((i, j), (j, i)):
+        entry = ties.first_lasting[a]
+        while entry != NONE:
+            if ties.lasting[entry, OTHER] == b:
+                return entry
+            entry = ties.lasting[entry, NEXT]
+    return NONE
+
+
+@compiled
+def forget_lasting(i, ties, counts):
+    """Strike out all entries of a disc."""
+    entry = ties.first_lasting[i]
+    while entry != NONE:
+        following = ties.lasting[entry, NEXT]
+        ties.lasting[entry, NEXT] = counts[SPARE]
+        counts[SPARE] = entry
+        counts[SPARES] += 1
+        entry = following
+    ties.first_lasting[i] = NONE
+
+
+@compiled
+def note_lasting(i, j, force, discs, ties, counts):
+    """Enter a lasting contact with j for disc i, unless that is held."""
+    if not is_held(i, discs):
+        entry = counts[SPARE]
+        counts[SPARE] = ties.lasting[entry, NEXT]
+        counts[SPARES] -= 1
+        ties.lasting[entry, OTHER] = j
+        ties.lasting[entry, NEXT] = ties.first_lasting[i]
+        ties.forces[entry] = force
+        ties.first_lasting[i] = entry
+
+
+# --- the end of a step --------------------------------------------------------------------------------------
+
+
+@compiled
+def stop_sinking(count, touching, group):
+    """Project the velocities in `motion` for the contacts that have lasted until now."""
+    active = 0
+    for c in range(touching):
+        group.contacts[c, GIVEN] = 0.0
+        if group.contacts[c, FORCE] > 0.0 and group.contacts[c, OPENING] > 0.0:
+            group.marks[ACTIVE, active] = c
+            active += 1
+    if active > 0:
+        begin(count, group)
+        project(count, active, 0.0, MOST_SWEEPS, group)
+
+
+# --- the forces from now on ---------------------------------------------------------------------------------
+
+
+@compiled
+def support(count, touching, discs, group, numbers):
+    """Forces in the contacts of a group whose velocities are in `motion`.
+
+    Returns for how long they hold: NEVER if nothing slides. `motion` becomes the accelerations, `other` the
+    velocities; sets the column FORCE.
+    """
+    copy_motion(group.motion, group.other, count)
+    closed = _push_now(count, touching, discs, group, numbers)
+    duration = NEVER
+    if not _stop_where_still(count, closed, discs, group):
+        duration = _duration(closed, discs, group, numbers)
+        if duration < NEVER:
+            least = LEAST_SHARE * duration
+            met = _meet_at_end(duration, count, closed, discs, group, numbers)
+            while duration > least and (not met or _one_lets_go(closed, group)):  # or they meet again at once
+                duration = max(0.25 * duration, least)
+                closed = _push_now(count, touching, discs, group, numbers)
+                met = _meet_at_end(duration, count, closed, discs, group, numbers)
+            if not met:
+                closed = _push_now(count, touching, discs, group, numbers)
+    for k in range(closed):
+        c = group.marks[ACTIVE, k]
+        group.contacts[c, FORCE] = group.contacts[c, GIVEN]
+    return duration
+
+
+@compiled
+def _push_now(count, touching, discs, group, numbers):
+    """The forces at this instant, in the columns FORCE and GIVEN of the closed contacts; returns how many these are."""
+    closed = _list_closed(touching, discs, group, numbers)
+    for c in range(touching):
+        group.contacts[c, FORCE] = 0.0
+    _pull(count, discs, group)
+    begin(count, group)
+    project(count, closed, 0.0, MOST_SWEEPS, group)
+    for k in range(closed):
+        c = group.marks[ACTIVE, k]
+        group.contacts[c, FORCE] = group.contacts[c, GIVEN]
+    return closed
+
+
+@compiled
+def _one_lets_go(closed, group):
+    """True if a contact that pushes at the start of a step has opened at its end."""
+    for k in range(closed):
+        c = group.marks[ACTIVE, k]
+        if group.contacts[c, FORCE] > 0.0 and group.contacts[c, GIVEN] == 0.0:
+            return True
+    return False
+
+
+@compiled
+def _pull(count, discs, group):
+    """The accelerations without contact forces, in `motion`."""
+    for m in range(count):
+        i = group.members[m]
+        group.motion[m, 0], group.motion[m, 1] = discs[i, GX], discs[i, GY]
+
+
+@compiled
+def _relative(c, motion, group):
+    """Motion of a contact's second member relative to its first."""
+    a, b = group.links[c, 0], group.links[c, 1]
+    return motion[b, 0] - motion[a, 0], motion[b, 1] - motion[a, 1]
+
+
+@compiled
+def _list_closed(touching, discs, group, numbers):
+    """List the contacts that do not separate; their bias becomes |Δv|²/d. Returns how many there are."""
+    contacts = group.contacts
+    closed = 0
+    for c in range(touching):
+        contacts[c, BIAS] = 0.0
+        i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+        slow = max(4.0 * group.noise[0], touch_speed(discs, i, j, numbers[NOW]))
+        if contacts[c, OPENING] > 0.0 and opening_rate(c, group.other, group) <= slow:
+            x, y = _relative(c, group.other, group)
+            contacts[c, BIAS] = contacts[c, ROUND] * (x * x + y * y) / contacts[c, DISTANCE]
+            contacts[c, GIVEN] = contacts[c, FORCE]
+            group.marks[ACTIVE, closed] = c
+            closed += 1
+    return closed
+
+
+@compiled
+def _stop_where_still(count, closed, discs, group):
+    """If all discs that contacts push neither move nor accelerate, bring them to rest. False if one does."""
+    pull = 0.0
+    for m in range(count):
+        i = group.members[m]
+        pull = max(pull, abs(discs[i, GX]) + abs(discs[i, GY]))
+    for k in range(closed):
+        c = group.marks[ACTIVE, k]
+        if group.contacts[c, GIVEN] > 0.0:
+            for p in range(2):
+                m = group.links[c, p]
+                speed = STILL * math.sqrt(pull * discs[group.members[m], RADIUS])
+                if _size(group.motion, m) > STILL * pull or _size(group.other, m) > speed:
+                    return False
+    for k in range(closed):
+        c = group.marks[ACTIVE, k]
+        if group.contacts[c, GIVEN] > 0.0:
+            for p in range(2):
+                m = group.links[c, p]
+                group.motion[m, 0], group.motion[m, 1] = 0.0, 0.0
+                group.other[m, 0], group.other[m, 1] = 0.0, 0.0
+    return True
+
+
+@compiled
+def _size(motion, m):
+    return abs(motion[m, 0]) + abs(motion[m, 1])
+
+
+@compiled
+def _duration(closed, discs, group, numbers):
+    """For how long the discs that push one another turn around one another by about STEP_ANGLE.
+
+    At rest they would turn by it under the pull of their weight across the line of centres. Along the flat side
+    of an obstacle nothing turns: its end matters.
+    """
+    duration = NEVER
+    for k in range(closed):
+        c = group.marks[ACTIVE, k]
+        if group.contacts[c, GIVEN] > 0.0:
+            distance = group.contacts[c, DISTANCE]
+            speed = math.hypot(*_relative(c, group.other, group))
+            turn = STEP_ANGLE * distance / speed
+            for p in range(2):
+                i = group.members[group.links[c, p]]
+                pull = math.hypot(discs[i, GX], discs[i, GY])
+                turn = min(turn, STEP_ANGLE * math.sqrt(distance / pull))
+            if is_straight(group.members[group.links[c, 1]], discs):
+                stay = max(_stay(c, discs, group, numbers), LEAST_SHARE * turn)
+                turn = stay if _slides(c, discs, group, numbers) else min(stay, turn)
+            duration = min(duration, turn)
+    return duration
+
+
+@compiled
+def _slides(c, discs, group, numbers):
+    """True if a disc moves along a flat side, not from it by so little that it will be back at once."""
+    i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+    x, y = _relative(c, group.other, group)
+    rate = group.contacts[c, NX] * x + group.contacts[c, NY] * y
+    return group.contacts[c, ROUND] == 0.0 and abs(rate) <= speed_noise(discs, i, j, numbers[NOW])
+
+
+@compiled
+def _stay(c, discs, group, numbers):
+    """For how long the foot of a disc on an obstacle passes none of its ends."""
+    i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+    length = math.hypot(discs[j, TX], discs[j, TY])
+    tx, ty = discs[j, TX] / length, discs[j, TY] / length
+    x, y, _, _, _, _ = relative_motion(discs, i, j, numbers[NOW])
+    vx, vy = _relative(c, group.other, group)
+    ax, ay = _relative(c, group.motion, group)
+    return passing(-(x * tx + y * ty), -(vx * tx + vy * ty), -(ax * tx + ay * ty), length, 0.0)
+
+
+@compiled
+def _end_gap(c, h, discs, group):
+    """Gap of a contact after a time h with the accelerations in `motion` and the velocities in `other`.
+
+    What is nearest of an obstacle is taken to be the same end or flat side as at the start.
+    """
+    vx, vy = _relative(c, group.other, group)
+    ax, ay = _relative(c, group.motion, group)
+    x = group.contacts[c, NX] * group.contacts[c, DISTANCE] + h * (vx + 0.5 * h * ax)
+    y = group.contacts[c, NY] * group.contacts[c, DISTANCE] + h * (vy + 0.5 * h * ay)
+    i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+    if group.contacts[c, ROUND] == 0.0:
+        return group.contacts[c, NX] * x + group.contacts[c, NY] * y - (discs[i, RADIUS] + discs[j, RADIUS])
+    return math.sqrt(x * x + y * y) - (discs[i, RADIUS] + discs[j, RADIUS])
+
+
+@compiled
+def _meet_at_end(h, count, closed, discs, group, numbers):
+    """Correct the forces until the closed contacts are after a time h as near as now, or open. False if none do that.
+
+    What now is too near by round-off stays so: discs that are jammed between others cannot all be put right, and
+    would be pushed the harder the longer one tries.
+    """
+    contacts = group.contacts
+    before, in_vain = NEVER, 0
+    for _ in range(MOST_CORRECTIONS):
+        met, worst = True, 0.0
+        for k in range(closed):
+            c = group.marks[ACTIVE, k]
+            gap = _end_gap(c, h, discs, group) - min(_end_gap(c, 0.0, discs, group), 0.0)
+            i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+            noise = place_noise(discs, i, j, numbers[NOW])
+            if gap < -noise or (gap > noise and contacts[c, GIVEN] > 0.0):
+                met, worst = False, max(worst, abs(gap))
+            contacts[c, BIAS] += 2.0 * gap / (h * h) - opening_rate(c, group.motion, group)
+        in_vain = in_vain + 1 if worst > 0.5 * before else 0
+        if met or in_vain == MOST_IN_VAIN:
+            return met
+        before = worst
+        _pull(count, discs, group)
+        project(count, closed, 0.0, MOST_SWEEPS, group)
+    return False

@@ -1,0 +1,103 @@
+"""Culprits: which mod spoilt a step program or its numbers; it is switched off, and the run goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from components.model import Model
+from components.snapshot import Snapshot
+from systems.base import Mod, StepSystem
+from systems.program.binding import ProgramError, bind
+from systems.program.program import Program
+from systems.program.rows import in_turn
+from systems.program.writer import REVIEW_INTERVAL
+
+STATE = ("particles.displacement", "particles.velocity")
+
+
+def blame_mod(error: ProgramError) -> bool:
+    """Switch off the mod whose system cannot join the step program; False if it is none of a mod."""
+    mod: Mod | None = error.system.mod if error.system is not None else None
+    if mod is None:
+        return False
+    if not mod.off:
+        mod.switch_off(str(error), error)
+    return True
+
+
+def find_culprit(program: Program, safe: Snapshot) -> Mod | None:
+    """Switch off the mod whose kernel first gave what is not finite after a safe state; None if none did.
+
+    The steps are taken again one by one, then the kernels are called one after the other, row by row, in
+    the state before the first bad step and in the one it led to.
+    """
+    model = program.model
+    if not any(system.mod for system in program.systems):
+        return None
+    if _finite(model):  # as a driver that controls its steps leaves it
+        good = Snapshot.take(model)
+        _move_ahead(model)
+    else:
+        good = _last_good(program, safe)
+    led_to = {name: model.column(name).copy() for name in (*STATE, "clock.time")}
+    good.restore(model)
+    found = _bad_kernel(program, model)
+    if found is None:
+        for name, values in led_to.items():  # where they are numbers
+            model.writable(name)[...] = np.where(np.isfinite(values), values, model.column(name))
+        found = _bad_kernel(program, model)
+    if found is None:
+        return None
+    system, element, value = found
+    mod = system.mod
+    if mod is None:
+        return None
+    mod.switch_off(f"{system.name} gave {value} for {element}{_place(system, model)}, which is not finite.")
+    return mod
+
+
+def _finite(model: Model) -> bool:
+    return all(bool(np.isfinite(model.column(name)).all()) for name in STATE)
+
+
+def _move_ahead(model: Model) -> None:
+    """One step on at constant velocity: to about where a step was refused."""
+    step = model.clock.step_size
+    model.writable("particles.displacement")[...] += step * model.particles.velocity
+    model.writable("clock.time")[0] += step
+
+
+def _last_good(program: Program, safe: Snapshot) -> Snapshot:
+    """The state before the first step that leads to what is not finite; the model is left after it."""
+    model = program.model
+    safe.restore(model)
+    before = safe
+    for _ in range(REVIEW_INTERVAL):
+        before = Snapshot.take(model)
+        program.advance(1)
+        if not _finite(model):
+            break
+    return before
+
+
+def _bad_kernel(program: Program, model: Model) -> tuple[StepSystem, str, float] | None:
+    """The first system with a result that is not finite, the element and the result."""
+    for system, given in in_turn(program.systems, model):
+        for row, column in np.argwhere(~np.isfinite(given))[:1].tolist():
+            return system, _element(system, model, row), float(given[row, column])
+    return None
+
+
+def _element(system: StepSystem, model: Model, row: int) -> str:
+    each = getattr(system, "each", "rods")
+    return model.describe(model.tables[each][row]) if row < model.tables[each].count else f"row {row}"
+
+
+def _place(system: StepSystem, model: Model) -> str:
+    """The file and the line in which its kernel begins."""
+    function: Callable[..., Any] = bind(system, model).function
+    code = getattr(function, "py_func", function).__code__
+    return f" ({'/'.join(code.co_filename.split('/')[-2:])}, line {code.co_firstlineno})"

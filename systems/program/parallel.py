@@ -1,0 +1,99 @@
+"""Step programs of very large models, which hold them in blocks."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import Column
+from components.model import Model
+from systems.base import Driver, StepSystem
+from systems.program.blocks import Layout
+from systems.program.cores import cores
+from systems.program.program import Program
+from systems.program.reordered import ArrangedProgram
+from systems.program.writer import VERY_MANY, form_of
+
+_QUICK = ("omp", "tbb")  # threading layers that start the cores in some microseconds
+_SPINS = "10000"  # some 0.1 ms for which a core waits awake: to be woken costs as much as a step of 10 000 rods
+_WORTHWHILE = 100_000  # rods from which another, that takes 50 of them, is worth it
+
+
+def make_program(
+    model: Model,
+    systems: Sequence[StepSystem],
+    driver: Driver,
+    form: str = "",
+    moving: NDArray[np.bool_] | None = None,
+) -> Program:
+    """The step program of a plan, in the form that suits the model or in another one.
+
+    moving: which particles it moves, as in ArrangedProgram; None: all.
+    """
+    form = form or form_of(model, driver)
+    if form == VERY_MANY:
+        return BlockProgram(model, systems, driver, form, moving)
+    if moving is not None:
+        return ArrangedProgram(model, systems, driver, form, moving)
+    return Program(model, systems, driver, form)
+
+
+class BlockProgram(ArrangedProgram):
+    """A step program that holds its model in blocks, which cores share."""
+
+    _arranged: tuple[int, int] | None = None
+
+    def bind(self) -> None:
+        """Take hold of the model's columns: arrange them anew."""
+        self._block_cores = np.ones(1, dtype=np.int64)
+        super().bind()
+
+    def _arrange(self) -> Layout:
+        """The layout of the model, found anew where that changed which it follows from."""
+        model = self.model
+        versions = model.particles.version("position"), model.rods.version("between")
+        if versions != self._arranged:
+            self._whole, self._arranged = Layout.of(model), versions
+        return self._whole
+
+    def _of_layout(self) -> dict[str, Any]:
+        return super()._of_layout() | {
+            "block_particles": self.layout.first_particle,
+            "block_rods": self.layout.first_rod,
+            "block_cores": self._block_cores,
+        }
+
+    def _column(self, path: str) -> Any:
+        return None if path.startswith("block.") else super()._column(path)
+
+    def _loads(self, prefix: str, arranged: Mapping[str, Any]) -> dict[str, Any]:
+        """The same, and where those of each block begin."""
+        loads = super()._loads(prefix, arranged)
+        first = np.searchsorted(loads[f"{prefix}_on"], self.layout.first_particle)
+        return loads | {f"block_{prefix}": first}
+
+    def _cores(self) -> int:
+        """How many cores are worth it; results do not depend on it."""
+        os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # else they wait at full speed for milliseconds
+        os.environ.setdefault("GOMP_SPINCOUNT", _SPINS)
+        import numba
+
+        available = min(cores(), int(numba.config.NUMBA_NUM_THREADS))  # type: ignore[attr-defined]
+        if available > 1:
+            numba.set_num_threads(available)
+            layer = numba.threading_layer()  # type: ignore[attr-defined]
+            if layer not in _QUICK and self._rows("rods") < _WORTHWHILE:
+                return 1
+        return available
+
+    def _of_no_rods(self) -> list[Column]:
+        nothing = dict.fromkeys(("block_particles", "block_rods"), np.zeros(2, dtype=np.intp))
+        return list((self.columns | nothing).values())
+
+    def _load(self) -> None:
+        self._block_cores[0] = self._cores()
+        super()._load()

@@ -1,0 +1,320 @@
+"""Step programs: laws, commits and a driver, compiled into one and bound to the columns of a model."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from components.field import Column, Role
+from components.load import load_breaks, loads_end
+from components.model import Model
+from systems.base import ACCOUNTS, Driver, StepSystem, StopReason
+from systems.physics.integrators import SEARCH
+from systems.program.binding import bind, explain
+from systems.program.block_writer import BlockWriter
+from systems.program.compiler import compile_module, is_compiled, note_compiled
+from systems.program.controlled_writer import MARKS, ControlledWriter
+from systems.program.writer import VERY_MANY, Writer, form_of
+
+ACCOUNT = (
+    *ACCOUNTS,
+    "initial_energy",
+    "potential_reference",
+    "force_scale",
+    "energy_scale",
+    "guard_energy",
+)
+CONTROL = ("time", "step_size", "step_error", "largest_displacement", "largest_speed")
+_ORIGIN = ("origin", "step_limit")
+_COUNTS = ("steps", "origin_steps")
+_OF_PARTICLES = ("displacement", "velocity")
+OBSERVED = {
+    "particles": ("applied_force", "reaction"),
+    "rods": ("axial_force", "length", "strain", "yielding"),
+}
+_GIVEN = ("particles.fixed", "rods.tension_limit", "rods.compression_limit")
+_REASONS = tuple(StopReason)
+
+
+def _writer(model: Model, systems: Sequence[StepSystem], driver: Driver, form: str) -> Writer:
+    joining = [system for system in systems if system.kernel]
+    plain = BlockWriter if form == VERY_MANY else Writer
+    return (ControlledWriter if driver.controlled else plain)(model, joining, driver, form)
+
+
+def has_program(model: Model, systems: Sequence[StepSystem], driver: Driver, form: str = "") -> bool:
+    """True if the program of this plan, in the form that suits the model or another, need only be loaded."""
+    writer = _writer(model, systems, driver, form or form_of(model, driver))
+    return is_compiled(writer.source(), writer.kernels)
+
+
+class Program:
+    """A compiled step program, bound to the columns of one model.
+
+    measures: kinetic, fᵀM⁻¹f, elastic, potential energy (J), residual, largest force, round-off (kN) and power
+        (W) of the state last observed; then those of what it does not move, which are in them.
+    follows_state: loads apart, what is at rest stays so, for forces follow from nothing but the state.
+    module: what is compiled. tolerance: of each step; 0 where the error is not controlled.
+    compile_seconds: what writing and compiling it took, or loading it from the cache.
+    """
+
+    def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver, form: str) -> None:
+        started = time.perf_counter()
+        self.model = model
+        self.systems = tuple(system for system in systems if system.kernel)
+        self.driver = driver
+        self._writer = _writer(model, systems, driver, form)
+        self.module = compile_module(self._writer.source(), self._writer.kernels)
+        self.measures = np.zeros(16)
+        self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
+        self._state_revision = -1
+        self.bind()
+        self._compile()
+        self.compile_seconds = time.perf_counter() - started
+
+    def _compile(self) -> None:
+        """Call everything once, which makes numba compile it, or load it from the cache."""
+        from numba.core.errors import NumbaError
+
+        try:
+            self.advance(0)
+            self.observe()
+            if self._writer.commits:  # of no rods, since a commit at all changes history
+                state = [array[:0] for array in self._state]
+                self.module.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
+        except NumbaError as error:
+            raise explain(self._writer.bound, self.driver, self.model, error) from error
+        note_compiled(self.module)
+
+    def _of_no_rods(self) -> list[Column]:
+        return [column[:0] for column in self._columns]
+
+    @property
+    def columns(self) -> dict[str, Column]:
+        """The columns and arrays that its compiled functions end with, by name, in order."""
+        return dict(zip(self._writer.columns, self._columns, strict=True))
+
+    @property
+    def source(self) -> str:
+        """What it is compiled from."""
+        return self._writer.source()
+
+    @property
+    def kernels(self) -> Mapping[str, Callable[..., Any]]:
+        """What its source calls, by name."""
+        return self._writer.kernels
+
+    @property
+    def written(self) -> tuple[str, ...]:
+        """The columns that commits write, as its source names them."""
+        return tuple(path.replace(".", "_", 1) for b in self._writer.commits for path in b.system.writes)
+
+    @property
+    def marks(self) -> int:
+        """How many numbers it notes of each rod to locate events."""
+        return MARKS * len(self._writer.branching)
+
+    @property
+    def form(self) -> str:
+        """Which of the forms of writer.py it has."""
+        return self._writer.form
+
+    @property
+    def resists_motion(self) -> bool:
+        """True if something depends on velocity: dampers or drag."""
+        return self._writer.rates
+
+    @property
+    def lasting(self) -> str:
+        """The name of a system that changes with time, whether anything moves or not; "" if there is none."""
+        return next((b.system.name for b in self._writer.bound if b.follows_time), "")
+
+    def bind(self) -> None:
+        """Take hold of the model's columns; needed after every change of its document."""
+        model = self.model
+        particles, rods = self._rows("particles"), self._rows("rods")
+        extra: dict[str, Any] = {}
+        for system in self.systems:
+            extra.update(bind(system, model).arrays)
+        written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
+        extra |= {name: self._storage(path) for name, path in written.items()}
+        self._columns = [
+            extra[name] if name in extra else self._column(name.replace("_", ".", 1))
+            for name in self._writer.columns
+        ]
+        self._changes = _by_table_and_role(model, written.values())
+        self._bind_clock()
+        self._displacement, self._velocity = (self._storage(f"particles.{name}") for name in _OF_PARTICLES)
+        self._force, self._resisting, self._predicted = (np.zeros((particles, 2)) for _ in range(3))
+        self._direction = np.zeros((rods, 2))
+        self._state = (self._displacement, self._velocity, self._force, self._resisting, self._direction)
+        self._power, self._gained = np.zeros(len(ACCOUNTS)), np.zeros(len(ACCOUNTS))
+        self.changes_end = math.inf if self.lasting else loads_end(model)
+        self._breaks = np.array([*load_breaks(model), math.inf])
+        self._work = np.zeros((self.driver.particle_rows, particles, 2))
+        self._rod_work = np.zeros((self.driver.rod_rows, rods))
+        self._marks = np.zeros((rods, self.marks))
+        self._stage_power = np.zeros(len(ACCOUNTS))
+        self._bind_arguments()
+        self._bind_observed()
+        settings = model.settings
+        controls = self.driver.estimates_error and settings.time_step is None
+        self.tolerance = settings.tolerance if controls else 0.0
+        self._state_revision = -1
+
+    @property
+    def unbalanced(self) -> Column:
+        """The sum of all forces on each particle but those of dampers and drag (kN), as last observed."""
+        return self._unbalanced
+
+    def _rows(self, table: str) -> int:
+        """How many of a table it holds."""
+        return self.model.tables[table].count
+
+    def _column(self, path: str) -> Any:
+        """A column, "table.field", to read."""
+        return self.model.column(path)
+
+    def _storage(self, path: str) -> Column:
+        """A column, "table.field", to write to; it is marked as changed whenever that was done."""
+        table, _, name = path.partition(".")
+        return self.model.tables[table].storage(name)
+
+    def _bind_clock(self) -> None:
+        clock = self.model.tables["clock"]
+        self._account, self._control = clock.together(ACCOUNT), clock.together(CONTROL)
+        self._origin = clock.together(_ORIGIN)
+        self._counts = clock.together(_COUNTS)
+        self._search = np.zeros(SEARCH)
+
+    def _bind_arguments(self) -> None:
+        """What advance() takes from the end of loads on."""
+        own = [*self._state, self._predicted, self._power, self._gained]
+        if self.driver.controlled:
+            own = [self._control, self._search, *self._state, self._work, self._rod_work, self._marks]
+            own += [self._power, self._gained, self._stage_power]
+        self._arguments = (*own, self._account, self.measures, *self._columns)
+
+    def _bind_observed(self) -> None:
+        """What observe() takes from the end of the state on."""
+        model, zeros = self.model, np.zeros_like
+        applied, reaction, *of_rods = (
+            self._storage(f"{table}.{name}") for table, names in OBSERVED.items() for name in names
+        )
+        for path in _GIVEN:
+            model.column(path)  # up to date
+        self._unbalanced = zeros(self._force)
+        self._observed = (
+            applied,
+            reaction,
+            self._unbalanced,
+            *(zeros(array) for array in (self._resisting, self._direction, self._power)),
+            self.measures,
+            *of_rods,
+            *(self._storage(path) for path in _GIVEN),
+            model.settings.plasticity,
+        )
+
+    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
+        """Take up to `steps` steps; returns how many, and why it stopped.
+
+        A driver that controls its steps takes none that would end after `until` (s), and one that would
+        pass `landing` (s) is cut to end there; for others the steps are clock.step_size long.
+        """
+        if self.driver.controlled:
+            return self._advance_controlled(steps, until, landing)
+        time, size = self._control[:2].tolist()
+        if until < math.inf:
+            steps = min(steps, max(int((until - time) / size * (1.0 + 1e-12)), 0))
+            if steps == 0:
+                return 0, StopReason.DONE
+        origin = float(self._origin[0])
+        total, since = self._counts.tolist()
+        taken, reason = self.module.advance(
+            steps,
+            self._is_fresh,
+            total,
+            total - since,
+            origin,
+            size,
+            self._breaks,
+            self.changes_end,
+            *self._arguments,
+        )
+        if taken:
+            self._counts[0] = total + taken
+            self._control[0] = origin + (total - since + taken) * size
+            self._mark_changes()
+        self._state_revision = self.model.newest(Role.STATE)
+        return taken, _REASONS[reason]
+
+    def _advance_controlled(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
+        before = self._control.item(0)
+        origin, limit = self._origin.tolist()
+        total, since = self._counts.tolist()
+        taken, reason = self.module.advance(
+            steps,
+            self._is_fresh,
+            total,
+            total - since,
+            origin,
+            self.tolerance,
+            limit or math.inf,
+            self._breaks,
+            float(until),
+            float(landing),
+            self.changes_end,
+            *self._arguments,
+        )
+        time = self._control.item(0)
+        if time > before:
+            self._counts[0] = total + taken
+            if self.tolerance or time == landing:
+                self._origin[0] = time
+                self._counts[1] = total + taken
+            self._mark_changes()
+        self._state_revision = self.model.newest(Role.STATE)
+        return taken, _REASONS[reason]
+
+    @property
+    def _is_fresh(self) -> bool:
+        """True if the forces are still those of the present state."""
+        return self._state_revision == self.model.newest(Role.STATE)
+
+    def _mark_changes(self) -> None:
+        for table, names, role in self._changes:
+            self.model.tables[table].mark(names, role)
+
+    def commit(self) -> None:
+        """Let history take note of a state that no step has led to, outside the energy account."""
+        if self._writer.commits:
+            time = float(self._control[0])
+            self.module.commit(time, 0.0, *self._state, np.zeros(len(ACCOUNT)), *self._columns)
+            self._mark_changes()
+
+    def observe(self) -> None:
+        """Bring the derived columns of rods and particles, and the measures, up to date."""
+        time, size = self._control[:2].tolist()
+        self.module.observe(time, size, self._displacement, self._velocity, *self._observed, *self._columns)
+        for table, names in OBSERVED.items():
+            self.model.tables[table].mark(names, Role.DERIVED)
+
+    def conserved_energy(self) -> float:
+        """What the integrator conserves, less the work done so far (J), in the state last observed."""
+        conserved = self.module.conserved.py_func  # by itself it would have to be compiled in every process
+        return float(conserved(self.measures, self._account, float(self._control[1]), self.module.SHADOW))
+
+
+def _by_table_and_role(model: Model, written: Iterable[str]) -> list[tuple[str, list[str], Role]]:
+    """What steps change, besides what commits write: arrays of one table and role, by a column in each."""
+    paths = [f"clock.{name}" for name in (*CONTROL, *_ORIGIN, *_COUNTS, *ACCOUNT)]
+    paths += [*(f"particles.{name}" for name in _OF_PARTICLES), *written]
+    found: dict[tuple[str, Role], list[str]] = {}
+    for path in dict.fromkeys(paths):
+        table, _, name = path.partition(".")
+        found.setdefault((table, model.tables[table].fields[name].role), []).append(name)
+    return [(table, model.tables[table].arrays_of(names), role) for (table, role), names in found.items()]

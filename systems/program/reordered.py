@@ -1,0 +1,153 @@
+"""Step programs that hold a part of their model, or all of it in another order."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import Column, Role
+from components.model import Model
+from systems.base import Driver, StepSystem, StopReason
+from systems.program.binding import bind, read_only
+from systems.program.blocks import Layout, Numbers
+from systems.program.program import OBSERVED, Program
+
+_STATE = ("particles.displacement", "particles.velocity")
+
+
+class ArrangedProgram(Program):
+    """A step program that holds rows in an order of its own, and brings its model's up to date after every call.
+
+    moving: which particles it moves, shape (n,), with their rods and what these are held by; None: all.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        systems: Sequence[StepSystem],
+        driver: Driver,
+        form: str,
+        moving: NDArray[np.bool_] | None = None,
+    ) -> None:
+        self.moving = moving
+        super().__init__(model, systems, driver, form)
+
+    def move(self, moving: NDArray[np.bool_]) -> None:
+        """Move these particles from now on."""
+        self.moving = moving
+        self.bind()
+
+    def bind(self) -> None:
+        """Take hold of the model's columns: arrange them anew."""
+        whole = self._arrange()
+        self.layout = whole if self.moving is None else whole.part(self.moving)
+        self._places = {"particles": self.layout.particles, "rods": self.layout.rods}
+        self._held: dict[str, tuple[Column, Numbers, Column]] = {}
+        super().bind()
+        written = [path for b in self._writer.commits for path in b.system.writes]
+        self._of_state = [self._held[path] for path in (*_STATE, *written)]
+        self._told = [self._held[f"{table}.{name}"] for table, names in OBSERVED.items() for name in names]
+        arranged = self.columns | self._of_layout()
+        arranged |= self._of_systems(arranged)
+        to_write = {path.replace(".", "_", 1) for path in written}
+        self._columns = [array if name in to_write else read_only(array) for name, array in arranged.items()]
+        self._bind_arguments()
+        self._held_revision = -1
+
+    @property
+    def left_out(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """Which particles and which rods it does not hold."""
+        particles, rods = (np.ones(t.count, dtype=bool) for t in (self.model.particles, self.model.rods))
+        particles[self.layout.particles] = rods[self.layout.rods] = False
+        return particles, rods
+
+    def _arrange(self) -> Layout:
+        """The layout of the whole model."""
+        return Layout.in_order(self.model)
+
+    def _of_layout(self) -> dict[str, Any]:
+        """The columns that follow from the layout."""
+        return {"rods_between": self.layout.ends}
+
+    def _rows(self, table: str) -> int:
+        return len(self._places[table])
+
+    def _column(self, path: str) -> Any:
+        column, (table, _, _) = super()._column(path), path.partition(".")
+        return column[self._places[table]] if table in self._places else column
+
+    def _storage(self, path: str) -> Column:
+        rows, own = self._places[path.partition(".")[0]], super()._storage(path)
+        self._held[path] = own, rows, own[rows]
+        return self._held[path][-1]
+
+    def _of_systems(self, columns: Mapping[str, Any]) -> dict[str, Any]:
+        """The arrays of the systems, arranged."""
+        arranged: dict[str, Any] = {}
+        self._arrays: list[tuple[Column, Numbers, Column]] = []
+        for system in self.systems:
+            bound = bind(system, self.model)
+            if bound.each == "loads":
+                arranged |= self._loads(bound.prefix, columns)
+                continue
+            rows = self._places[bound.each or "rods"]
+            for name, array in bound.arrays.items():
+                if name in columns:
+                    arranged[name] = array[rows]
+                    self._arrays.append((array, rows, arranged[name]))
+        return arranged
+
+    def _loads(self, prefix: str, arranged: Mapping[str, Any]) -> dict[str, Any]:
+        """The arrays of a law of loads on what is held, in the order of the rows that they act on."""
+        on = self.layout.row[arranged[f"{prefix}_on"]]
+        order = np.argsort(on, kind="stable")[np.count_nonzero(on < 0) :]
+        return {
+            f"{prefix}_on": on[order].astype(np.uint32),
+            f"{prefix}_force": arranged[f"{prefix}_force"][order],
+            f"{prefix}_first": arranged[f"{prefix}_first"][order],
+        }
+
+    @property
+    def unbalanced(self) -> Column:
+        everywhere = np.zeros((self.model.particles.count, 2))
+        everywhere[self.layout.particles] = super().unbalanced
+        return everywhere
+
+    # --- the state, as it is held and in the model's columns -----------------------------------------
+
+    def _load(self) -> None:
+        """Bring what is held up to date, if anything else changed the state, and systems' own arrays."""
+        changed = self._held_revision != self.model.newest(Role.STATE)
+        for own, rows, held in (*self._arrays, *(self._of_state if changed else ())):
+            np.take(own, rows, axis=0, out=held)
+
+    def _store(self) -> None:
+        """Bring the columns of the state up to date with what is held."""
+        for own, rows, held in self._of_state:
+            own[rows] = held
+        self._held_revision = self.model.newest(Role.STATE)
+
+    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
+        """Take up to `steps` steps, as every program does."""
+        self._load()
+        taken, reason = super().advance(steps, until, landing)
+        if taken:
+            self._store()
+        return taken, reason
+
+    def commit(self) -> None:
+        """Let history take note of a state that no step has led to, outside the energy account."""
+        self._load()
+        super().commit()
+        self._store()
+
+    def observe(self) -> None:
+        """Bring the derived columns of rods and particles, and the measures, up to date."""
+        self._load()
+        super().observe()
+        for own, rows, held in self._told:
+            own[rows] = held

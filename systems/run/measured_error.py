@@ -1,0 +1,116 @@
+"""Measured error: a run taken again with finer steps, whose difference from it measures its error."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from components.field import Column
+from components.snapshot import Snapshot
+from systems.program.program import Program
+from systems.program.writer import REVIEW_INTERVAL
+from systems.run.simulation import Simulation
+
+FINER_TOLERANCE = 1e-2  # of the run's, by which it is taken again where the error is controlled
+FINEST_TOLERANCE = 1e-13
+PIECES = 64  # of a run, at whose ends it is looked how far particles have moved
+# Evaluations of the forces of rods up to which the error is measured without being asked for:
+IN_A_FRAME, IN_A_COMMAND = 5_000_000, 60_000_000  # about 0.2 s and 3 s
+
+
+@dataclass(frozen=True)
+class MeasuredError:
+    """Of the displacements at the end of a run.
+
+    displacement: the largest of any particle (m). relative: to the largest displacement that was seen.
+    """
+
+    displacement: float
+    relative: float
+
+
+def work(simulation: Simulation) -> int:
+    """How many times the run evaluated the force of a rod, which running it again takes at least."""
+    stages: int = simulation.driver.constants.get("STAGES", 1)
+    return simulation.model.clock.steps * max(simulation.model.rods.count, 1) * stages
+
+
+def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError | None:
+    """The error of a run from `beginning` until now, in which nothing was edited; None if it has no meaning.
+
+    The run is taken again by half its steps, or where the error is controlled by a hundredth of the
+    tolerance and half the longest step, and taken back. By Richardson's argument the error of a method of
+    order p is the difference times 2^p / (2^p − 1). Yielding, which only Runge–Kutta methods locate inside a
+    step, leaves order 1. There is none where particles met (the slightest difference grows from impact to
+    impact), and none that is below what numbers can tell.
+    """
+    model, program = simulation.model, simulation.program
+    clock, then = model.clock, beginning.columns
+    met = clock.collisions > then["clock.collisions"][0] or clock.paths is not None
+    if met or not isinstance(program, Program) or not clock.time > then["clock.time"][0]:
+        return None
+    reached, size, target = model.particles.displacement.copy(), clock.step_size, simulation.moved_until
+    yielded = clock.dissipated_plastic > then["clock.dissipated_plastic"][0]
+    with simulation.aside(beginning):
+        if program.tolerance > 0.0:
+            largest, factor = _by_tolerance(program, target), 1.0
+        else:
+            largest = _by_steps(simulation, program, target, size)
+            order = 1 if yielded and not program.driver.controlled else program.driver.order
+            factor = 2.0**order / (2.0**order - 1.0)
+        again = model.particles.displacement.copy()
+    largest = max(largest, _size(reached))
+    difference = factor * _size(reached - again)
+    if not math.isfinite(largest + difference):
+        return None
+    return MeasuredError(difference, difference / largest if largest > 0.0 else 0.0)
+
+
+def _size(displacement: Column) -> float:
+    """The largest of any particle (m)."""
+    return float(np.hypot(*displacement.T).max(initial=0.0))
+
+
+def _by_tolerance(program: Program, target: float) -> float:
+    """Run to a time with a hundredth of the tolerance and half the longest step; returns as _pieces does."""
+    tolerance = program.tolerance
+    program.tolerance = max(FINER_TOLERANCE * tolerance, FINEST_TOLERANCE)
+    program.model.writable("clock.step_limit")[0] *= 0.5
+    try:
+        return _pieces(program, target) if program.tolerance < 0.2 * tolerance else math.nan
+    finally:
+        program.tolerance = tolerance
+
+
+def _by_steps(simulation: Simulation, program: Program, target: float, size: float) -> float:
+    """Run to a time by equal steps, at most half as long as `size`; returns as _pieces does."""
+    clock = program.model.clock
+    steps = math.ceil(2.0 * (target - clock.time) / size * (1.0 - 1e-9))
+    simulation.begin_step_size((target - clock.time) / steps)
+    if program.driver.controlled:
+        return _pieces(program, target)
+    largest, piece = 0.0, -(-steps // PIECES)
+    while steps > 0:
+        taken, _ = program.advance(min(piece, steps))
+        if taken == 0:
+            return math.nan
+        steps -= taken
+        largest = max(largest, _size(program.model.particles.displacement))
+    return largest
+
+
+def _pieces(program: Program, target: float) -> float:
+    """Run to a time exactly, past all that would stop a run.
+
+    Returns the largest displacement at the ends of pieces (m); not a number if it did not get there.
+    """
+    clock, largest = program.model.clock, 0.0
+    for end in np.linspace(clock.time, target, PIECES + 1)[1:].tolist():
+        while (before := clock.time) < end:
+            program.advance(REVIEW_INTERVAL, end, end)
+            if clock.time == before:
+                return math.nan
+        largest = max(largest, _size(program.model.particles.displacement))
+    return largest

@@ -1,0 +1,157 @@
+"""Sleep: islands at rest are left out of the steps until something reaches them.
+
+An island falls asleep where a run is reviewed, which is at fixed step counts and after edits, if it is at rest by
+itself and no load on it still varies. Its particles keep their places and have no velocity; what was left of their
+kinetic energy is dissipated. It wakes when an edit disturbs its rest, when something strikes it, and when forces
+come in that follow from more than the state: a hand, lasting contacts.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+
+from components.field import Role
+from components.load import load_ends
+from components.model import Model
+from systems.islands import HELD, Rows, islands
+from systems.physics.rest import Array, Mask, Stillness
+from systems.program.parallel import make_program
+from systems.program.program import Program
+from systems.program.reordered import ArrangedProgram
+
+INTERVAL = 1024  # steps between reviews; fewer: asleep sooner, but a review costs as much as some ten steps
+
+
+class Sleep:
+    """Which particles of one model are asleep, and the step programs of those that are not."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self._asked: tuple[Program, int] | None = None
+        self._versions: tuple[int, int] | None = None
+        self._looked_at = -1  # the version of who is asleep that any_asleep is about
+        self._parts: dict[Program, ArrangedProgram] = {}
+        self._bound: ArrangedProgram | None = None  # to the model as it is
+        self._left_out: Mask = np.zeros(0, dtype=bool)  # asleep when it was bound
+
+    # --- who may sleep, and who does -------------------------------------------------------------------
+
+    def may_happen(self, program: Program) -> bool:
+        """True if islands may sleep under this program, and there is more than one."""
+        asked = program, self.model.newest(Role.DOCUMENT)
+        if asked != self._asked:
+            self._asked, self._answer = asked, self.model.settings.sleeping and program.follows_state
+            if self._answer:
+                self._look_up()
+                self._answer = self._count > 1
+        return self._answer
+
+    @property
+    def any_asleep(self) -> bool:
+        """True if any particle is asleep."""
+        version = self.model.particles.version("asleep")
+        if version != self._looked_at:
+            asleep = self.model.particles.storage("asleep")
+            self._looked_at, self._any_asleep = version, bool(np.count_nonzero(asleep))
+        return self._any_asleep
+
+    def steps_to_review(self, program: Program) -> int:
+        """After how many steps a run is to be reviewed again."""
+        return INTERVAL - self.model.clock.steps % INTERVAL if self.may_happen(program) else sys.maxsize
+
+    @staticmethod
+    def is_due(steps: int) -> bool:
+        """True if a run is to be reviewed after so many steps."""
+        return steps % INTERVAL == 0
+
+    def _look_up(self) -> None:
+        """Find the islands anew where that changed which they follow from."""
+        model = self.model
+        versions = model.particles.version("fixed"), model.rods.version("between")
+        if versions != self._versions:
+            self._versions = versions
+            self._of_particle: Rows = islands(model)
+            self._of_rod: Rows = self._of_particle[model.rods.between].max(axis=1, initial=HELD)
+            self._count = int(self._of_particle.max(initial=HELD))
+
+    def review(self, program: Program) -> bool:
+        """Let those islands sleep, and no others, that are at rest; True if others do than before."""
+        if not self.may_happen(program):
+            return self._wake()
+        stillness = self._observed(program)
+        clock = self.model.clock
+        rest = stillness.at_rest(self._of_particle, self._of_rod, clock.force_scale, clock.energy_scale)
+        rest[self._under_varying_loads] = rest[HELD] = False
+        return self._let_sleep(rest[self._of_particle], stillness.kinetic)
+
+    def disturb(self, program: Program) -> bool:
+        """Wake the islands that something has struck, all if none may sleep any more; True if any woke."""
+        if not self.may_happen(program):
+            return self._wake()
+        particles = self.model.particles
+        struck = np.asarray(particles.asleep & particles.velocity.any(axis=1))
+        return bool(struck.any()) and self._wake(struck)
+
+    def _observed(self, program: Program) -> Stillness:
+        program.observe()
+        return Stillness.of(self.model, program.unbalanced)
+
+    @property
+    def _under_varying_loads(self) -> Rows:
+        """The islands on which loads act that still vary."""
+        varies = np.array(load_ends(self.model)) > self.model.clock.time
+        islands_of_loads: Rows = self._of_particle[self.model.loads.on[varies]]
+        return islands_of_loads
+
+    def _let_sleep(self, asleep: Mask, kinetic: Array) -> bool:
+        """Let these particles sleep, and no others. kinetic: their energy (J), which they lose."""
+        falling = asleep & ~self.model.particles.asleep
+        if falling.any():
+            self.model.writable("clock.dissipated_damping")[0] += kinetic[falling].sum()
+            self.model.writable("particles.velocity")[falling] = 0.0
+        return self._write(asleep)
+
+    def _wake(self, particles: Mask | None = None) -> bool:
+        """Wake the islands of these particles; none given: all."""
+        still = np.zeros(self.model.particles.count, dtype=bool)
+        if particles is not None:
+            still = self.model.particles.asleep & ~np.isin(self._of_particle, self._of_particle[particles])
+        return self._write(still)
+
+    def _write(self, asleep: Mask) -> bool:
+        if np.array_equal(asleep, self.model.particles.asleep):
+            return False
+        self.model.writable("particles.asleep")[...] = asleep
+        return True
+
+    # --- what takes the steps --------------------------------------------------------------------------
+
+    def forget(self) -> None:
+        """The document, or the state of who sleeps, was changed or replaced."""
+        self._bound = None
+
+    def part(self, program: Program) -> Program:
+        """What takes the steps of a program: itself, or while some sleep one of those that are awake."""
+        if not self.any_asleep:
+            return program
+        asleep = self.model.particles.asleep
+        part = self._parts.get(program)
+        if self._bound is not part or part is None or not np.array_equal(self._left_out, asleep):
+            part = self._bound = self._part_without(asleep, program)
+            self._left_out = asleep.copy()
+        return part
+
+    def _part_without(self, asleep: Mask, program: Program) -> ArrangedProgram:
+        """The program of those that are awake, bound to the model as it is."""
+        moving = ~asleep & (self._of_particle != HELD)
+        part = self._parts.get(program)
+        if part is None:
+            made = make_program(self.model, program.systems, program.driver, program.form, moving)
+            assert isinstance(made, ArrangedProgram)
+            part = self._parts[program] = made
+        else:
+            part.move(moving)
+        part.measures[8:] = self._observed(program).measures(self.model, *part.left_out)
+        return part
