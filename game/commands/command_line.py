@@ -8,10 +8,10 @@ from collections.abc import Sequence
 
 from components.field import FieldError
 from game.commands import bench, curve, force_method, play, render, run, sweep, verify, window
-from game.commands.arguments import BAD_INPUT, Parser, UsageError, write
+from game.commands.arguments import BAD_INPUT, Parser, UsageError
 from game.commands.options import NOT_ANSWERED, use_cores_as_asked
+from game.commands.output import ResultError, write
 from game.commands.reports.report import AnalysisError
-from game.commands.reports.results import ResultError
 from game.documents.document import ModelError
 from game.editor.shapes import NoShape
 from game.mods import ModError

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 
-from game.commands.arguments import Parser, UsageError, write
-from game.commands.options import ANSWERED, add_output
+from game.commands.arguments import Parser, UsageError
+from game.commands.options import ANSWERED
+from game.commands.output import add_output, write_result
 from game.documents import models
 from game.paths.overrides import apply_override
 
@@ -21,17 +21,17 @@ def command(words: Sequence[str]) -> int:
     parser.add_argument(
         "--set", action="append", default=[], metavar="PATH=VALUE", help="change the model first"
     )
-    add_output(parser)
+    add_output(parser, default="json")
     options = parser.parse_args(words)
     model = models.load(options.model)
     for override in options.set:
         apply_override(model, override)
-    from game.force_method.report import force_method
+    from game.force_method.report import force_method, force_method_rows
     from systems.statics.force_method import ForceMethodError
 
     try:
         found = force_method(model, None if options.all else options.release)
     except ForceMethodError as error:
         raise UsageError(str(error)) from None
-    write(json.dumps(found, indent=2, ensure_ascii=False) + "\n", options.output)
+    write_result(options, found, force_method_rows)
     return ANSWERED

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from functools import partial
 
 from components.settings import INTEGRATORS
-from game.commands.arguments import Parser, UsageError, count, numbers, positive, times, writable
+from game.commands.arguments import Parser, UsageError, count, numbers, positive, times
 from game.commands.reports.report import Analysis
 from game.paths.overrides import apply_override
 from game.session import DEFAULT_LIMIT, Session
@@ -83,11 +83,4 @@ def analysis_of(options: argparse.Namespace) -> Analysis:
         load_factors=(factors or (1.0,)) if options.static else None,
         times=times(options.at) if options.at is not None else None,
         limit=options.limit,
-    )
-
-
-def add_output(parser: argparse.ArgumentParser) -> None:
-    """Where the result goes."""
-    parser.add_argument(
-        "--output", type=writable, metavar="FILE", help="write to a file instead of standard output"
     )

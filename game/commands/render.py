@@ -6,8 +6,9 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from game.commands.arguments import Parser, UsageError, positive, writable
+from game.commands.arguments import Parser, UsageError, positive
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from game.commands.output import writable
 from game.commands.reports.report import FOUND
 from game.editor.shapes import numbered
 from game.session import DEFAULT_LIMIT, Session

@@ -10,8 +10,9 @@ from typing import Any
 
 from components.model import Model
 from components.spelling import nearest
-from game.commands.arguments import Parser, UsageError, writable
+from game.commands.arguments import Parser, UsageError
 from game.commands.options import ANSWERED, NO_DISPLAY
+from game.commands.output import writable
 from game.documents import models
 from game.documents.open_documents import ModelFile, file_of
 from game.mods.safety import in_use

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from components.model import Model
+from game.commands.output import Row
 from game.force_method.guide import exact_forces
 from systems.statics.force_method import find_unknown, redundants, solve
 
@@ -35,3 +37,16 @@ def force_method(model: Model, release: str | None) -> dict[str, Any]:
         "force": solution.force.tolist(),
         "exact_force": exact,
     }
+
+
+def force_method_rows(found: Mapping[str, Any]) -> Iterator[Row]:
+    """What `force_method` found as rows, one for every unknown, headings first."""
+    if not isinstance(found["released"], list):
+        found = {key: [value] for key, value in found.items()} | {"delta_unit": [[found["delta_unit"]]]}
+    names = found["released"]
+    exact = found["exact_force"] or [None] * len(names)
+    unit = [f"delta_unit {name} (m/kN)" for name in names]
+    yield "released", "delta_real (m)", "delta_base (m)", *unit, "force (kN)", "exact_force (kN)"
+    parts = (names, found["delta_real"], found["delta_base"], found["delta_unit"], found["force"], exact)
+    for name, real, base, row, force, exactly in zip(*parts, strict=True):
+        yield name, real, base, *row, force, exactly

@@ -127,7 +127,8 @@ def shake(model: Model, record: History | dict[str, list[float] | str], directio
 
 def run(words: list[str]) -> int:
     """`pinjoint shake MODEL RECORD.csv --output FILE`."""
-    from game.commands.arguments import Parser, UsageError, writable
+    from game.commands.arguments import Parser, UsageError
+    from game.commands.output import writable
     from game.documents import models
 
     parser = Parser(

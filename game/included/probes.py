@@ -219,8 +219,9 @@ def _heading(probe: Probe) -> str:
 
 def run(words: list[str]) -> int:
     """`pinjoint plot MODEL --of QUANTITY --until T --output FILE`."""
-    from game.commands.arguments import Parser, UsageError, count, positive, writable
+    from game.commands.arguments import Parser, UsageError, count, positive
     from game.commands.options import add_model, session_of
+    from game.commands.output import writable
     from game.paths.quantities import QuantityError
 
     parser = Parser(

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from components.model import Model
 from components.spelling import missing
+from game.commands.output import Row
 
 if TYPE_CHECKING:
     from systems.statics.path import Curve, Goal
@@ -55,16 +55,24 @@ def why_nothing_follows(model: Model) -> str:
     )
 
 
-def as_csv(model: Model, curve: Curve) -> str:
-    """One equilibrium a line: load factor, stable (1 or 0), displacements of free directions (m), forces (kN)."""
-    free = np.argwhere(~model.particles.fixed).tolist()
+def curve_data(model: Model, curve: Curve) -> dict[str, Any]:
+    """A curve as plain data, each list with one entry for every equilibrium.
+
+    displacement (m): by free direction, such as "B.y"; axial_force (kN): by rod. complete: as in `Curve`.
+    """
     names = model.particles.names
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    moved = [f"{names[row]}.{'xy'[axis]} (m)" for row, axis in free]
-    writer.writerow(["load factor", "stable", *moved, *(f"{rod} (kN)" for rod in model.rods.names)])
-    for point in range(len(curve.load_factor)):
-        displacement = [float(curve.displacement[point, row, axis]) for row, axis in free]
-        forces = curve.axial_force[point].tolist()
-        writer.writerow([float(curve.load_factor[point]), int(curve.stable[point]), *displacement, *forces])
-    return text.getvalue()
+    free = np.argwhere(~model.particles.fixed).tolist()
+    return {
+        "complete": curve.complete,
+        "load_factor": curve.load_factor,
+        "stable": curve.stable,
+        "displacement": {f"{names[row]}.{'xy'[axis]}": curve.displacement[:, row, axis] for row, axis in free},
+        "axial_force": dict(zip(model.rods.names, curve.axial_force.T, strict=True)),
+    }
+
+
+def curve_rows(found: Mapping[str, Any]) -> Iterator[Row]:
+    """The data of a curve as rows, one for every equilibrium, headings first."""
+    moved, forces = found["displacement"], found["axial_force"]
+    yield "load factor", "stable", *(f"{name} (m)" for name in moved), *(f"{name} (kN)" for name in forces)
+    yield from zip(found["load_factor"], found["stable"], *moved.values(), *forces.values(), strict=True)

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from components.model import Model
-from game.commands.reports.results import ENERGIES, ResultError, Run, State, state
+from game.commands.output import ResultError
+from game.commands.reports.results import ENERGIES, Run, State, state
 from game.session import DEFAULT_LIMIT
 from systems.base import StopReason
 from systems.run.measured_error import IN_A_COMMAND

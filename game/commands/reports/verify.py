@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from components.model import Model
-from game.commands.reports.results import aligned, as_written, plain
+from game.commands import output
+from game.commands.output import aligned, as_written
 from game.session import Session
 from systems.statics.equations import Array
 from systems.statics.events import NoEquilibrium, event_record
@@ -201,11 +202,28 @@ def _line(model: Model, field: Array) -> dict[str, list[float]]:
 # --- as text -------------------------------------------------------------------------------------------
 
 
-def as_table(found: Found) -> str:
+def lines(found: Found) -> Iterator[str]:
     """What `verify` or `influence` found, as aligned tables to read."""
-    found = plain(found, "verify")
-    lines = _influence_lines(found["influence"]) if "influence" in found else _verify_lines(found)
-    return "\n".join(lines) + "\n"
+    return _influence_lines(found["influence"]) if "influence" in found else _verify_lines(found)
+
+
+def rows(found: Found) -> Iterator[output.Row]:
+    """The same as rows, headings first: one of each quantity of an element, or of each influence on a particle."""
+    if "influence" in found:
+        yield "of", "quantity", "unit", "particle", "along x", "along y"
+        for name, line in found["influence"].items():
+            yield from ((name, line["quantity"], line["unit"], at, *pair) for at, pair in line["of"].items())
+        return
+    yield "element", "name", "quantity", "component", "unit", *_VALUES
+    for quantity, (table, unit) in QUANTITIES.items():
+        for name, quantities in found[table].items():
+            for component, values in _by_component(quantities.get(quantity, {})):
+                yield table[:-1], name, quantity, component, unit, *(values[way] for way in _VALUES)
+
+
+def _by_component(values: Found) -> Iterator[tuple[str, Found]]:
+    """(component, values) of a quantity; the component of a scalar is ""."""
+    yield from [("", values)] if "exact" in values else values.items()
 
 
 def _influence_lines(found: Found) -> Iterator[str]:
@@ -269,8 +287,8 @@ def _tables(found: Found) -> Iterator[tuple[str, str, float, dict[str, Found]]]:
     for quantity, (table, unit) in QUANTITIES.items():
         rows: dict[str, Found] = {}
         for name, quantities in found[table].items():
-            values = quantities.get(quantity, {})
-            rows |= {name: values} if "exact" in values else {f"{name} {axis}": v for axis, v in values.items()}
+            of = _by_component(quantities.get(quantity, {}))
+            rows |= {f"{name} {axis}".rstrip(): values for axis, values in of}
         if rows:
             yield quantity.replace("_", " "), *_IN_TABLES.get(unit, (unit, 1.0)), rows
 
