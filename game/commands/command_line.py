@@ -17,7 +17,7 @@ from game.editor.shapes import NoShape
 from game.mods import ModError
 from game.mods.command import load_as_asked
 from game.mods.command import run as run_mods
-from game.paths.overrides import OverrideError
+from game.paths import PathError
 from game.registry import ABOUT, COMMANDS
 from game.scripts.script import ScriptError
 from game.sweeps import SweepError
@@ -37,7 +37,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (
         UsageError,
         ModelError,
-        OverrideError,
+        PathError,
         FieldError,
         ScriptError,
         ModError,

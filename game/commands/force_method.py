@@ -8,7 +8,7 @@ from game.commands.arguments import Parser, UsageError
 from game.commands.options import ANSWERED
 from game.commands.output import add_output, write_result
 from game.documents import models
-from game.paths.overrides import apply_override
+from game.paths import apply_override
 
 
 def command(words: Sequence[str]) -> int:

@@ -11,7 +11,7 @@ from functools import partial
 from components.settings import INTEGRATORS
 from game.commands.arguments import Parser, UsageError, count, numbers, positive, times
 from game.commands.reports.report import Analysis
-from game.paths.overrides import apply_override
+from game.paths import apply_override
 from game.session import DEFAULT_LIMIT, Session
 from systems.program.cores import VARIABLE
 
@@ -43,7 +43,7 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 
 
 def session_of(options: argparse.Namespace) -> Session:
-    """A session with the model of `add_model`. Raises ModelError, OverrideError, FieldError."""
+    """A session with the model of `add_model`. Raises ModelError, PathError, FieldError."""
     session = Session.open(options.model)
     if session.notice:  # data of mods that are not loaded, which would change the result
         print(f"pinjoint: {session.notice}", file=sys.stderr)

@@ -15,7 +15,7 @@ import numpy as np
 
 from components import Model, Particle, Plot, Readout, Rod, Vector
 from game.documents.models import replace
-from game.paths.quantities import TIME, Quantity, quantity
+from game.paths import TIME, Quantity, quantity
 from systems.base import Phase, System
 from systems.edit.refusal import Refusal
 
@@ -95,7 +95,7 @@ class Probes:
         self._model: weakref.ref[Model] | None = None
 
     def add(self, session: Session, paths: Iterable[str], against: str = TIME) -> Probe:
-        """Read these quantities from now on. Raises QuantityError. Of too many, the oldest goes."""
+        """Read these quantities from now on. Raises PathError. Of too many, the oldest goes."""
         model = session.model
         probe = Probe(quantity(model, against), tuple(quantity(model, path) for path in paths))
         self._model = weakref.ref(model)
@@ -222,7 +222,6 @@ def run(words: list[str]) -> int:
     from game.commands.arguments import Parser, UsageError, count, positive
     from game.commands.options import add_model, session_of
     from game.commands.output import writable
-    from game.paths.quantities import QuantityError
 
     parser = Parser(
         prog="pinjoint plot", description="Run a model and write quantities against time or another."
@@ -237,10 +236,7 @@ def run(words: list[str]) -> int:
     parser.add_argument("--output", type=writable, required=True, metavar="FILE", help=".csv or .png")
     options = parser.parse_args(words)
     session = session_of(options)
-    try:
-        probe = probes_of(session).add(session, options.of, options.against)
-    except QuantityError as error:
-        raise UsageError(str(error)) from None
+    probe = probes_of(session).add(session, options.of, options.against)
     output = Path(options.output)
     if output.suffix not in (".csv", ".png"):
         raise UsageError(f"--output {output}: write a file that ends with .csv or .png.")

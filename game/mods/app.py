@@ -28,6 +28,7 @@ from game.editor.gestures.drawing import drawing_of
 from game.editor.scenes import Scene, all_scenes
 from game.mods.guard import guarded_history, guarded_integrator, guarded_scene, guarded_system
 from game.mods.mod import Mod, ModError
+from game.paths import PathError
 from systems.base import Driver, System
 from systems.catalogue import DRIVERS, register_driver
 from systems.edit.refusal import Refusal
@@ -47,7 +48,7 @@ if TYPE_CHECKING:
     from game.session import Session
 
 T = TypeVar("T")
-MISTAKES = (UsageError, models.ModelError, FieldError)  # of a person at the command line
+MISTAKES = (UsageError, models.ModelError, FieldError, PathError)  # of a person at the command line
 Panel = Callable[["Session"], Readout | Sequence[Readout] | None]
 
 

@@ -39,7 +39,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 from components.field import Vector
 from components.spelling import remedy
 from game.documents.document import ModelError
-from game.paths.overrides import apply_override
+from game.paths import apply_override
 from game.scripts.expectation import check
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from components.field import Column, FieldError
 from components.settings import AUTOMATIC
-from game.commands.reports.results import ENERGIES, reported
-from game.paths.target import EVERY, Target, locate, settable
+from game.commands.reports.results import reported
+from game.paths import ENERGIES, EVERY, Target, locate, settable
 from game.sweeps.batch import Batch
 from game.sweeps.batch_program import BatchProgram
 from game.sweeps.measure import Measure

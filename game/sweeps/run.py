@@ -9,7 +9,7 @@ from typing import Any
 from game.commands.reports.report import Analysis
 from game.documents import models
 from game.documents.open_documents import file_of
-from game.paths.overrides import apply_override
+from game.paths import apply_override
 from game.sweeps.execution import outcomes
 from game.sweeps.installation import Installation
 from game.sweeps.journal import Journal
@@ -47,7 +47,7 @@ def sweep(
     a running Dask cluster, which computes instead. progress: told how many are done, of how many, and failed.
 
     Same arguments, same bits, however many workers. Raises SweepError, ModelError,
-    OverrideError, and OSError if the output cannot be written.
+    PathError, and OSError if the output cannot be written.
     """
     plan = plan_of(source, vary, measure, analysis, overrides, samples, seed)
     if workers is not None and workers < 1:
@@ -84,7 +84,7 @@ def plan_of(
     samples: int | None,
     seed: int,
 ) -> Plan:
-    """What is to be computed, read and checked; see `sweep`. Raises SweepError, ModelError, OverrideError."""
+    """What is to be computed, read and checked; see `sweep`. Raises SweepError, ModelError, PathError."""
     model = models.load(source)
     document = models.document(model)
     overrides = tuple(overrides)

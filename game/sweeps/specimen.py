@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from components.snapshot import Snapshot
 from game.documents import models
-from game.paths.overrides import apply_override
+from game.paths import apply_override
 from game.registry import SYSTEMS
 from game.sweeps.plan import Plan, Record
 from systems.base import StepSystem
@@ -48,7 +48,7 @@ class Specimen:
         ]
 
     def override(self, overrides: Iterable[str]) -> None:
-        """Change the model. Raises OverrideError."""
+        """Change the model. Raises PathError."""
         for override in overrides:
             apply_override(self.model, override)
 

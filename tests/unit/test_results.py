@@ -13,8 +13,9 @@ import pytest
 
 from components.model import Model
 from game.commands.output import FORMATS, Format, ResultError, formatted
-from game.commands.reports.results import ENERGIES, run_lines, run_rows, state
+from game.commands.reports.results import run_lines, run_rows, state
 from game.documents import models
+from game.paths import ENERGIES
 from tests.reference.models import triangle
 
 ENERGY = {name: float(n) for n, name in enumerate(ENERGIES)}

@@ -12,7 +12,8 @@ import numpy as np
 
 from components.model import Model
 from game.commands.output import ResultError
-from game.commands.reports.results import ENERGIES, Run, State, state
+from game.commands.reports.results import Run, State, state
+from game.paths import ENERGIES
 from game.session import DEFAULT_LIMIT
 from systems.base import StopReason
 from systems.run.measured_error import IN_A_COMMAND

@@ -14,16 +14,7 @@ from components.particle import Particle
 from components.rod import Rod
 from components.table import fields_of
 from game.commands.output import ResultError, Row, aligned, as_written, plain
-
-ENERGIES = (
-    "kinetic",
-    "elastic",
-    "dissipated_damping",
-    "dissipated_plastic",
-    "dissipated_impact",
-    "work",
-    "imbalance",
-)
+from game.paths import ENERGIES
 
 State = dict[str, Any]
 Run = Mapping[str, Any]
