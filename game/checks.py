@@ -14,10 +14,9 @@ from components.field import Column, Role, same
 from components.model import Model
 from components.settings import INTEGRATORS
 from game.documents import models
-from game.registry import SYSTEMS
 from game.session import Frame, Session
 from systems.base import Commit, Driver, Law, StepSystem, StopReason, System
-from systems.catalogue import DRIVERS, register_driver, step_systems
+from systems.catalogue import DRIVERS, all_systems, register_driver
 from systems.program.binding import ProgramError, bind
 from systems.program.rows import KernelRows
 from systems.run.simulation import Simulation
@@ -150,8 +149,7 @@ def _compare(
 
 def _all_with(system: System) -> list[System]:
     """The systems of the program, this one among them once."""
-    others = [*step_systems(), *(make() for make in SYSTEMS)]
-    return [*(other for other in others if other.name != system.name), system]
+    return [*(other for other in all_systems() if other.name != system.name), system]
 
 
 def _check_steps(system: Callable[[], System], source: Source) -> float:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from components.model import Model
 from components.particle import Particle
 from components.rod import spawn_rods
-from game.mods.command import load_as_asked
+from game.commands.mods import load_as_asked
 from game.session import Session
 from systems.base import Driver, StepSystem
 from systems.catalogue import DRIVERS

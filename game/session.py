@@ -38,9 +38,8 @@ from game.editor.scenes import Scenes, Stage, all_scenes
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import make_room, show
 from game.mods.mod import FAULTS
-from game.registry import SYSTEMS
 from systems.base import Phase, StopReason, System
-from systems.catalogue import step_systems
+from systems.catalogue import SYSTEMS, step_systems
 from systems.collision.impacts import Impacts
 from systems.edit.pull import Pull
 from systems.edit.refusal import Refusal

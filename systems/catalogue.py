@@ -1,9 +1,11 @@
-"""All systems that Pinjoint brings along, in order of registration."""
+"""All systems that Pinjoint brings along, in order of registration, and those that mods add."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from components.settings import INTEGRATORS
-from systems.base import Driver, StepSystem
+from systems.base import Driver, StepSystem, System
 from systems.collision.system import Collision, Support
 from systems.loads.system import varying_loads
 from systems.physics.integrators import (
@@ -25,6 +27,7 @@ from systems.physics.system import (
 from systems.plasticity.system import Strength, Yielding
 
 DRIVERS: dict[str, Driver] = {}
+SYSTEMS: list[Callable[[], System]] = []  # that mods add; made anew for every session
 
 
 def register_driver(driver: Driver) -> None:
@@ -60,3 +63,8 @@ def step_systems() -> list[StepSystem]:
         Support(),
         *varying_loads(),
     ]
+
+
+def all_systems() -> list[System]:
+    """Laws and commits, then the systems of mods, frame systems among them."""
+    return [*step_systems(), *(make() for make in SYSTEMS)]

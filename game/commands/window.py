@@ -10,13 +10,13 @@ from typing import Any
 
 from components.model import Model
 from components.spelling import nearest
+from game.commands import COMMANDS
 from game.commands.arguments import Parser, UsageError
+from game.commands.mods import in_use
 from game.commands.options import ANSWERED, NO_DISPLAY
 from game.commands.output import writable
 from game.documents import models
 from game.documents.open_documents import ModelFile, file_of
-from game.mods.safety import in_use
-from game.registry import ABOUT, COMMANDS
 from game.scripts import script
 from game.version import __version__
 from systems.render.theme import theme_names
@@ -40,7 +40,7 @@ def _epilog() -> str:
     return "\n".join(
         [
             "commands (each with --help):",
-            *(f"  {name.ljust(width)}  {ABOUT.get(name, '')}".rstrip() for name in sorted(COMMANDS)),
+            *(f"  {name.ljust(width)}  {COMMANDS[name].about}".rstrip() for name in sorted(COMMANDS)),
             *(f"\n{textwrap.fill(paragraph, 78)}" for paragraph in paragraphs),
         ]
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from components.view import Preview, Readout, Status
 from game.editor.gestures import TOOL_HINTS
 from game.editor.readouts import own_readouts
-from game.registry import PANELS
 from systems.base import StopReason
 from systems.edit.refusal import Refusal
 from systems.input.bindings import LIVE, help_lines
@@ -23,6 +22,8 @@ if TYPE_CHECKING:
 COMPILING = "Preparing the step program, which takes a while for the first model of its kind:"
 FLASH = 0.15  # s shown, for which an impact is marked
 MOST_FLASHES = 500  # impacts marked at a time
+
+PANELS: list[Callable[[Session], Sequence[Readout]]] = []  # that mods add beside the model
 
 
 def show(session: Session) -> None:

@@ -18,19 +18,20 @@ from components.model import ADDED
 from components.obstacles import SHAPES, Pieces, Shape, check_pieces
 from components.settings import INTEGRATORS
 from components.view import Readout
-from game import registry
+from game.commands import COMMANDS, Command
 from game.commands.arguments import BAD_INPUT, UsageError
 from game.documents import models
 from game.editor.actions.drawing import use
 from game.editor.actions.registry import ACTIONS, WHILE_DRAWING, Action, action
 from game.editor.gestures import TOOL_HINTS, TOOLS
 from game.editor.gestures.drawing import drawing_of
-from game.editor.scenes import Scene, all_scenes
+from game.editor.scenes import SCENES, Scene, all_scenes
+from game.editor.view_model import PANELS
 from game.mods.guard import guarded_history, guarded_integrator, guarded_scene, guarded_system
 from game.mods.mod import Mod, ModError
 from game.paths import PathError
 from systems.base import Driver, System
-from systems.catalogue import DRIVERS, register_driver
+from systems.catalogue import DRIVERS, SYSTEMS, register_driver
 from systems.edit.refusal import Refusal
 from systems.input.bindings import (
     LIVE,
@@ -128,7 +129,7 @@ class App:
         """Add a frame system, a law or a commit, by its class: every session makes one of its own."""
         name = getattr(system, "name", "")
         self._check_prefix("system", name or getattr(system, "__name__", "?"))
-        self._add(registry.SYSTEMS, lambda: guarded_system(self._mod, system()))
+        self._add(SYSTEMS, lambda: guarded_system(self._mod, system()))
 
     def integrator(self, driver: type[Driver]) -> None:
         """Add an integrator that models, the command line and the properties can choose."""
@@ -167,7 +168,7 @@ class App:
         if "pause" not in scene.targets:
             raise ModError(f"From the scene '{scene.name}' one must be able to go to pause; add it to targets.")
         guarded: Callable[[], Scene] = guarded_scene(self._mod, scene)
-        self._add(registry.SCENES, guarded)
+        self._add(SCENES, guarded)
 
     def action(
         self,
@@ -217,14 +218,13 @@ class App:
 
         It may raise UsageError, ModelError or FieldError, whose sentence is shown, for what a person did wrong.
         """
-        commands, call = registry.COMMANDS, self._mod.call
-        if name in commands:
+        if name in COMMANDS:
             raise ModError(f"There is a command '{name}' already; call this one something else.")
-        commands[name] = lambda words: int(
-            call(f"the command '{name}'", run, list(words), otherwise=BAD_INPUT, mistakes=MISTAKES)
+        what, call = f"the command '{name}'", self._mod.call
+        COMMANDS[name] = Command(
+            lambda words: int(call(what, run, list(words), otherwise=BAD_INPUT, mistakes=MISTAKES)), about
         )
-        registry.ABOUT[name] = about
-        self._undo.append(lambda: (commands.pop(name), registry.ABOUT.pop(name)))
+        self._undo.append(lambda: COMMANDS.pop(name))
 
     # --- what is seen ------------------------------------------------------------------------------------
 
@@ -236,7 +236,7 @@ class App:
     def panel(self, read: Panel) -> None:
         """Show small panels beside the model: `read(session)` returns a Readout, several, or None for none now."""
         checked = _readouts(read)
-        self._add(registry.PANELS, lambda session: self._mod.call("its panel", checked, session, otherwise=()))
+        self._add(PANELS, lambda session: self._mod.call("its panel", checked, session, otherwise=()))
 
     # --- all or nothing ------------------------------------------------------------------------------------
 

@@ -1,4 +1,4 @@
-"""Loading mods: find, put in order, import, register; each mod wholly or not at all."""
+"""Loading mods: find them, put them in order, import them, register what they add; each mod wholly or not at all."""
 
 from __future__ import annotations
 
@@ -12,13 +12,11 @@ from types import ModuleType
 from game.documents.preferences import preferred_keys
 from game.mods import finding
 from game.mods.app import App, check_plugin
-from game.mods.manifest import MANIFEST
-from game.mods.mod import FAULTS, Mod, ModError
-from game.mods.order import in_order, required
+from game.mods.finding import in_order, required
+from game.mods.mod import FAULTS, MANIFEST, Mod, ModError
 from game.mods.watchdog import interrupted_after
-from game.registry import SYSTEMS
 from game.version import __version__
-from systems.catalogue import step_systems
+from systems.catalogue import all_systems
 from systems.input.bindings import prefer
 from systems.schedule import Schedule
 
@@ -86,7 +84,7 @@ def _load(mod: Mod) -> None:
         with interrupted_after(PATIENCE, lambda: True):
             module = _import(mod)
             check_plugin(getattr(module, "plugin", None))(app)
-            Schedule([*step_systems(), *(system() for system in SYSTEMS)])
+            Schedule(all_systems())
     except ModError as error:
         mod.problem = str(error)
     except Exception as error:  # whatever a stranger's code raises

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from game.commands import COMMANDS
 from game.commands.command_line import main
 from game.documents import models
-from game.registry import COMMANDS
 from systems.input.bindings import BINDINGS
 
 ROOT = Path(__file__).parents[2]

@@ -20,9 +20,8 @@ from game.documents.autosave import Autosave
 from game.documents.document import document
 from game.included.probes import Sampling
 from game.preparation import Preparation
-from game.registry import SYSTEMS
 from systems.base import Law, Phase, StepSystem, System
-from systems.catalogue import DRIVERS, step_systems
+from systems.catalogue import DRIVERS, SYSTEMS, step_systems
 from systems.collision.system import Collision, Support
 from systems.edit.hover import Hover
 from systems.edit.pull import Hand, Pull

@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
+from game.commands import COMMANDS
 from game.commands.command_line import main
-from game.registry import COMMANDS
 
 ROOT = Path(__file__).parents[2]
 

@@ -1,5 +1,7 @@
 """Scenes: the modes of the program, a state machine with pause as its hub."""
 
+from collections.abc import Callable
+
 from game.editor.scenes.base import Scene, SceneError, Scenes, Stage
 from game.editor.scenes.force_method import ForceMethod
 from game.editor.scenes.load import Load
@@ -7,9 +9,10 @@ from game.editor.scenes.pause import Pause
 from game.editor.scenes.properties import Properties
 from game.editor.scenes.save import Save
 from game.editor.scenes.simulation import Simulation
-from game.registry import SCENES
 
-__all__ = ["Scene", "SceneError", "Scenes", "Stage", "all_scenes"]
+__all__ = ["SCENES", "Scene", "SceneError", "Scenes", "Stage", "all_scenes"]
+
+SCENES: list[Callable[[], Scene]] = []  # that mods add; made anew for every session
 
 
 def all_scenes() -> list[Scene]:
