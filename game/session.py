@@ -50,7 +50,7 @@ from systems.run.energy import Energy
 from systems.run.frame_clock import FrameClock
 from systems.run.simulation import FREE_FLIGHT, Simulation
 from systems.run.system import Time
-from systems.schedule import Schedule
+from systems.schedule import Plan, Schedule
 
 if TYPE_CHECKING:
     from game.editor.clipboard import Part
@@ -497,6 +497,15 @@ class Session:
     def time_passes(self) -> bool:
         """True while frames let time pass in the model that is open."""
         return self.schedule.is_active(self._time, self.scene)
+
+    def plan(self, scene: str | None = None) -> Plan:
+        """Which systems run in a scene (by default the active one) with the model, in order, and why others do not.
+
+        >>> Session.open("isostatic").plan("pause").left_out["run.time"]
+        'not active in pause, only in simulation'
+        """
+        with self.simulation.in_scene(scene or self.scene):
+            return self.simulation.planned()
 
     def act(self, name: str, pixel: Vector | None = None) -> None:
         """Perform a named action with the pointer at a pixel; what it refuses is said in `notice`."""

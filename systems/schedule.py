@@ -148,8 +148,13 @@ class Schedule:
     def _reason(self, system: System, scene: str, model: Model) -> str:
         """Why a system does not run in a scene with a model; "" if it does."""
         if not self.is_active(system, scene):
-            return f"not active in {scene}, only in {', '.join(system.scenes or ())}"
+            return self.inactive(system, scene)
         return "" if system.needs(model) else system.unneeded
+
+    @staticmethod
+    def inactive(system: System, scene: str) -> str:
+        """That a system is not active in a scene, and where it is."""
+        return f"not active in {scene}, only in {', '.join(system.scenes or ())}"
 
     def plan(self, scene: str, model: Model) -> Plan:
         """Which systems run in a scene with a model, and why the others do not."""

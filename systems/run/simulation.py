@@ -16,7 +16,7 @@ from components.model import ADDED, Model
 from components.rod import is_warm
 from components.snapshot import Snapshot
 from components.world import Derivation
-from systems.base import Driver, StepSystem, StopReason
+from systems.base import Driver, Phase, StepSystem, StopReason
 from systems.catalogue import DRIVERS
 from systems.collision.driven.stepper import Encounters
 from systems.collision.free.flight import Flight, part_overlaps
@@ -33,7 +33,7 @@ from systems.run.checkpoint import Moment
 from systems.run.energy import Account, Energy
 from systems.run.sleep import Sleep
 from systems.run.step_size import StepSize
-from systems.schedule import Schedule
+from systems.schedule import Plan, Schedule
 
 MOST_RETRIES = 6  # times that an automatic step is halved before a run is given up
 FREE_FLIGHT = FreeFlight()
@@ -110,6 +110,29 @@ class Simulation:
     def plan(self) -> list[StepSystem]:
         """The laws and commits that act in its scene and that the model needs, in order."""
         return self.schedule.step_plan(self.scene, self.model)
+
+    def planned(self) -> Plan:
+        """All systems that run in its scene with its model, the integrator among them, and why the others do not."""
+        found = self.schedule.plan(self.scene, self.model)
+        phases, left_out = dict(found.phases), dict(found.left_out)
+        for integrator in (*DRIVERS.values(), FREE_FLIGHT):
+            if not self.schedule.is_active(integrator, self.scene):
+                left_out[integrator.name] = self.schedule.inactive(integrator, self.scene)
+            elif integrator is self.driver:
+                phases[Phase.STEP] = (*phases[Phase.STEP], integrator)
+            else:
+                left_out[integrator.name] = f"{self.driver.name} integrates"
+        return Plan(self.scene, phases, left_out)
+
+    @contextmanager
+    def in_scene(self, scene: str) -> Iterator[None]:
+        """What is asked inside is answered as if the systems of a scene acted."""
+        driver, before = self._driver, self.scene
+        self._driver, self.scene = None, scene
+        try:
+            yield
+        finally:
+            self._driver, self.scene = driver, before
 
     def act_in(self, scene: str) -> None:
         """Let the systems of a scene act from now on. What they do otherwise counts as an edit."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from components import Vector
 from game.editor.scenes import Scene
 from systems.base import Phase, System
 
@@ -44,8 +43,8 @@ class Ticking(System):
             frame.session.scenes.request("simulation")
 
 
-def more(session: Session, pixel: Vector) -> None:
-    vars(session.scenes.active)["left"] += 1.0
+def more(session: Any, pixel: Any) -> None:
+    session.scenes.active.left += 1.0
 
 
 def plugin(app: App) -> None:

@@ -119,6 +119,11 @@ class Scenes:
     def __getitem__(self, name: str) -> Scene:
         return self._by_name[name]
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all scenes."""
+        return tuple(self._by_name)
+
     def request(self, *names: str) -> None:
         """Ask for a transition, or a chain of them. Raises SceneError if one is not legal."""
         here = self._by_name[self._requested[-1]] if self._requested else self.active
