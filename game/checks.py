@@ -14,7 +14,8 @@ from components.field import Column, Role, same
 from components.model import Model
 from components.settings import INTEGRATORS
 from game.documents import models
-from game.session import Frame, Session
+from game.editor.frame import Frame
+from game.session import Session
 from systems.base import Commit, Driver, Law, StepSystem, StopReason, System
 from systems.catalogue import DRIVERS, all_systems, register_driver
 from systems.program.binding import ProgramError, bind

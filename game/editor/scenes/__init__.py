@@ -2,15 +2,17 @@
 
 from collections.abc import Callable
 
-from game.editor.scenes.base import Scene, SceneError, Scenes, Stage
-from game.editor.scenes.force_method import ForceMethod
+from game.editor.scenes.base import PHYSICS, Scene, SceneError, Scenes, Stage
+from game.editor.scenes.files import Pictures
+from game.editor.scenes.force_method import ForceMethod, Sets
 from game.editor.scenes.load import Load
 from game.editor.scenes.pause import Pause
 from game.editor.scenes.properties import Properties
 from game.editor.scenes.save import Save
 from game.editor.scenes.simulation import Simulation
+from systems.base import System
 
-__all__ = ["SCENES", "Scene", "SceneError", "Scenes", "Stage", "all_scenes"]
+__all__ = ["PHYSICS", "SCENES", "Scene", "SceneError", "Scenes", "Stage", "all_scenes", "scene_systems"]
 
 SCENES: list[Callable[[], Scene]] = []  # that mods add; made anew for every session
 
@@ -18,3 +20,8 @@ SCENES: list[Callable[[], Scene]] = []  # that mods add; made anew for every ses
 def all_scenes() -> list[Scene]:
     """The six modes, the first of which the program starts in, and those of mods."""
     return [Pause(), Simulation(), Properties(), Save(), Load(), ForceMethod(), *(scene() for scene in SCENES)]
+
+
+def scene_systems() -> list[System]:
+    """The systems that some of the modes bring."""
+    return [Pictures(), Sets()]
