@@ -6,17 +6,14 @@ import io
 import math
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from components.snapshot import Snapshot
 from components.view import drawn_places
 from game.documents.models import replace
-
-if TYPE_CHECKING:
-    from game.session import Session
-    from systems.render.labels import Placed
+from game.session import Session
+from systems.render.labels import Placed
 
 FRAME = 0.05  # s shown by each picture; viewers of GIFs slow down what is quicker
 LONGEST = 12.0  # s shown at most: what takes longer is shown faster, or only how it ends

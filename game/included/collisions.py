@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from components import Model, Plot, Readout, Vector
 from components.rod import nodes
-
-if TYPE_CHECKING:
-    from game.mods import App
-    from game.session import Session
+from game.editor.context import Context
+from game.mods import App
 
 MANY = 100  # particles without rods, from which on their speeds are shown unasked
 BINS = 16
 RANGE = 2.5  # times the root mean square speed, that the bars cover
 
-_asked: weakref.WeakKeyDictionary[Session, bool] = weakref.WeakKeyDictionary()
+_asked: weakref.WeakKeyDictionary[Context, bool] = weakref.WeakKeyDictionary()
 
 
 def free_speeds(model: Model) -> NDArray[np.float64]:
@@ -59,24 +56,24 @@ def is_gas(model: Model) -> bool:
     return not pulled and not model.rods.count and int((~model.particles.fixed.all(axis=1)).sum()) >= MANY
 
 
-def toggle_speeds(session: Session, pixel: Vector) -> None:
+def toggle_speeds(context: Context, pixel: Vector) -> None:
     """Show the speeds of the particles, or not."""
-    shown = _asked[session] = not _asked.get(session, is_gas(session.model))
-    session.notice = "Speeds beside Rayleigh's curve." if shown else "Speeds are not shown."
-    if shown and not free_speeds(session.model).any():
-        session.notice += " They appear as soon as a particle that no rod holds is moving."
+    shown = _asked[context] = not _asked.get(context, is_gas(context.model))
+    context.notice = "Speeds beside Rayleigh's curve." if shown else "Speeds are not shown."
+    if shown and not free_speeds(context.model).any():
+        context.notice += " They appear as soon as a particle that no rod holds is moving."
 
 
-def panels(session: Session) -> Sequence[Readout]:
+def panels(context: Context) -> Sequence[Readout]:
     """The number of impacts once there are any, and the speeds where they are wanted."""
     made = []
-    if session.model.clock.collisions:
-        made.append(Readout("Impacts", (("so far", str(session.model.clock.collisions)),)))
-    if _asked.get(session, is_gas(session.model)):
-        speed = free_speeds(session.model)
+    if context.model.clock.collisions:
+        made.append(Readout("Impacts", (("so far", str(context.model.clock.collisions)),)))
+    if _asked.get(context, is_gas(context.model)):
+        speed = free_speeds(context.model)
         mean_square = float((speed**2).mean()) if len(speed) else 0.0
         if mean_square > 0.0:
-            made.append(_speeds(speed, mean_square, session.model.clock.steps))
+            made.append(_speeds(speed, mean_square, context.model.clock.steps))
     return made
 
 

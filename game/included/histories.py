@@ -9,15 +9,12 @@ import csv
 import itertools
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from components import FieldError, HistoryKind, Load, Model, Vector
 from components.load import History
-
-if TYPE_CHECKING:
-    from game.mods import App
+from game.mods import App
 
 STANDARD_GRAVITY = 9.80665  # m/s²
 DIRECTIONS = {"x": (1.0, 0.0), "y": (0.0, 1.0)}

@@ -9,19 +9,17 @@ from array import array
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from components import Model, Particle, Plot, Readout, Rod, Vector
 from game.documents.models import replace
+from game.editor.context import Context
+from game.mods import App
 from game.paths import TIME, Quantity, quantity
 from systems.base import Phase, System
 from systems.edit.refusal import Refusal
-
-if TYPE_CHECKING:
-    from game.mods import App
-    from game.session import Session
 
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
@@ -59,12 +57,12 @@ class Probe:
         """When it was read last (s)."""
         return self.samples[-2 - len(self.read)] if self.samples else None
 
-    def sample(self, session: Session) -> None:
+    def sample(self, context: Context) -> None:
         """Read once; what lies at this time or later (time was taken back) is dropped."""
-        width, time = 2 + len(self.read), session.time
+        width, time = 2 + len(self.read), context.time
         while self.samples and self.samples[-width] >= time:
             del self.samples[-width:]
-        self.samples.extend([time, self.against.read(session), *(q.read(session) for q in self.read)])
+        self.samples.extend([time, self.against.read(context), *(q.read(context) for q in self.read)])
         if len(self.samples) > MOST * width:
             self.samples = array("d", self.table[::2].ravel())
         self.revision += 1
@@ -87,16 +85,16 @@ def _short(read: Quantity) -> str:
 
 
 class Probes:
-    """The probes of one session. span: the share of the time that is shown."""
+    """The probes of one context. span: the share of the time that is shown."""
 
     def __init__(self) -> None:
         self.all: list[Probe] = []
         self.span = 1.0
         self._model: weakref.ref[Model] | None = None
 
-    def add(self, session: Session, paths: Iterable[str], against: str = TIME) -> Probe:
+    def add(self, context: Context, paths: Iterable[str], against: str = TIME) -> Probe:
         """Read these quantities from now on. Raises PathError. Of too many, the oldest goes."""
-        model = session.model
+        model = context.model
         probe = Probe(quantity(model, against), tuple(quantity(model, path) for path in paths))
         self._model = weakref.ref(model)
         self.all = [*self.all, probe][-FEW:]
@@ -107,22 +105,22 @@ class Probes:
         if self._model is None or self._model() is not model:
             self.all = []
 
-    def sample(self, session: Session) -> None:
+    def sample(self, context: Context) -> None:
         """Read all of them, if time has passed since."""
-        behind = [probe for probe in self.all if probe.time != session.time]
-        if behind and session.simulation.ready:
-            session.simulation.observe()
+        behind = [probe for probe in self.all if probe.time != context.time]
+        if behind and context.simulation.ready:
+            context.simulation.observe()
             for probe in behind:
-                probe.sample(session)
+                probe.sample(context)
 
 
-_probes: weakref.WeakKeyDictionary[Session, Probes] = weakref.WeakKeyDictionary()
+_probes: weakref.WeakKeyDictionary[Context, Probes] = weakref.WeakKeyDictionary()
 
 
-def probes_of(session: Session) -> Probes:
-    """The probes of a session, all of the model that is open."""
-    probes = _probes.setdefault(session, Probes())
-    probes.keep_to(session.model)
+def probes_of(context: Context) -> Probes:
+    """The probes of a context, all of the model that is open."""
+    probes = _probes.setdefault(context, Probes())
+    probes.keep_to(context.model)
     return probes
 
 
@@ -140,54 +138,54 @@ class Sampling(System):
         probes_of(frame.session).sample(frame.session)
 
 
-def choices(session: Session) -> list[tuple[tuple[str, ...], str]]:
+def choices(context: Context) -> list[tuple[tuple[str, ...], str]]:
     """(what is read, against what) of the plots that suit what is selected; the energies if nothing is."""
     found: list[tuple[tuple[str, ...], str]] = []
-    for handle in session.selected[-1:]:
+    for handle in context.selected[-1:]:
         pairs = OF_ROD if isinstance(handle, Rod) else OF_PARTICLE if isinstance(handle, Particle) else ()
         start = f"{handle.table}.{getattr(handle, 'name', '')}."
         found = [((start + y,), x if x == TIME else start + x) for y, x in pairs]
     return found or [(ENERGIES, TIME)]
 
 
-def plot_next(session: Session, pixel: Vector) -> None:
+def plot_next(context: Context, pixel: Vector) -> None:
     """Plot the first quantity of what is selected, or the next; after the last, none of it."""
-    probes = probes_of(session)
-    offered = choices(session)
+    probes = probes_of(context)
+    offered = choices(context)
     keys = [(against, *paths) for paths, against in offered]
     shown = [keys.index(probe.key) for probe in probes.all if probe.key in keys]
     probes.all = [probe for probe in probes.all if probe.key not in keys]
     following = shown[-1] + 1 if shown else 0
     if following == len(offered):
-        session.notice = "No plot of it any more."
+        context.notice = "No plot of it any more."
         return
     paths, against = offered[following]
-    probe = probes.add(session, paths, against)
-    probes.sample(session)
+    probe = probes.add(context, paths, against)
+    probes.sample(context)
     title = probe.read[0].title if len(paths) == 1 else "energies"
-    session.notice = f"Plot: {title} against {probe.against.title}; O: the next."
+    context.notice = f"Plot: {title} against {probe.against.title}; O: the next."
 
 
-def zoom(factor: float, session: Session) -> None:
+def zoom(factor: float, context: Context) -> None:
     """Show a shorter or longer part of the time."""
-    probes = probes_of(session)
+    probes = probes_of(context)
     probes.span = min(max(probes.span * factor, 1.0 / 1024.0), 1.0)
-    session.notice = f"Plots: the last {100.0 * probes.span:.3g} % of the time."
+    context.notice = f"Plots: the last {100.0 * probes.span:.3g} % of the time."
 
 
-def save(session: Session, pixel: Vector) -> None:
+def save(context: Context, pixel: Vector) -> None:
     """Write every plot as CSV and PNG into the working folder."""
-    paths = [Path.cwd() / f"pinjoint-plot-{number}.csv" for number, _ in enumerate(probes_of(session).all, 1)]
+    paths = [Path.cwd() / f"pinjoint-plot-{number}.csv" for number, _ in enumerate(probes_of(context).all, 1)]
     try:
-        for probe, path in zip(probes_of(session).all, paths, strict=True):
+        for probe, path in zip(probes_of(context).all, paths, strict=True):
             write_csv(probe, path)
-            write_png(probe, path.with_suffix(".png"), session.view.theme)
+            write_png(probe, path.with_suffix(".png"), context.view.theme)
     except OSError as error:
         raise Refusal(
             f"No plot was saved: {error.filename}: {error.strerror}. Start Pinjoint in a folder where you may write."
         ) from None
     names = ", ".join(path.stem for path in paths)
-    session.notice = f"Saved as CSV and PNG: {names}" if paths else "There is no plot to save; O makes one."
+    context.notice = f"Saved as CSV and PNG: {names}" if paths else "There is no plot to save; O makes one."
 
 
 def write_csv(probe: Probe, path: Path) -> None:
@@ -208,9 +206,9 @@ def write_png(probe: Probe, path: Path, theme: str = "light") -> None:
     plot_png(probe.plot(1.0), path, theme)
 
 
-def panels(session: Session) -> Sequence[Readout]:
+def panels(context: Context) -> Sequence[Readout]:
     """Each probe as a panel with its plot."""
-    probes = probes_of(session)
+    probes = probes_of(context)
     return [Readout(_heading(probe), (), probe.plot(probes.span)) for probe in probes.all]
 
 
@@ -250,14 +248,14 @@ def run(words: list[str]) -> int:
     return 0
 
 
-def record(session: Session, probe: Probe, until: float, samples: int) -> None:
+def record(context: Context, probe: Probe, until: float, samples: int) -> None:
     """Run to a time (s), reading after the last full step before evenly spaced times. Ends early at rest."""
-    simulation = session.simulation
+    simulation = context.simulation
     simulation.advance(0)
     for number in range(samples):
         simulation.run_to(until * number / (samples - 1), whole_steps=True)
         simulation.observe()
-        probe.sample(session)
+        probe.sample(context)
         if simulation.halted:
             return
 
@@ -273,5 +271,5 @@ def plugin(app: App) -> None:
     for name, key, factor in (("longer", "[", 2.0), ("shorter", "]", 0.5)):
         title = f"{name} plots"
         app.action(f"probes.{name}", key=key, scenes=live, title=title, while_drawing=True)(
-            lambda session, pixel, factor=factor: zoom(factor, session)  # type: ignore[misc]
+            lambda context, pixel, factor=factor: zoom(factor, context)  # type: ignore[misc]
         )

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from components import Field, FieldError, Handle, Pieces, Selected, Table, Vector
 from components.tags import Hovered
+from game.mods import App
 from systems.render.clip import bounds, clip_segments
 from systems.render.labels import STRONG, Label, half_size
 from systems.render.marks import Discs, Mark, Strokes
+from systems.render.sheet import Sheet
 from systems.render.theme import faded
-
-if TYPE_CHECKING:
-    from game.mods import App
-    from systems.render.sheet import Sheet
 
 WIDTH = 4.0  # points, of the line that is drawn
 
