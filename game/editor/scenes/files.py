@@ -121,9 +121,9 @@ class Pictures(System):
 
     def process(self, frame: Any) -> None:
         """Read a few of them."""
-        scene = frame.context.scenes.active
+        scene = frame.session.scenes.active
         if isinstance(scene, FileScene):
-            scene.read_pictures(frame.context)
+            scene.read_pictures(frame.session)
 
 
 def tile(

@@ -238,9 +238,9 @@ class Sets(System):
 
     def process(self, frame: Any) -> None:
         """Move them."""
-        scene = frame.context.scenes.active
+        scene = frame.session.scenes.active
         if isinstance(scene, ForceMethod):
-            scene.advance(frame.context, frame.elapsed)
+            scene.advance(frame.session, frame.elapsed)
 
 
 def _place(view: View, viewport: Viewport, ratio: float) -> None:
