@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from components.spelling import missing
+from components.suggestions import missing
 from components.table import Store, Table, living
 
 

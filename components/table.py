@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Column, Field, Role
-from components.spelling import missing
+from components.suggestions import missing
 
 _SMALLEST_CAPACITY = 8
 _TRIED = 64  # names at once, at least, in search of a free one

@@ -16,7 +16,7 @@ from components.load import Load
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
-from components.spelling import missing
+from components.suggestions import missing
 from components.table import Table
 from components.view import View
 from game.commands.reports.curve import goal_of
@@ -164,6 +164,7 @@ class Session(Context):
         limit = _forward("limit", limit)
         time = None if time is None else _forward("time", time)
         steps = None if steps is None else int(_forward("steps", steps, whole=True))
+        self.act_in_scene()
         self.document.note_beginning()
         self.history.begin_run()
         self.timeline.begin()

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from components.model import Model
-from components.spelling import missing
+from components.suggestions import missing
 from game.checks import EVERYTHING
 from game.commands import COMMANDS
 from game.commands.arguments import Parser

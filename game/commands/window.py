@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from components.model import Model
-from components.spelling import nearest
+from components.suggestions import nearest
 from game.commands import COMMANDS
 from game.commands.arguments import Parser, UsageError
 from game.commands.mods import in_use

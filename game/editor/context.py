@@ -413,6 +413,7 @@ class Context:
         """
         steps = operator.index(steps)
         target = self.model.clock.steps + steps
+        self.act_in_scene()
         self.document.note_beginning()
         if not self.has_program(self.simulation):
             return False
@@ -433,6 +434,10 @@ class Context:
         if self.time_passes:
             self.history.begin_run()
 
+    def act_in_scene(self) -> None:
+        """Let time pass under the systems of the active scene; where time stands still, under those of simulation."""
+        self.simulation.act_in(self.scene if self.time_passes else "simulation")
+
     def get_ready(self) -> None:
         """Account for edits as if a frame had begun, so that what follows does not depend on when frames do."""
         self.document.note_beginning()
@@ -441,7 +446,7 @@ class Context:
 
     def advance(self, elapsed: float) -> None:
         """Let the time of one frame pass in the model, under the laws that act in the active scene."""
-        self.simulation.act_in(self.scene)
+        self.act_in_scene()
         self.document.note_beginning()
         if self.simulation.halted or not self.has_program(self.simulation):
             return

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.derived import DERIVATIONS
-from components.extremes import is_computed_with, is_extreme
+from components.numeric_range import is_computed_with, is_extreme
 from components.field import Column, Field, Role
 from components.model import Model
 from components.world import World

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from components.extremes import incomputable
+from components.numeric_range import incomputable
 from components.load import loads_end
 from components.model import Model
 from systems.physics.spectrum import Array, RodOperator

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from components.extremes import incomputable
+from components.numeric_range import incomputable
 from components.load import loads_end
 from components.model import Model
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
-from components.extremes import incomputable
+from components.numeric_range import incomputable
 from components.field import Column, Role, same
 from components.load import loads_end
 from components.model import ADDED, Model

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from components.extremes import incomputable
+from components.numeric_range import incomputable
 from components.field import FieldError
 from components.model import Model
 from systems.statics.bodies import loose_bodies, loose_event

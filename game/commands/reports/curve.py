@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from components.model import Model
-from components.spelling import missing
+from components.suggestions import missing
 from game.commands.output import Row
 
 if TYPE_CHECKING:

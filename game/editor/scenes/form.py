@@ -10,7 +10,7 @@ from components.box import WORD, Box
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.form import Form, Tile
-from components.spelling import missing
+from components.suggestions import missing
 from components.view import View
 from game.editor.context import Context, Scene, Stage
 from systems.forms import typing

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from components.extremes import incomputable
+from components.numeric_range import incomputable
 from components.field import FieldError
 from game import Session
 from game.commands.command_line import main
