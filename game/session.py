@@ -303,6 +303,7 @@ class Session:
         limit = _forward("limit", limit)
         time = None if time is None else _forward("time", time)
         steps = None if steps is None else int(_forward("steps", steps, whole=True))
+        self.act_in_scene()
         self._note_beginning()
         self.history.begin_run()
         self.timeline.begin()
@@ -392,6 +393,7 @@ class Session:
         """
         steps = operator.index(steps)
         target = self.model.clock.steps + steps
+        self.act_in_scene()
         self._note_beginning()
         if not self.has_program(self.simulation):
             return False
@@ -647,6 +649,10 @@ class Session:
             self.schedule.run(phase, frame)
         return frame
 
+    def act_in_scene(self) -> None:
+        """Let time pass under the systems of the active scene; where time stands still, under those of simulation."""
+        self.simulation.act_in(self.scene if self.time_passes else "simulation")
+
     def get_ready(self) -> None:
         """Account for edits as if a frame had begun, so that what follows does not depend on when frames do."""
         self._note_beginning()
@@ -655,7 +661,7 @@ class Session:
 
     def advance(self, elapsed: float) -> None:
         """Let the time of one frame pass in the model, under the laws that act in the active scene."""
-        self.simulation.act_in(self.scene)
+        self.act_in_scene()
         self._note_beginning()
         if self.simulation.halted or not self.has_program(self.simulation):
             return
