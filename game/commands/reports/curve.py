@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal:
-    """Where a curve shall end: at a load factor, or at a displacement in m such as "B.y=-2.5". Raises ValueError."""
+    """The end of a curve: a load factor, or a displacement in m such as "B.y=-2.5". Raises ValueError."""
     from systems.statics.path import Goal
 
     if until is None:
@@ -43,7 +43,7 @@ def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal
 
 
 def why_nothing_follows(model: Model) -> str:
-    """Why no equilibrium is next to that without load: what a mechanism moves; "" if it is none."""
+    """Why a curve ends where it begins: the motion of a mechanism in words; "" if the structure is none."""
     from systems.statics.explain import describe_motion
     from systems.statics.theory import mechanisms
 
