@@ -24,7 +24,6 @@ from components.spelling import missing
 from components.table import Table
 from components.tags import Selected
 from components.view import View
-from game.commands.reports.curve import goal_of
 from game.documents import models
 from game.documents.document import missing_mods
 from game.documents.history.history import History
@@ -366,7 +365,7 @@ class Session:
         Changes nothing. Its arrays are load_factor (k,), displacement (k, particles, 2) in m, axial_force
         (k, rods) in kN and stable (k,); complete: False if it could not be followed so far. Raises ValueError.
         """
-        from systems.statics.path import load_path
+        from systems.statics.path import goal_of, load_path
 
         if points < 2:
             raise ValueError(f"points is {points}; a curve has at least 2.")
