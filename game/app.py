@@ -101,6 +101,11 @@ def _autosave() -> tuple[Autosave | None, str]:
         return None, unkept(library.data_folder(), error)
 
 
+def unseen_systems(folder: Path) -> list[System]:
+    """The systems that a window adds to a session, without a window; unsaved work would go to the folder."""
+    return [PygameInput(), Hover(), Autosave(folder), Preparation(), PygameRender(pygame.Surface((1, 1)))]
+
+
 def _find_display() -> None:
     """Get ready for a window that somebody can see, or one as SDL_VIDEODRIVER says. Raises NoDisplay, pygame.error."""
     chosen = "SDL_VIDEODRIVER" in os.environ

@@ -49,7 +49,7 @@ class Target:
     """What a path names: one fact of the elements of a table, or its component along an axis.
 
     handles: the elements; element: their name in the path, "*" for all, "" where there is one only.
-    key: the fact's, as the path has it. axis: "x", "y" or "" for the whole.
+    key: the name of the fact in the path. axis: "x", "y" or "" for the whole.
     """
 
     table: Table[Any]
@@ -64,7 +64,7 @@ class Target:
         return ".".join(part for part in (self.table.name, element, self.key, self.axis) if part)
 
     def part(self, value: Any) -> Any:
-        """Of a value of the fact, the component that the path names; all of it without an axis."""
+        """The component of a value that the path names; the whole value if the path has no axis."""
         return value["xy".index(self.axis)] if self.axis else value
 
 
@@ -83,7 +83,7 @@ def readable(table: Table[Any]) -> Mapping[str, Field[Any]]:
 
 
 def locate(model: Model, text: str, keys: Keys) -> tuple[Target, str]:
-    """What the path that a text begins with names, and what follows the path: from "=" or "~" on, or "".
+    """The target of the path with which a text begins, and the rest of the text: from "=" or "~" on, or "".
 
     Names of elements may contain dots, spaces and "=". Raises PathError.
     """
@@ -105,7 +105,7 @@ def locate(model: Model, text: str, keys: Keys) -> tuple[Target, str]:
 
 
 def locate_one(model: Model, path: str, keys: Keys = readable) -> Target:
-    """What a path names of one element, with nothing after it. Raises PathError, which quotes the path."""
+    """The target of a path of one element, with nothing after it. Raises PathError, which quotes the path."""
     with _quoted(path):
         target, rest = locate(model, path, keys)
         if rest:
@@ -122,7 +122,7 @@ def energy_named(name: str) -> str:
 
 @contextmanager
 def _quoted(text: str) -> Iterator[None]:
-    """Let errors begin with the text in which they are."""
+    """Begin the message of an error with the text that a person wrote."""
     try:
         yield
     except (PathError, FieldError) as error:
@@ -189,7 +189,7 @@ def apply_override(model: Model, override: str) -> None:
 
 
 def read_value(target: Target, text: str) -> Any:
-    """The value that a text means for a fact; the text itself if none, for a check to refuse."""
+    """The value that a text means for a fact; the text itself if it means none, which the field then refuses."""
     whole = target.field.shape and not target.axis
     return _vector(target.field, text) if whole else _scalar(target.field, text)
 
@@ -209,7 +209,7 @@ def _vector(field: Field[Any], text: str) -> tuple[Any, ...]:
 
 
 def _scalar(field: Field[Any], text: str) -> Any:
-    """What a text means for a field; the text itself if nothing, for the field's check to refuse."""
+    """The value that a text means for a field; the text itself if it means none, which the field then refuses."""
     text = text.strip()
     if field.dtype is str:
         return text
@@ -227,7 +227,7 @@ def _scalar(field: Field[Any], text: str) -> Any:
 
 
 class Readable(Protocol):
-    """What numbers can be read of: a session."""
+    """A session, as far as quantities read it."""
 
     @property
     def model(self) -> Model: ...
@@ -241,8 +241,8 @@ class Readable(Protocol):
 class Quantity:
     """A number that can be read at any moment.
 
-    path: what a person writes. name: what it is of what. unit: on screen. read: its value in that unit; NaN
-    while its element is deleted.
+    path: as a person writes it. name: the fact and the element. unit: that on screen. read: the value in that
+    unit; NaN while the element is deleted.
     """
 
     path: str

@@ -19,7 +19,6 @@ from components.rod import Rod
 from components.suggestions import missing
 from components.table import Table
 from components.view import View
-from game.commands.reports.curve import goal_of
 from game.documents import models
 from game.documents.open_documents import ModelFile, Source, file_of
 from game.editor import actions as _actions  # noqa: F401 (they register themselves)
@@ -198,7 +197,7 @@ class Session(Context):
         Changes nothing. Its arrays are load_factor (k,), displacement (k, particles, 2) in m, axial_force
         (k, rods) in kN and stable (k,); complete: False if it could not be followed so far. Raises ValueError.
         """
-        from systems.statics.path import load_path
+        from systems.statics.path import goal_of, load_path
 
         if points < 2:
             raise ValueError(f"points is {points}; a curve has at least 2.")

@@ -12,7 +12,7 @@ from typing import Any
 
 from game.commands.arguments import Parser, UsageError
 from game.commands.options import ANSWERED
-from game.commands.output import Row, add_format, formatted, write
+from game.commands.output import Row, add_format, aligned, formatted, write
 
 CHECKOUT = Path(__file__).resolve().parents[2]
 NAMES = ("speed", "accuracy", "stability", "drawing", "editing", "mods", "collisions", "sweeps", "start")
@@ -67,19 +67,12 @@ def run(name: str, *, quick: bool) -> Tables:
 
 def as_text(tables: Tables) -> str:
     """All tables of a benchmark, aligned, to read."""
-    return "\n".join(_table(title, rows) for title, rows in tables.items())
+    return "\n".join("\n".join([title, *_lines(rows), ""]) for title, rows in tables.items())
 
 
-def _table(title: str, rows: Sequence[Mapping[str, Any]]) -> str:
-    heads = list(rows[0])
-    body = [[_shown(row[head]) for head in heads] for row in rows]
-    widths = [max(len(cell) for cell in column) for column in zip(heads, *body, strict=True)]
-    lines = [title, *("  ".join(c.rjust(w) for c, w in zip(r, widths, strict=True)) for r in [heads, *body])]
-    return "\n".join(lines) + "\n"
-
-
-def _shown(value: Any) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+def _lines(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    cells = [[f"{v:.4g}" if isinstance(v, float) else str(v) for v in row.values()] for row in rows]
+    return aligned([list(rows[0]), *cells])
 
 
 def _finite(value: Any) -> Any:

@@ -42,7 +42,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         words = mods.load_as_asked(use_cores_as_asked(words))
         command = words[0] if words and words[0] in COMMANDS else "open"
         status = COMMANDS[command].run(words[1:] if command in words[:1] else words)
-        write("", None)  # what is still on its way there
+        write("", None)  # flushes standard output, while errors can still be told
         return status
     except (
         UsageError,
@@ -60,11 +60,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return getattr(error, "status", BAD_INPUT)
     except KeyboardInterrupt:
         return 130
-    except BrokenPipeError:  # whoever reads has seen enough, such as `head`
+    except BrokenPipeError:  # the reader has seen enough, such as `head`
         _drop_output()
         return NOT_ANSWERED
     except OSError as error:
-        if error.filename is None:  # and not tried again on leaving
+        if error.filename is None:  # of standard output, which Python would flush again on leaving
             _drop_output()
         place = error.filename or "Standard output"
         print(f"pinjoint: {place} cannot be used: {error.strerror or error}.", file=sys.stderr)
@@ -72,7 +72,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _drop_output() -> None:
-    """Let what is still on its way to standard output go nowhere."""
+    """Discard the buffered rest of standard output, which cannot be written."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from components.model import Model
 from game.commands.arguments import Parser, UsageError, count, finite
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
-from game.commands.output import add_output, write_result
-from game.commands.reports.curve import curve_data, curve_rows, why_nothing_follows
+from game.commands.output import Row, add_output, write_result
+
+if TYPE_CHECKING:
+    from systems.statics.path import Curve
 
 
 def command(words: Sequence[str]) -> int:
@@ -33,11 +39,47 @@ def command(words: Sequence[str]) -> int:
         found = session.load_path(options.factor, until=options.until, points=options.points)
     except ValueError as error:
         raise UsageError(str(error)) from None
-    write_result(options, curve_data(session.model, found), curve_rows)
+    write_result(options, _data(session.model, found), _rows)
     if not found.complete:
         print(
             f"pinjoint: The curve ends at the load factor {found.load_factor[-1]:.6g}."
-            f"{why_nothing_follows(session.model) if len(found.load_factor) == 1 else ''}",
+            f"{_why_nothing_follows(session.model) if len(found.load_factor) == 1 else ''}",
             file=sys.stderr,
         )
     return ANSWERED if found.complete else NOT_ANSWERED
+
+
+def _why_nothing_follows(model: Model) -> str:
+    """Why a curve ends where it begins: the motion of a mechanism in words; "" if the structure is none."""
+    from systems.statics.explain import describe_motion
+    from systems.statics.theory import mechanisms
+
+    moving = mechanisms(model)
+    if not len(moving):
+        return ""
+    return (
+        f" The structure is a mechanism: {describe_motion(model, moving)} can move. Add rods or supports there."
+    )
+
+
+def _data(model: Model, curve: Curve) -> dict[str, Any]:
+    """A curve as plain data, each list with one entry for every equilibrium.
+
+    displacement (m): by free direction, such as "B.y"; axial_force (kN): by rod. complete: as in `Curve`.
+    """
+    names = model.particles.names
+    free = np.argwhere(~model.particles.fixed).tolist()
+    return {
+        "complete": curve.complete,
+        "load_factor": curve.load_factor,
+        "stable": curve.stable,
+        "displacement": {f"{names[row]}.{'xy'[axis]}": curve.displacement[:, row, axis] for row, axis in free},
+        "axial_force": dict(zip(model.rods.names, curve.axial_force.T, strict=True)),
+    }
+
+
+def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
+    """The data of a curve as rows, one for every equilibrium, headings first."""
+    moved, forces = found["displacement"], found["axial_force"]
+    yield "load factor", "stable", *(f"{name} (m)" for name in moved), *(f"{name} (kN)" for name in forces)
+    yield from zip(found["load_factor"], found["stable"], *moved.values(), *forces.values(), strict=True)

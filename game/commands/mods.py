@@ -97,7 +97,7 @@ def _new(name: str, into: Path) -> int:
 
 
 def _described(mod: Mod) -> dict[str, Any]:
-    """What a mod is and what became of it, as plain data."""
+    """A mod and its state as plain data."""
     state = "included" if mod.source == INCLUDED else "loaded"
     return {
         "name": mod.name,
@@ -111,7 +111,7 @@ def _described(mod: Mod) -> dict[str, Any]:
 
 
 def _checked(folder: Path) -> list[dict[str, Any]]:
-    """The mods in a folder, with what is wrong with each. Raises ModError if there is none."""
+    """The mods in a folder, each with its problems. Raises ModError if there is none."""
     if not folder.is_dir():
         raise ModError(f"{folder} is no folder.")
     found = load([folder])
@@ -142,7 +142,7 @@ def _lines_of_check(found: Sequence[dict[str, Any]]) -> Iterator[str]:
 
 
 def problems(mod: Mod) -> Iterator[str]:
-    """Sentences about systems with which no model could be run, and keys in scenes that are not there."""
+    """One sentence for each kernel of a mod that no model could be run with, and each key in a scene that does not exist."""
     model = models.load(EVERYTHING)
     for system in all_systems():
         if system.mod is mod and isinstance(system, Law | Commit):
@@ -161,7 +161,7 @@ def problems(mod: Mod) -> Iterator[str]:
 
 
 def _problem_of(system: Law | Commit, model: Model) -> str:
-    """What is wrong with its kernel, or ""."""
+    """The problem of a system's kernel, or ""."""
     try:
         return problem_of(bind(system, model), model)
     except ProgramError as error:
@@ -189,7 +189,7 @@ def crashed() -> bool:
 
 @contextmanager
 def in_use() -> Iterator[None]:
-    """While a window is open with a person's mods: a log, and a file that only a crash leaves behind."""
+    """Keep a log and a lock file while a window is open with a person's mods; only a crash leaves the file behind."""
     if not any(mod.loaded and mod.source != INCLUDED for mod in MODS):
         yield
         return
@@ -198,7 +198,7 @@ def in_use() -> Iterator[None]:
         path.parent.mkdir(parents=True, exist_ok=True)
         lock = lock_file(path)
         LOG.addHandler(logging.FileHandler(data_folder() / "mods.log", encoding="utf-8", delay=True))
-    except OSError:  # nothing can be written here; the window is of use all the same
+    except OSError:  # the folder cannot be written; the window works all the same
         lock = None
     try:
         yield

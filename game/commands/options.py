@@ -1,4 +1,4 @@
-"""Options that several commands have, and what they mean."""
+"""Options that several commands share, and the sessions and analyses that they describe."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ANSWERED, NOT_ANSWERED, NO_DISPLAY = 0, 1, 3  # exit statuses; BAD_INPUT is 2
 
 
 def use_cores_as_asked(words: Sequence[str]) -> list[str]:
-    """Let the option --cores N, which every command has, say how many cores to use; returns the other words."""
+    """Read the option --cores N, which every command has, into the environment; returns the other words."""
     parser = Parser(prog="pinjoint", add_help=False, allow_abbrev=False)
     parser.add_argument("--cores", type=partial(count, least=1), metavar="N")
     options, others = parser.parse_known_args(list(words))
@@ -30,7 +30,7 @@ def use_cores_as_asked(words: Sequence[str]) -> list[str]:
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:
-    """The model, and what is changed in it first."""
+    """Add the argument MODEL and the options that change the model before anything is computed."""
     parser.add_argument("model", help="a model file, or the name of a bundled model")
     parser.add_argument("--integrator", metavar="NAME", help=f"one of {', '.join(INTEGRATORS)}")
     parser.add_argument("--time-step", type=positive, metavar="S", help="fixed time step in seconds")
@@ -58,7 +58,7 @@ def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> S
 
 
 def add_analysis(parser: argparse.ArgumentParser) -> None:
-    """What is asked of a model: its equilibria, its state at certain times, or its state at rest."""
+    """Add the options that say what to compute: equilibria, the state at certain times, or the state at rest."""
     how = parser.add_mutually_exclusive_group()
     how.add_argument("--until-rest", action="store_true", help="run until nothing moves (the default)")
     how.add_argument(

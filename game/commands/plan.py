@@ -10,11 +10,8 @@ from typing import Any
 from game.commands.arguments import Parser, UsageError
 from game.commands.options import ANSWERED, add_model, session_of
 from game.commands.output import Row, add_output, write_result
-from game.documents.autosave import Autosave
-from game.preparation import Preparation
 from game.session import Session
-from systems.base import Phase, System
-from systems.edit.hover import Hover
+from systems.base import Phase
 
 
 def command(words: Sequence[str]) -> int:
@@ -27,8 +24,10 @@ def command(words: Sequence[str]) -> int:
     parser.add_argument("--scene", default="simulation", metavar="NAME", help="default: simulation")
     add_output(parser)
     options = parser.parse_args(words)
+    from game.app import unseen_systems  # pygame takes a while to import
+
     with tempfile.TemporaryDirectory() as folder:
-        found = plan(session_of(options, _of_window(Path(folder))), options.scene)
+        found = plan(session_of(options, unseen_systems(Path(folder))), options.scene)
     write_result(options, found, _rows, lambda found: _lines(found, options.model))
     return ANSWERED
 
@@ -43,16 +42,6 @@ def plan(session: Session, scene: str) -> dict[str, Any]:
         "phases": {phase.value: [system.name for system in found.phases[phase]] for phase in Phase},
         "left_out": dict(found.left_out),
     }
-
-
-def _of_window(folder: Path) -> list[System]:
-    """The systems that a window adds to those of every session."""
-    import pygame
-
-    from systems.input.pygame_input import PygameInput
-    from systems.render.pygame_render import PygameRender
-
-    return [PygameInput(), Hover(), Autosave(folder), Preparation(), PygameRender(pygame.Surface((1, 1)))]
 
 
 def _lines(found: dict[str, Any], model: str) -> Iterator[str]:

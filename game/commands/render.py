@@ -60,7 +60,7 @@ def command(words: Sequence[str]) -> int:
 
 
 def _show_shape(session: Session, options: argparse.Namespace) -> None:
-    """Raises NoShape if there is none with that number."""
+    """Draw the mechanism or mode that the options ask for. Raises NoShape if there is none with that number."""
     for kind in ("mechanism", "mode"):
         if (number := getattr(options, kind)) is not None:
             session.document.shapes.show(numbered(session.model, kind, number))

@@ -24,7 +24,7 @@ from systems.render.theme import theme_names
 
 
 def _refuse_misspelt(word: str) -> None:
-    """Refuse a word that is no model but nearly a command. Raises UsageError."""
+    """Raise UsageError for a word that is not a model but nearly a command."""
     near = nearest(word, COMMANDS, cutoff=0.75)
     if near and word not in models.bundled() and not Path(word).exists():
         raise UsageError(f"There is no command '{word}'; did you mean '{near}'?")
@@ -59,9 +59,9 @@ def command(words: Sequence[str]) -> int:
     )
     parser.add_argument("model", nargs="?", help="a model file, or the name of a bundled model")
     parser.add_argument(
-        "--record", type=writable, metavar="FILE", help="write what you do to a script for: pinjoint play"
+        "--record", type=writable, metavar="FILE", help="write the session to a script for: pinjoint play"
     )
-    parser.add_argument("--theme", choices=theme_names(), help="colours; default: those that were used last")
+    parser.add_argument("--theme", choices=theme_names(), help="colours; default: the theme that was used last")
     parser.add_argument("--version", action="version", version=f"pinjoint {__version__}")
     options = parser.parse_args(words)
     source = options.model or script.EMPTY
@@ -76,7 +76,7 @@ def command(words: Sequence[str]) -> int:
 
 
 def in_window(model: Model, file: ModelFile, theme: str | None = None, **further: Any) -> list[Failure]:
-    """Show a model until the window is closed; returns what a script that was played expected in vain."""
+    """Show a model until the window is closed; returns the failed expectations of the script that was played."""
     try:
         from game.app import NoDisplay, open_window
     except ImportError as error:

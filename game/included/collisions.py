@@ -23,7 +23,7 @@ _asked: weakref.WeakKeyDictionary[Context, bool] = weakref.WeakKeyDictionary()
 def free_speeds(model: Model) -> NDArray[np.float64]:
     """Speeds v √(m / m̄) (m/s) of the particles that no rod holds, m̄ their mean mass.
 
-    In equilibrium the energies of all are distributed alike, so that these are too, whatever the masses.
+    In equilibrium the energies of all particles have one distribution, and so have these speeds, whatever the masses.
     """
     particles = model.particles
     free = np.logical_not(particles.fixed.all(axis=1) | nodes(model))
@@ -56,24 +56,24 @@ def is_gas(model: Model) -> bool:
     return not pulled and not model.rods.count and int((~model.particles.fixed.all(axis=1)).sum()) >= MANY
 
 
-def toggle_speeds(context: Context, pixel: Vector) -> None:
-    """Show the speeds of the particles, or not."""
-    shown = _asked[context] = not _asked.get(context, is_gas(context.model))
-    context.notice = "Speeds beside Rayleigh's curve." if shown else "Speeds are not shown."
-    if shown and not free_speeds(context.model).any():
-        context.notice += " They appear as soon as a particle that no rod holds is moving."
+def toggle_speeds(session: Context, pixel: Vector) -> None:
+    """Show or hide the speeds of the particles."""
+    shown = _asked[session] = not _asked.get(session, is_gas(session.model))
+    session.notice = "Speeds beside Rayleigh's curve." if shown else "Speeds are not shown."
+    if shown and not free_speeds(session.model).any():
+        session.notice += " They appear as soon as a particle that no rod holds is moving."
 
 
-def panels(context: Context) -> Sequence[Readout]:
-    """The number of impacts once there are any, and the speeds where they are wanted."""
+def panels(session: Context) -> Sequence[Readout]:
+    """A panel with the number of impacts once there are any, and one with the speeds of a gas, or where asked for."""
     made = []
-    if context.model.clock.collisions:
-        made.append(Readout("Impacts", (("so far", str(context.model.clock.collisions)),)))
-    if _asked.get(context, is_gas(context.model)):
-        speed = free_speeds(context.model)
+    if session.model.clock.collisions:
+        made.append(Readout("Impacts", (("so far", str(session.model.clock.collisions)),)))
+    if _asked.get(session, is_gas(session.model)):
+        speed = free_speeds(session.model)
         mean_square = float((speed**2).mean()) if len(speed) else 0.0
         if mean_square > 0.0:
-            made.append(_speeds(speed, mean_square, context.model.clock.steps))
+            made.append(_speeds(speed, mean_square, session.model.clock.steps))
     return made
 
 

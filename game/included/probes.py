@@ -1,4 +1,4 @@
-"""Probes: what is read while time passes, drawn live as plots and written as CSV and PNG."""
+"""Probes: quantities sampled while time passes, drawn live as plots and written as CSV and PNG."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ OF_PARTICLE = (
 
 @dataclass
 class Probe:
-    """Quantities read against another; `samples` holds time, that one and each of them, in turn."""
+    """Quantities sampled against another one; each sample is the time, `against` and all of `read`, one after the other."""
 
     against: Quantity
     read: tuple[Quantity, ...]
@@ -44,31 +44,31 @@ class Probe:
 
     @property
     def key(self) -> tuple[str, ...]:
-        """What it reads."""
+        """The paths that the probe samples; probes with the same key are the same."""
         return (self.against.path, *(quantity.path for quantity in self.read))
 
     @property
     def table(self) -> np.ndarray[Any, np.dtype[np.float64]]:
-        """The samples, shape (k, 2 + quantities): time (s), what they are read against, and each of them."""
+        """The samples, shape (k, 2 + quantities): time (s), `against`, and each of `read`."""
         return np.array(self.samples).reshape(-1, 2 + len(self.read))
 
     @property
     def time(self) -> float | None:
-        """When it was read last (s)."""
+        """The time of the last sample (s)."""
         return self.samples[-2 - len(self.read)] if self.samples else None
 
-    def sample(self, context: Context) -> None:
-        """Read once; what lies at this time or later (time was taken back) is dropped."""
-        width, time = 2 + len(self.read), context.time
+    def sample(self, session: Context) -> None:
+        """Take one sample; samples at this time or later are dropped first (time was taken back)."""
+        width, time = 2 + len(self.read), session.time
         while self.samples and self.samples[-width] >= time:
             del self.samples[-width:]
-        self.samples.extend([time, self.against.read(context), *(q.read(context) for q in self.read)])
+        self.samples.extend([time, self.against.read(session), *(q.read(session) for q in self.read)])
         if len(self.samples) > MOST * width:
             self.samples = array("d", self.table[::2].ravel())
         self.revision += 1
 
     def plot(self, span: float) -> Plot:
-        """As a plot of the last part of the time, `span` of all."""
+        """A plot of the last part of the samples; span: its share of the whole time."""
         table = self.table
         if len(table):
             begin = table[-1, 0] - span * (table[-1, 0] - table[0, 0])
@@ -85,47 +85,47 @@ def _short(read: Quantity) -> str:
 
 
 class Probes:
-    """The probes of one context. span: the share of the time that is shown."""
+    """The probes of one session. span: the share of the time that plots show."""
 
     def __init__(self) -> None:
         self.all: list[Probe] = []
         self.span = 1.0
         self._model: weakref.ref[Model] | None = None
 
-    def add(self, context: Context, paths: Iterable[str], against: str = TIME) -> Probe:
-        """Read these quantities from now on. Raises PathError. Of too many, the oldest goes."""
-        model = context.model
+    def add(self, session: Context, paths: Iterable[str], against: str = TIME) -> Probe:
+        """Sample these quantities from now on. Raises PathError. Of more than FEW probes the oldest is dropped."""
+        model = session.model
         probe = Probe(quantity(model, against), tuple(quantity(model, path) for path in paths))
         self._model = weakref.ref(model)
         self.all = [*self.all, probe][-FEW:]
         return probe
 
     def keep_to(self, model: Model) -> None:
-        """Forget those of another model."""
+        """Forget the probes of any other model."""
         if self._model is None or self._model() is not model:
             self.all = []
 
-    def sample(self, context: Context) -> None:
-        """Read all of them, if time has passed since."""
-        behind = [probe for probe in self.all if probe.time != context.time]
-        if behind and context.simulation.ready:
-            context.simulation.observe()
+    def sample(self, session: Context) -> None:
+        """Take a sample of every probe for which time has passed."""
+        behind = [probe for probe in self.all if probe.time != session.time]
+        if behind and session.simulation.ready:
+            session.simulation.observe()
             for probe in behind:
-                probe.sample(context)
+                probe.sample(session)
 
 
 _probes: weakref.WeakKeyDictionary[Context, Probes] = weakref.WeakKeyDictionary()
 
 
-def probes_of(context: Context) -> Probes:
-    """The probes of a context, all of the model that is open."""
-    probes = _probes.setdefault(context, Probes())
-    probes.keep_to(context.model)
+def probes_of(session: Context) -> Probes:
+    """The probes of a session, all of them of the model that is open."""
+    probes = _probes.setdefault(session, Probes())
+    probes.keep_to(session.model)
     return probes
 
 
 class Sampling(System):
-    """Reads the probes once a frame."""
+    """Samples the probes once a frame."""
 
     name = "probes.sampling"
     phase = Phase.EVENTS
@@ -138,58 +138,58 @@ class Sampling(System):
         probes_of(frame.session).sample(frame.session)
 
 
-def choices(context: Context) -> list[tuple[tuple[str, ...], str]]:
-    """(what is read, against what) of the plots that suit what is selected; the energies if nothing is."""
+def choices(session: Context) -> list[tuple[tuple[str, ...], str]]:
+    """(paths, path against which) of the plots that suit the selection; the energies if nothing is selected."""
     found: list[tuple[tuple[str, ...], str]] = []
-    for handle in context.selected[-1:]:
+    for handle in session.selected[-1:]:
         pairs = OF_ROD if isinstance(handle, Rod) else OF_PARTICLE if isinstance(handle, Particle) else ()
         start = f"{handle.table}.{getattr(handle, 'name', '')}."
         found = [((start + y,), x if x == TIME else start + x) for y, x in pairs]
     return found or [(ENERGIES, TIME)]
 
 
-def plot_next(context: Context, pixel: Vector) -> None:
-    """Plot the first quantity of what is selected, or the next; after the last, none of it."""
-    probes = probes_of(context)
-    offered = choices(context)
+def plot_next(session: Context, pixel: Vector) -> None:
+    """Plot the first quantity of the selection, then the next; after the last one, none."""
+    probes = probes_of(session)
+    offered = choices(session)
     keys = [(against, *paths) for paths, against in offered]
     shown = [keys.index(probe.key) for probe in probes.all if probe.key in keys]
     probes.all = [probe for probe in probes.all if probe.key not in keys]
     following = shown[-1] + 1 if shown else 0
     if following == len(offered):
-        context.notice = "No plot of it any more."
+        session.notice = "No plot of it any more."
         return
     paths, against = offered[following]
-    probe = probes.add(context, paths, against)
-    probes.sample(context)
+    probe = probes.add(session, paths, against)
+    probes.sample(session)
     title = probe.read[0].title if len(paths) == 1 else "energies"
-    context.notice = f"Plot: {title} against {probe.against.title}; O: the next."
+    session.notice = f"Plot: {title} against {probe.against.title}; O: the next."
 
 
-def zoom(factor: float, context: Context) -> None:
+def zoom(factor: float, session: Context) -> None:
     """Show a shorter or longer part of the time."""
-    probes = probes_of(context)
+    probes = probes_of(session)
     probes.span = min(max(probes.span * factor, 1.0 / 1024.0), 1.0)
-    context.notice = f"Plots: the last {100.0 * probes.span:.3g} % of the time."
+    session.notice = f"Plots: the last {100.0 * probes.span:.3g} % of the time."
 
 
-def save(context: Context, pixel: Vector) -> None:
+def save(session: Context, pixel: Vector) -> None:
     """Write every plot as CSV and PNG into the working folder."""
-    paths = [Path.cwd() / f"pinjoint-plot-{number}.csv" for number, _ in enumerate(probes_of(context).all, 1)]
+    paths = [Path.cwd() / f"pinjoint-plot-{number}.csv" for number, _ in enumerate(probes_of(session).all, 1)]
     try:
-        for probe, path in zip(probes_of(context).all, paths, strict=True):
+        for probe, path in zip(probes_of(session).all, paths, strict=True):
             write_csv(probe, path)
-            write_png(probe, path.with_suffix(".png"), context.view.theme)
+            write_png(probe, path.with_suffix(".png"), session.view.theme)
     except OSError as error:
         raise Refusal(
             f"No plot was saved: {error.filename}: {error.strerror}. Start Pinjoint in a folder where you may write."
         ) from None
     names = ", ".join(path.stem for path in paths)
-    context.notice = f"Saved as CSV and PNG: {names}" if paths else "There is no plot to save; O makes one."
+    session.notice = f"Saved as CSV and PNG: {names}" if paths else "There is no plot to save; O makes one."
 
 
 def write_csv(probe: Probe, path: Path) -> None:
-    """One sample a line: the time and what was read, in the units of the headings."""
+    """Write one sample a line: the time and the quantities, in the units of the headings."""
     against = [] if probe.against.path == TIME else [1]
     heads = ["time (s)", *([probe.against.title] if against else []), *(read.title for read in probe.read)]
     text = io.StringIO()
@@ -200,15 +200,15 @@ def write_csv(probe: Probe, path: Path) -> None:
 
 
 def write_png(probe: Probe, path: Path, theme: str = "light") -> None:
-    """The whole plot as a picture."""
+    """Write the whole plot as a picture."""
     from game.app import plot_png  # pygame is there when it is needed
 
     plot_png(probe.plot(1.0), path, theme)
 
 
-def panels(context: Context) -> Sequence[Readout]:
+def panels(session: Context) -> Sequence[Readout]:
     """Each probe as a panel with its plot."""
-    probes = probes_of(context)
+    probes = probes_of(session)
     return [Readout(_heading(probe), (), probe.plot(probes.span)) for probe in probes.all]
 
 
@@ -248,14 +248,14 @@ def run(words: list[str]) -> int:
     return 0
 
 
-def record(context: Context, probe: Probe, until: float, samples: int) -> None:
+def record(session: Context, probe: Probe, until: float, samples: int) -> None:
     """Run to a time (s), reading after the last full step before evenly spaced times. Ends early at rest."""
-    simulation = context.simulation
+    simulation = session.simulation
     simulation.advance(0)
     for number in range(samples):
         simulation.run_to(until * number / (samples - 1), whole_steps=True)
         simulation.observe()
-        probe.sample(context)
+        probe.sample(session)
         if simulation.halted:
             return
 
@@ -271,5 +271,5 @@ def plugin(app: App) -> None:
     for name, key, factor in (("longer", "[", 2.0), ("shorter", "]", 0.5)):
         title = f"{name} plots"
         app.action(f"probes.{name}", key=key, scenes=live, title=title, while_drawing=True)(
-            lambda context, pixel, factor=factor: zoom(factor, context)  # type: ignore[misc]
+            lambda session, pixel, factor=factor: zoom(factor, session)  # type: ignore[misc]
         )

@@ -46,7 +46,7 @@ class Wall(Handle):
 
     @classmethod
     def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
-        """A wall has a length."""
+        """Raise FieldError for a wall without a length."""
         points = (table.start[rows] == table.end[rows]).all(axis=1)
         for row in rows[points][:1].tolist():
             where = table.world.describe(table[row])
@@ -54,7 +54,7 @@ class Wall(Handle):
 
 
 def as_pieces(walls: Table[Wall]) -> Pieces:
-    """What particles collide with."""
+    """The walls as pieces with which particles collide."""
     ends = np.stack([walls.start, walls.end], axis=1)
     return Pieces(ends, np.arange(walls.count), restitution=walls.restitution)
 
@@ -78,7 +78,7 @@ def draw(sheet: Sheet) -> Iterator[Mark]:
 
 
 def name_wall(sheet: Sheet, name: str, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
-    """Beside its middle, where there is room."""
+    """Place the name of a wall beside its middle, where there is room."""
     size = sheet.font(12.0)
     half = half_size(name, size, "semibold", sheet.unit)
     along = (end - start) / max(float(np.hypot(*(end - start))), 1e-9)

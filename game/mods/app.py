@@ -50,10 +50,10 @@ Panel = Callable[[Context], Readout | Sequence[Readout] | None]
 
 
 class App:
-    """The program, as a mod's `plugin(app)` sees it while it registers what it adds.
+    """The program, as a mod's `plugin(app)` sees it: one method for each kind of extension.
 
-    All or nothing: if `plugin` raises, nothing of it stays. What is registered is called only while the mod
-    works; an exception in it switches the whole mod off, and the session goes on.
+    If `plugin` raises, everything that it registered is taken back. An exception in registered code switches the
+    whole mod off, and the session goes on.
     """
 
     def __init__(self, mod: Mod) -> None:
@@ -79,7 +79,7 @@ class App:
         """Add a kind of elements: a class with Fields, whose table every model has; see components.Handle.
 
         Files keep them under "components": {"<mod>.<Kind>": […]}. Those with `points` can be picked, dragged,
-        copied and selected in a box like others; what draws them is a layer of the mod's own.
+        copied and selected in a box like others; a layer of the mod draws them.
         """
         try:
             name = add_kind(self.name, kind)
@@ -217,7 +217,7 @@ class App:
     def command(self, name: str, run: Callable[[list[str]], int], about: str = "") -> None:
         """Add `pinjoint <name> …`: `run` gets the words after it and returns the exit status; --help says what about.
 
-        It may raise UsageError, ModelError or FieldError, whose sentence is shown, for what a person did wrong.
+        UsageError, ModelError, FieldError and PathError that it raises are shown as mistakes of the person.
         """
         if name in COMMANDS:
             raise ModError(f"There is a command '{name}' already; call this one something else.")
@@ -235,7 +235,7 @@ class App:
         self._add(BELOW if below else ABOVE, drawn)
 
     def panel(self, read: Panel) -> None:
-        """Show small panels beside the model: `read(session)` returns a Readout, several, or None for none now."""
+        """Show small panels beside the model: `read(session)` returns a Readout, several, or None."""
         checked = _readouts(read)
         self._add(PANELS, lambda session: self._mod.call("its panel", checked, session, otherwise=()))
 
@@ -265,14 +265,14 @@ class App:
                     function(context, pixel)
             except (Refusal, FieldError):
                 raise
-            except Exception as error:  # whatever a stranger's code raises
+            except Exception as error:  # any error of code that is not ours
                 mod.fail(f"the action '{name}'", error)
 
         return act
 
 
 def _checked_key(key: str) -> str:
-    """What bindings call a key. Raises ModError."""
+    """The name of a key in the bindings. Raises ModError."""
     try:
         named = key_named(key)
     except ValueError as error:

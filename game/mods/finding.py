@@ -16,7 +16,7 @@ PROGRAM = "pinjoint"  # what a mod calls the program that it requires
 
 
 def mods_folder() -> Path:
-    """Where a person's mods lie, a folder each; it need not exist yet."""
+    """The folder with a person's mods, a folder each; it need not exist yet."""
     return data_folder() / "mods"
 
 
@@ -126,7 +126,7 @@ def _parts(entry: str) -> tuple[str, str]:
 
 
 def _unmet(mod: Mod, by_name: dict[str, Mod], version: str) -> str:
-    """Why a mod cannot have what it requires, or ""."""
+    """The first requirement of a mod that is not met, as a sentence; "" if all are."""
     from packaging.specifiers import SpecifierSet
 
     for entry in mod.requires:

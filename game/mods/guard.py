@@ -1,4 +1,4 @@
-"""Guards: code of mods is called through them; when it fails, the mod is switched off and the session goes on."""
+"""Guards around the code of mods: when it fails, the mod is switched off and the session goes on."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ PATIENCE = 2.0  # s that a frame system may take; a longer one is interrupted
 
 
 def guarded_system(mod: Mod, system: System) -> System:
-    """The system of a mod, so wrapped that it is left out once the mod is switched off.
+    """The system of a mod, wrapped so that it is left out once the mod is switched off.
 
-    The commands of a frame system are one step of undo. If it raises or takes too long they are dropped
-    whole, and the columns that it declares it writes are as before.
+    The commands of a frame system are one step of undo. If the system raises or takes too long, its commands
+    are dropped whole, and the columns that it declares in `writes` and `adds` are restored.
     """
     needs, process = system.needs, system.process
     arrays = system.arrays if isinstance(system, StepSystem) else None
@@ -42,7 +42,7 @@ def guarded_system(mod: Mod, system: System) -> System:
                     process(frame)
                 else:
                     _watched(process, frame, model)
-        except Exception as error:  # whatever a stranger's code raises
+        except Exception as error:  # any error of code that is not ours
             if before is not None:
                 before.restore(model)
             mod.fail(f"the system '{system.name}'", error)
@@ -58,9 +58,9 @@ def guarded_system(mod: Mod, system: System) -> System:
 
 
 def _watched(process: Callable[[Any], None], frame: Any, model: Model) -> None:
-    """Interrupt it if it takes long, and put back what it deleted past the tables.
+    """Run a frame system; interrupt it after PATIENCE, and restore entities that it deleted past the tables.
 
-    Never in the middle of a command; one that does nothing but give commands is stopped before the next.
+    A command is never interrupted; a system that does nothing but give commands is stopped before the next one.
     """
     model.before_command = stop_after(PATIENCE)
     try:
@@ -79,7 +79,7 @@ def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
             kind.check(history, where)
         except FieldError:
             raise
-        except Exception as error:  # whatever a stranger's code raises
+        except Exception as error:  # any error of code that is not ours
             mod.fail(f"the check of the history '{kind.name}'", error)
 
     def ends(history: History) -> float:
@@ -100,7 +100,7 @@ def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
 
 
 def guarded_integrator(mod: Mod, driver: Driver) -> Driver:
-    """The integrator of a mod, so wrapped that it is no longer chosen once the mod is switched off."""
+    """The integrator of a mod, wrapped so that it is no longer chosen once the mod is switched off."""
     own = driver.stable_step
 
     def stable_step(frequency: float, decay: float) -> float:
@@ -123,7 +123,7 @@ _METHODS = tuple(name for name, method in vars(Scene).items() if callable(method
 
 
 def guarded_scene(mod: Mod, kind: type[Scene]) -> type[Scene]:
-    """The scene of a mod, so wrapped that it does nothing and leads to pause once the mod is switched off."""
+    """The scene of a mod, wrapped so that it does nothing and leads to pause once the mod is switched off."""
     methods = {name: _guarded_method(mod, kind, name) for name in _METHODS}
     return type(kind.__name__, (kind,), {**methods, "mod": mod})
 

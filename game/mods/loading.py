@@ -29,7 +29,7 @@ MODS: list[Mod] = []  # all that were found in this process, those that come wit
 def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list[Mod]:
     """Load the mods in these folders (and, if `installed`, the person's own and those of packages).
 
-    Returns all that were found, each with its `problem` if it was left out. What is loaded already stays.
+    Returns all mods that were found, each with its `problem` if it was left out. Mods that are loaded stay.
     """
     found = [mod for folder in folders for mod in finding.in_folder(Path(folder))]
     if installed:
@@ -88,7 +88,7 @@ def _load(mod: Mod) -> None:
             Schedule(all_systems())
     except ModError as error:
         mod.problem = str(error)
-    except Exception as error:  # whatever a stranger's code raises
+    except Exception as error:  # any error of code that is not ours
         mod.problem = mod.describe(error)
     if mod.off:
         app.withdraw()

@@ -29,7 +29,7 @@ class Mod:
 
     folder: where its mod.toml is, if it has one. module: what is imported. source: where it was found.
     requires: requirements like "pinjoint>=0.1" and "gusts>=2". problem: why it was left out or switched
-    off, or "". notes: what else a person should know, such as keys that were taken.
+    off, or "". notes: further sentences for a person, such as keys that were taken.
     """
 
     name: str
@@ -54,11 +54,11 @@ class Mod:
         return self.withdraw is not None
 
     def fail(self, what: str, error: BaseException) -> None:
-        """Switch it off because something of it failed, and tell so."""
+        """Switch the mod off because `what` of it failed."""
         self.switch_off(f"{what} failed: {self.describe(error)}", error)
 
     def switch_off(self, reason: str, error: BaseException | None = None) -> None:
-        """Let nothing of it be called any more."""
+        """Switch the mod off: from now on `call` calls nothing of it."""
         self.problem = reason
         sentence = f"The mod '{self.name}' was switched off: {reason} Your model is as it was before."
         FAULTS.append(sentence)
@@ -85,9 +85,9 @@ class Mod:
         otherwise: Any = None,
         mistakes: tuple[type[Exception], ...] = (),
     ) -> Any:
-        """What a function of the mod returns; `otherwise` if the mod is off, or fails, which switches it off.
+        """The result of a function of the mod; `otherwise` if the mod is off or the function fails, which switches it off.
 
-        mistakes: errors by which it tells a person what to do otherwise; they are raised.
+        mistakes: errors that tell a person what to correct; they are raised.
         """
         if self.off:
             return otherwise
@@ -95,7 +95,7 @@ class Mod:
             return function(*arguments)
         except mistakes:
             raise
-        except Exception as error:  # whatever a stranger's code raises
+        except Exception as error:  # any error of code that is not ours
             self.fail(what, error)
             return otherwise
 
@@ -105,7 +105,7 @@ def _message(error: BaseException) -> str:
 
 
 def _short(path: str) -> str:
-    """The file and the folder it is in."""
+    """A path as its file and the folder that holds it."""
     return "/".join(Path(path).parts[-2:])
 
 

@@ -13,8 +13,8 @@ import numpy as np
 from scipy.linalg import qr
 from scipy.sparse import csc_matrix, diags
 
-from components.numeric_range import incomputable
 from components.model import Model
+from components.numeric_range import incomputable
 from components.particle import Particle
 from components.rod import Rod, nodes
 from components.suggestions import missing

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from game import mods
 from game.commands import COMMANDS
 from game.commands.command_line import main
+from game.commands.output import FORMATS
 
 ROOT = Path(__file__).parents[2]
 
@@ -182,3 +187,111 @@ def test_a_result_that_cannot_be_written_leaves_the_old_one(
     )
     assert path.read_text(encoding="utf-8") == "old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+# --- formats -------------------------------------------------------------------------------------------
+
+PRINTING = {  # commands that print a result, and their format if none is asked for
+    "run isostatic --static": "table",
+    "verify isostatic --theory-only": "table",
+    "verify isostatic --influence AB A.y": "table",
+    "curve von_mises --until B.y=-0.1": "csv",
+    "force-method hyperstatic --release AC": "json",
+    "force-method hyperstatic --all": "json",
+    "plan isostatic": "table",
+    "mods list --no-mods": "table",
+    "mods check assets/mods/wind": "table",
+    "play 1_draw_a_truss": "table",
+}
+
+
+@pytest.fixture
+def unloaded() -> Iterator[None]:
+    """What a command loads is unloaded after the test."""
+    before = len(mods.MODS)
+    yield
+    mods.unload(mods.MODS[before:])
+
+
+@pytest.mark.usefixtures("unloaded")
+@pytest.mark.parametrize("command", PRINTING)
+def test_every_command_that_prints_knows_three_formats(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(ROOT)
+    printed = {}
+    for chosen in FORMATS:
+        path = tmp_path / f"result.{chosen}"
+        assert main([*command.split(), "--format", chosen]) == 0
+        printed[chosen] = capsys.readouterr().out
+        assert main([*command.split(), "--format", chosen, "--output", str(path)]) == 0
+        assert capsys.readouterr().out == ""
+        assert without_times(path.read_text(encoding="utf-8")) == without_times(printed[chosen])
+    json.loads(printed["json"], parse_constant=pytest.fail)
+    rows = list(csv.reader(io.StringIO(printed["csv"])))
+    assert len({len(row) for row in rows}) == 1
+    assert all(rows[0])
+    assert len(set(printed.values())) == 3
+    assert main(command.split()) == 0
+    assert without_times(capsys.readouterr().out) == without_times(printed[PRINTING[command]])
+
+
+def without_times(text: str) -> str:
+    """What two runs of a command have in common: all but the seconds that they took."""
+    text = re.sub(r'"(wall|compile)_seconds": [^,]*', "", text)
+    return re.sub(r"computed in .* s, compiled in .* s", "", text)
+
+
+@pytest.mark.parametrize("command", PRINTING)
+def test_no_command_writes_where_it_cannot(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*command.split(), "--output", "/no/such/folder/x"]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert "/no/such/folder/x cannot be written, there is no folder /no/such/folder" in said.err
+    assert main([*command.split(), "--format", "yaml"]) == 2
+    assert "choose from" in capsys.readouterr().err
+
+
+def printed_by(command: str, capsys: pytest.CaptureFixture[str]) -> str:
+    assert main(command.split()) == 0
+    return capsys.readouterr().out
+
+
+def test_every_format_of_the_force_method_has_the_same_numbers(capsys: pytest.CaptureFixture[str]) -> None:
+    command = "force-method hyperstatic --release AC"
+    found = json.loads(printed_by(command, capsys))
+    (row,) = csv.DictReader(io.StringIO(printed_by(f"{command} --format csv", capsys)))
+    assert row == {
+        "released": "AC",
+        "delta_real (m)": repr(found["delta_real"]),
+        "delta_base (m)": repr(found["delta_base"]),
+        "delta_unit AC (m/kN)": repr(found["delta_unit"]),
+        "force (kN)": repr(found["force"]),
+        "exact_force (kN)": repr(found["exact_force"]),
+    }
+    assert f"{found['force']:.7g}" in printed_by(f"{command} --format table", capsys)
+
+
+def test_every_format_of_a_curve_has_the_same_numbers(capsys: pytest.CaptureFixture[str]) -> None:
+    command = "curve von_mises --until B.y=-0.1"
+    rows = list(csv.DictReader(io.StringIO(printed_by(command, capsys))))
+    found = json.loads(printed_by(f"{command} --format json", capsys))
+    assert found["complete"] is True
+    assert [float(row["load factor"]) for row in rows] == found["load_factor"]
+    assert [row["stable"] == "1" for row in rows] == found["stable"]
+    assert [float(row["B.y (m)"]) for row in rows] == found["displacement"]["B.y"]
+    rod, forces = next(iter(found["axial_force"].items()))
+    assert [float(row[f"{rod} (kN)"]) for row in rows] == forces
+
+
+def test_every_format_of_verify_has_the_same_numbers(capsys: pytest.CaptureFixture[str]) -> None:
+    command = "verify isostatic --theory-only"
+    found = json.loads(printed_by(f"{command} --format json", capsys))
+    rows = list(csv.DictReader(io.StringIO(printed_by(f"{command} --format csv", capsys))))
+    values = {(row["name"], row["quantity"], row["component"]): row for row in rows}
+    assert values["AB", "axial_force", ""]["unit"] == "kN"
+    assert float(values["AB", "axial_force", ""]["exact"]) == found["rods"]["AB"]["axial_force"]["exact"]
+    displaced = values["B", "displacement", "y"]
+    assert displaced["element"] == "particle"
+    assert displaced["simulation"] == ""
+    assert float(displaced["linear"]) == found["particles"]["B"]["displacement"]["y"]["linear"]

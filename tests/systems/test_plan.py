@@ -15,8 +15,7 @@ from numba import njit
 from components.settings import INTEGRATORS
 from game import Session
 from game.commands.command_line import main
-from game.editor.scenes import PHYSICS, Scene
-from game.registry import SCENES
+from game.editor.scenes import PHYSICS, SCENES, Scene
 from systems.base import Commit, Law, Phase, System
 from systems.catalogue import DRIVERS, register_driver
 from systems.physics.integrators import SemiImplicitEuler

@@ -36,7 +36,7 @@ _IN_TABLES = {Particle.displacement.name: ("mm", 1000.0)}  # else units as in fi
 
 
 def reported(group: str) -> tuple[Field[Any], ...]:
-    """The facts that are reported of the elements of a table: Pinjoint's, then those of mods' components."""
+    """The fields of a table that results report: Pinjoint's own, then those of mods' components."""
     of_mods = (
         field for field in fields_of(_KINDS[group]) if field.component and field.dtype in (float, int, bool)
     )
@@ -55,9 +55,9 @@ def state(
 ) -> State:
     """The present state of a model as plain data: SI units with kN, vectors as [x, y].
 
-    energy: J, with the keys of ENERGIES. load_factor: of statics. residual: what is left of the
-    largest force that is out of balance. columns: what is reported in place of the model's own columns,
-    by "table.field". `position` is the original one. Raises ResultError.
+    energy: J, with the keys of ENERGIES. load_factor: of statics. residual: the largest
+    force out of balance, relative to the largest force. columns: by "table.field", columns that are reported
+    in place of the model's own. `position` is the original one. Raises ResultError.
     """
     made = {
         "time": model.clock.time,

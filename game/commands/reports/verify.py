@@ -53,8 +53,8 @@ def verify(session: Session, name: str, limit: float, *, simulate: bool = True) 
     """Theory beside the simulation run to rest (at most `limit` s of simulated time), as plain data.
 
     simulate: False for theory alone. `status` is "verified" if the simulation came to rest in the exact
-    equilibrium; "differs from static theory" if it did what a slowly growing load does not do, which `message`
-    tells first; "theory only" without a simulation; else "not verified", and `message` says what is missing.
+    equilibrium; "differs from static theory" if it went another way than under a slowly growing load, which `message`
+    says first; "theory only" without a simulation; else "not verified", and `message` says what is missing.
     """
     model = session.model
     theory = theories(model)
@@ -83,7 +83,7 @@ def verify(session: Session, name: str, limit: float, *, simulate: bool = True) 
 
 
 def _status(comparison: Comparison, simulated: bool, departed: bool) -> str:
-    """What to call answers of which none is missing."""
+    """The status where simulation and theory all have an answer."""
     if not simulated:
         return THEORY_ONLY
     if not differs(comparison):
@@ -140,7 +140,7 @@ def _by_particle(model: Model, field: Array) -> dict[str, list[float]]:
 
 
 def _messages(found: Found) -> Iterator[str]:
-    """What a person should know about the answers."""
+    """Sentences about the answers: departures from statics, missing answers, remarks."""
     if not found["rods"]:
         yield "There are no rods, so statics has nothing to compare. Use: pinjoint run MODEL"
         return
@@ -236,7 +236,7 @@ def _influence_lines(found: Found) -> Iterator[str]:
 
 
 def _degrees(found: Found) -> str:
-    """How much the rods and supports determine."""
+    """The degrees of static and kinematic indeterminacy in words."""
     degrees = found["indeterminacy"]
     each = f"internal {degrees['internal']}, external {degrees['external']}"
     static, moving = degrees["static"], degrees["mechanisms"]
