@@ -20,8 +20,8 @@ from components.table import Table, fields_of
 from components.tags import Selected
 from game.documents.document import ModelError, document_of, parse
 from game.documents.models import laid_out
+from systems.edit import Refusal
 from systems.edit.moving import moving_rows
-from systems.edit.refusal import Refusal
 
 Rows = NDArray[np.int64]
 Kind = type[Handle]

@@ -31,7 +31,7 @@ from game.mods.mod import Mod, ModError
 from game.paths import PathError
 from systems.base import Driver, System
 from systems.catalogue import DRIVERS, SYSTEMS, register_driver
-from systems.edit.refusal import Refusal
+from systems.edit import Refusal
 from systems.input.bindings import (
     LIVE,
     Binding,
@@ -42,7 +42,7 @@ from systems.input.bindings import (
     remove_tool,
 )
 from systems.render.icons import ICONS, Part
-from systems.render.layers import ABOVE, BELOW, Layer
+from systems.render.sheet import ABOVE, BELOW, Layer
 
 T = TypeVar("T")
 MISTAKES = (UsageError, models.ModelError, FieldError, PathError)  # of a person at the command line

@@ -9,8 +9,8 @@ from components.tags import DiagramShown
 from game.editor.actions.editing import take_up
 from game.editor.context import ACTIONS, Action, Context, action
 from game.editor.gestures import TOOLS, BoxSelect, Drawing, DrawSupport, Move, MovePoint, PullParticle
+from systems.edit import Refusal
 from systems.edit.picking import pick, pick_line, pick_particle, pick_point
-from systems.edit.refusal import Refusal
 from systems.edit.selecting import everything
 
 

@@ -10,10 +10,10 @@ from components.handle import Handle
 from components.particle import Particle
 from game.editor.clipboard import Part, chosen, parsed, paste, taken, written
 from game.editor.context import Context, action
+from systems.edit import Refusal
 from systems.edit.moving import Movable, nudged
 from systems.edit.picking import pick_particle
 from systems.edit.placing import place, snapped
-from systems.edit.refusal import Refusal
 from systems.edit.rods import delete
 from systems.edit.supports import next_support
 from systems.forms.properties import heading

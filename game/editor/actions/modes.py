@@ -12,7 +12,7 @@ from game.editor.actions.drawing import put_away
 from game.editor.context import Context, SceneError, action
 from game.editor.scenes.form import FormScene
 from game.editor.scenes.properties import Properties
-from systems.edit.refusal import Refusal
+from systems.edit import Refusal
 from systems.forms import typing
 
 

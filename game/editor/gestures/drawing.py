@@ -10,10 +10,10 @@ from components.handle import Handle
 from components.particle import Particle
 from components.view import Preview, drawn_positions
 from game.editor.context import Context, Gesture
+from systems.edit import Refusal
 from systems.edit.arrows import arrow_end, arrow_value, usual_force, usual_speed
 from systems.edit.picking import PARTICLE_REACH, pick_particle
 from systems.edit.placing import snapped_to_points
-from systems.edit.refusal import Refusal
 from systems.edit.rods import check_ends, distance, join
 from systems.edit.supports import NAMES, next_support, support, support_towards
 
