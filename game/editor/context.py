@@ -513,10 +513,26 @@ class Context:
         return described[:1].upper() + described[1:]
 
     def leave_gesture(self) -> None:
-        """End what is being drawn or dragged, because something else begins."""
+        """End what is being drawn or dragged before something else begins."""
         gesture, self.gesture = self.gesture, None
         if gesture is not None:
             gesture.leave(self)
+
+    def cancel_gesture(self) -> bool:
+        """Take back what is being drawn or dragged, else put the tool away; False if there is neither."""
+        gesture, self.gesture = self.gesture, None
+        if gesture is not None:
+            gesture.cancel(self)
+        elif self.view.tool:
+            self.view.tool = ""
+        else:
+            return False
+        return True
+
+    def take_up(self, tool: str) -> None:
+        """Let clicks use a tool from now on; if they use it already, put it away."""
+        self.leave_gesture()
+        self.view.tool = "" if self.view.tool == tool else tool
 
     @property
     def clipboard(self) -> str:

@@ -21,7 +21,6 @@ from components.view import Readout
 from game.commands import COMMANDS, Command
 from game.commands.arguments import BAD_INPUT, UsageError
 from game.documents import models
-from game.editor.actions.drawing import use
 from game.editor.context import ACTIONS, PANELS, WHILE_DRAWING, Action, Context, action
 from game.editor.gestures import TOOL_HINTS, TOOLS
 from game.editor.gestures.drawing import drawing_of
@@ -101,7 +100,7 @@ class App:
         )
         self._undo += [lambda: TOOLS.pop(name), lambda: TOOL_HINTS.pop(name)]
         self.action(name, key=key, title=title or f"{kind.noun}, from point to point", while_drawing=True)(
-            use(name)
+            TOOLS[name].use
         )
         if icon:
             ICONS[name] = tuple(icon)
