@@ -21,8 +21,8 @@ from components.table import Table
 from components.view import View
 from game.documents import models
 from game.documents.open_documents import ModelFile, Source, file_of
-from game.editor import actions as _actions  # noqa: F401 (they register themselves)
-from game.editor.context import ACTIONS, FAULTS, WHILE_DRAWING, Context, Stage
+from game.editor.actions import ACTIONS, WHILE_DRAWING
+from game.editor.context import FAULTS, Context, Stage
 from game.editor.frame import Frame, frame_systems
 from game.editor.scenes import all_scenes, scene_systems
 from game.editor.toolbar import toolbar_of

@@ -21,7 +21,8 @@ from components.view import Readout
 from game.commands import COMMANDS, Command
 from game.commands.arguments import BAD_INPUT, UsageError
 from game.documents import models
-from game.editor.context import ACTIONS, PANELS, WHILE_DRAWING, Action, Context, action
+from game.editor.actions import ACTIONS, WHILE_DRAWING, Action, action
+from game.editor.context import PANELS, Context
 from game.editor.gestures import TOOL_HINTS, TOOLS
 from game.editor.gestures.drawing import drawing_of
 from game.editor.scenes import SCENES, Scene, all_scenes

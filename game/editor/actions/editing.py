@@ -8,7 +8,7 @@ from components.field import Vector
 from components.grid import Grid
 from components.handle import Handle
 from components.particle import Particle
-from game.editor.clipboard import Part, chosen, parsed, paste, taken, written
+from game.editor.clipboard import Part, as_text, part_in, part_of, paste, selected_rows
 from game.editor.context import Context, action
 from systems.edit import Refusal
 from systems.edit.moving import Movable, nudged
@@ -137,20 +137,20 @@ def _paste(context: Context, pixel: Vector) -> None:
 def _duplicate(context: Context, pixel: Vector) -> None:
     view = context.view
     beside = BESIDE * view.pixel_ratio / view.camera.scale
-    source = taken(context.model, chosen(context.model))
+    source = part_of(context.model, selected_rows(context.model))
     _show(context, paste(context.model, source, snapped(context.model, view, (beside, -beside))), "Duplicated")
 
 
 def _put_on_clipboard(context: Context) -> None:
-    rows = chosen(context.model)
-    context.clipboard = text = written(context.model, rows)
-    context.copied = text, taken(context.model, rows)
+    rows = selected_rows(context.model)
+    context.clipboard = text = as_text(context.model, rows)
+    context.copied = text, part_of(context.model, rows)
 
 
 def _clipboard(context: Context) -> Part:
     """The part on the clipboard; its text is parsed only if it was not copied here."""
     text, copied = context.clipboard, context.copied
-    return copied[1] if copied is not None and copied[0] == text else parsed(text)
+    return copied[1] if copied is not None and copied[0] == text else part_in(text)
 
 
 def _show(context: Context, made: list[Handle], done: str) -> None:
