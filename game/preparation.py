@@ -16,13 +16,13 @@ from components.rod import is_warm, nodes
 from game.mods import MODS
 from game.prepare import ENCOUNTERS, FLIGHT, RASTER, WARM, Job, is_prepared, load_program
 from systems.base import Phase, StepSystem, System
-from systems.catalogue import DRIVERS
 from systems.collision.driven.compiled import has_encounters
 from systems.collision.driven.stepper import load_encounters
 from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, has_parts
 from systems.collision.free.flight import may_pile
 from systems.collision.system import Collision, Support, contacts_of
 from systems.edit.pull import Pull
+from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import is_blank, load_compiler
 from systems.program.program import has_program
 from systems.program.writer import form_of, read_sources
@@ -217,7 +217,7 @@ def _load_libraries() -> None:
     load_compiler()
     for is_compiled in AHEAD.values():  # imports kernels, which takes several frames
         is_compiled()
-    read_sources([driver for driver in DRIVERS.values() if driver.mod is None])
+    read_sources([driver for driver in INTEGRATORS.values() if driver.mod is None])
     importlib.import_module("systems.plasticity.kernels")
     for library in ("scipy.spatial", "scipy.sparse.linalg"):
         importlib.import_module(library)

@@ -15,11 +15,11 @@ from components.particle import Particle
 from components.rod import spawn_rods
 from game.mods.command import load_as_asked
 from game.session import Session
-from systems.base import Driver, StepSystem
-from systems.catalogue import DRIVERS
+from systems.base import Integrator, StepSystem
 from systems.collision.driven.stepper import load_encounters
 from systems.collision.free.compiled import load_part
 from systems.edit.pull import Hand
+from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import forget_unused
 from systems.program.parallel import make_program
 from systems.program.program import has_program
@@ -49,18 +49,18 @@ def main(words: Sequence[str]) -> None:
 
 def load_program(job: Job) -> None:
     """Load the step program that is asked for, after compiling it if nobody has."""
-    session, plan, driver, form = _example(job)
-    make_program(session.model, plan, driver, form)
+    session, plan, integrator, form = _example(job)
+    make_program(session.model, plan, integrator, form)
 
 
 def is_prepared(job: Job) -> bool:
     """True if the step program that is asked for need only be loaded."""
-    session, plan, driver, form = _example(job)
-    return has_program(session.model, plan, driver, form)
+    session, plan, integrator, form = _example(job)
+    return has_program(session.model, plan, integrator, form)
 
 
-def _example(job: Job) -> tuple[Session, list[StepSystem], Driver, str]:
-    """The smallest model with the program that is asked for, and its plan, driver and form."""
+def _example(job: Job) -> tuple[Session, list[StepSystem], Integrator, str]:
+    """The smallest model with the program that is asked for, and its plan, integrator and form."""
     name, form, *systems = job
     model = Model()
     first, second = model.create(Particle, 2, position=[[0.0, 0.0], [1.0, 0.0]])
@@ -69,7 +69,7 @@ def _example(job: Job) -> tuple[Session, list[StepSystem], Driver, str]:
         spawn_rods(model, [[first.row, second.row]], temperature_change=1.0)
     session = Session(model)
     session.pull.take(Hand(first, 1.0, 0.0, (0.0, 0.0)))  # in case that the hand is part of it
-    return session, session.schedule.named(systems), DRIVERS[name], form
+    return session, session.schedule.named(systems), INTEGRATORS[name], form
 
 
 if __name__ == "__main__":

@@ -18,12 +18,12 @@ from components.load import load_breaks, loads_end
 from game.sweeps.batch_program import BatchProgram
 from game.sweeps.stack import Stack
 from systems.base import StopReason
+from systems.entries import ACCOUNT, CONTROL, Measure
 from systems.islands import HELD, islands
 from systems.physics.rest import Stillness
 from systems.physics.spectrum import spectra
-from systems.program.program import ACCOUNT, CONTROL
 from systems.program.writer import REVIEW_INTERVAL
-from systems.run.energy import Energy
+from systems.run.energy import ENERGIES, Energy
 from systems.run.sleep import INTERVAL
 from systems.run.step_size import automatic_step, first_step, is_outgrown, step_limit
 
@@ -46,7 +46,7 @@ class Batch:
         blocks = stack.blocks
         self.resting, self.alone = np.zeros(blocks, dtype=bool), np.zeros(blocks, dtype=bool)
         self.rested = np.zeros(blocks)
-        self.measures = np.zeros((blocks, 16))
+        self.measures = np.zeros((blocks, len(Measure)))
         self.unbalanced = np.zeros_like(stack["particles.displacement"])
         self._may_sleep = bool(stack.single("settings.sleeping").any()) and program.program.follows_state
         self._may_sleep &= islands(stack.part(np.zeros(1, dtype=np.intp)).as_model()).max(initial=HELD) > 1
@@ -75,7 +75,7 @@ class Batch:
         if self.program.has_history:
             self._call("commit", self._all, account=np.zeros((self.stack.blocks, len(ACCOUNT))))
         self.observe()
-        kinetic, _, elastic, potential = self.measures.T[:4]
+        kinetic, elastic, potential = self.measures[:, ENERGIES].T
         dissipated = sum(self.clock(name) for name in _DISSIPATED)
         self.clock("initial_energy")[...] = kinetic + elastic + dissipated - self.clock("work")
         self.clock("potential_reference")[...] = potential
@@ -293,7 +293,7 @@ class Batch:
     @property
     def energy(self) -> Energy:
         """The energy accounts in the state last observed; each entry has the shape (blocks,)."""
-        kinetic, _, elastic, potential = self.measures.T[:4]
+        kinetic, elastic, potential = self.measures[:, ENERGIES].T
         entries: dict[str, Any] = {
             "initial": self.clock("initial_energy").copy(),
             "work": self.clock("work") + potential - self.clock("potential_reference"),
@@ -305,6 +305,6 @@ class Batch:
     @property
     def residual(self) -> Column:
         """Largest unbalanced force over the largest force of all, in the state last observed."""
-        unbalanced, largest = self.measures.T[4:6]
+        unbalanced, largest = self.measures.T[[Measure.RESIDUAL, Measure.LARGEST_FORCE]]
         found: Column = np.divide(unbalanced, largest, out=np.zeros(len(largest)), where=largest > 0.0)
         return found

@@ -17,7 +17,7 @@ from game.sweeps.lane_program import LaneProgram
 from game.sweeps.lanes import lanes_for
 from game.sweeps.stack import Stack
 from systems.base import ACCOUNTS
-from systems.physics.integrators import SEARCH
+from systems.entries import Search
 from systems.program.compiler import compile_module, note_compiled
 from systems.program.program import Program
 
@@ -47,8 +47,8 @@ class BatchProgram:
     ) -> None:
         self.program = program
         self._varied = varied_arrays
-        self._side_by_side = many and not varied_arrays and bool(program.driver.side_by_side)
-        self.driver = program.driver
+        self._side_by_side = many and not varied_arrays and bool(program.integrator.side_by_side)
+        self.driver = program.integrator
         self.threads = threads
         self._columns = program.columns
         entries = {name: getattr(program.module, name, None) for name in ("advance", "observe", "commit")}
@@ -74,7 +74,7 @@ class BatchProgram:
                 "work": (driver.particle_rows, particles, 2),
                 "rod_work": (driver.rod_rows, rods),
                 "marks": (rods, program.marks),
-                "search": (SEARCH,),
+                "search": (len(Search),),
             }
         )
 

@@ -40,7 +40,7 @@ class LaneProgram:
         self._carried = (*(name for name in _CARRIED if name in self._single), *program.written)
         self._scratch = {**scratch, "measures": (_MEASURES,)}
         self._packs = self._packed(program)
-        loop = importlib.import_module(program.driver.side_by_side)
+        loop = importlib.import_module(program.integrator.side_by_side)
         self._loop = _sources(loop)
         self._parameters = self._parameters_of_loop()
         known = functions(program.source)
@@ -49,7 +49,7 @@ class LaneProgram:
         source += [ast.unparse(known[name]) for name in loop.AS_THEY_ARE]
         source += [function.source for function in self._functions]
         source += [self._alone(), *self._aside(), *self._pasted()]
-        called = {**program.kernels, "single": program.module.advance}
+        called = {**program.names, "single": program.module.advance}
         self._module = compile_module("\n\n".join(source) + "\n", called)
 
     # --- source ---------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Mapping
+from enum import IntEnum
 from functools import cache
 from pathlib import Path
 from types import CodeType, ModuleType
@@ -32,6 +33,9 @@ def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
         if function in seen:
             continue
         seen.add(function)
+        if isinstance(function, type):
+            parts.append(_constant(function))
+            continue
         plain = getattr(function, "py_func", function)
         parts += [
             f"{plain.__module__}.{plain.__qualname__}",
@@ -64,6 +68,8 @@ def _described(code: CodeType) -> str:
 def _constant(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return repr((value.dtype.str, value.shape, value.tobytes()))
+    if isinstance(value, type) and issubclass(value, IntEnum):
+        return repr((value.__name__, [(member.name, member.value) for member in value]))
     plain = isinstance(value, bool | int | float | complex | str | tuple | None | np.generic)
     return repr(value) if plain else type(value).__name__
 

@@ -1,4 +1,4 @@
-"""Step programs: laws, commits and a driver, compiled into one and bound to the columns of a model."""
+"""Step programs: laws, commits and a integrator, compiled into one and bound to the columns of a model."""
 
 from __future__ import annotations
 
@@ -12,23 +12,14 @@ import numpy as np
 from components.field import Column, Role
 from components.load import load_breaks, loads_end
 from components.model import Model
-from systems.base import ACCOUNTS, Driver, StepSystem, StopReason
-from systems.physics.integrators import SEARCH
+from systems.base import Integrator, StepSystem, StopReason
+from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search
 from systems.program.binding import bind, explain
 from systems.program.block_writer import BlockWriter
 from systems.program.compiler import compile_module, is_compiled, note_compiled
-from systems.program.controlled_writer import MARKS, ControlledWriter
+from systems.program.controlled_writer import ControlledWriter
 from systems.program.writer import VERY_MANY, Writer, form_of
 
-ACCOUNT = (
-    *ACCOUNTS,
-    "initial_energy",
-    "potential_reference",
-    "force_scale",
-    "energy_scale",
-    "guard_energy",
-)
-CONTROL = ("time", "step_size", "step_error", "largest_displacement", "largest_speed")
 _ORIGIN = ("origin", "step_limit")
 _COUNTS = ("steps", "origin_steps")
 _OF_PARTICLES = ("displacement", "velocity")
@@ -40,16 +31,16 @@ _GIVEN = ("particles.fixed", "rods.tension_limit", "rods.compression_limit")
 _REASONS = tuple(StopReason)
 
 
-def _writer(model: Model, systems: Sequence[StepSystem], driver: Driver, form: str) -> Writer:
+def _writer(model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> Writer:
     joining = [system for system in systems if system.kernel]
     plain = BlockWriter if form == VERY_MANY else Writer
-    return (ControlledWriter if driver.controlled else plain)(model, joining, driver, form)
+    return (ControlledWriter if integrator.controlled else plain)(model, joining, integrator, form)
 
 
-def has_program(model: Model, systems: Sequence[StepSystem], driver: Driver, form: str = "") -> bool:
+def has_program(model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str = "") -> bool:
     """True if the program of this plan, in the form that suits the model or another, need only be loaded."""
-    writer = _writer(model, systems, driver, form or form_of(model, driver))
-    return is_compiled(writer.source(), writer.kernels)
+    writer = _writer(model, systems, integrator, form or form_of(model, integrator))
+    return is_compiled(writer.source(), writer.names)
 
 
 class Program:
@@ -62,14 +53,14 @@ class Program:
     compile_seconds: what writing and compiling it took, or loading it from the cache.
     """
 
-    def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver, form: str) -> None:
+    def __init__(self, model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> None:
         started = time.perf_counter()
         self.model = model
         self.systems = tuple(system for system in systems if system.kernel)
-        self.driver = driver
-        self._writer = _writer(model, systems, driver, form)
-        self.module = compile_module(self._writer.source(), self._writer.kernels)
-        self.measures = np.zeros(16)
+        self.integrator = integrator
+        self._writer = _writer(model, systems, integrator, form)
+        self.module = compile_module(self._writer.source(), self._writer.names)
+        self.measures = np.zeros(len(Measure))
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self._state_revision = -1
         self.bind()
@@ -87,7 +78,7 @@ class Program:
                 state = [array[:0] for array in self._state]
                 self.module.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
         except NumbaError as error:
-            raise explain(self._writer.bound, self.driver, self.model, error) from error
+            raise explain(self._writer.bound, self.integrator, self.model, error) from error
         note_compiled(self.module)
 
     def _of_no_rods(self) -> list[Column]:
@@ -104,9 +95,9 @@ class Program:
         return self._writer.source()
 
     @property
-    def kernels(self) -> Mapping[str, Callable[..., Any]]:
-        """What its source calls, by name."""
-        return self._writer.kernels
+    def names(self) -> Mapping[str, Callable[..., Any]]:
+        """What its source refers to: kernels, and enumerations of entries."""
+        return self._writer.names
 
     @property
     def written(self) -> tuple[str, ...]:
@@ -116,7 +107,7 @@ class Program:
     @property
     def marks(self) -> int:
         """How many numbers it notes of each rod to locate events."""
-        return MARKS * len(self._writer.branching)
+        return len(Mark) * len(self._writer.branching)
 
     @property
     def form(self) -> str:
@@ -155,14 +146,14 @@ class Program:
         self._power, self._gained = np.zeros(len(ACCOUNTS)), np.zeros(len(ACCOUNTS))
         self.changes_end = math.inf if self.lasting else loads_end(model)
         self._breaks = np.array([*load_breaks(model), math.inf])
-        self._work = np.zeros((self.driver.particle_rows, particles, 2))
-        self._rod_work = np.zeros((self.driver.rod_rows, rods))
+        self._work = np.zeros((self.integrator.particle_rows, particles, 2))
+        self._rod_work = np.zeros((self.integrator.rod_rows, rods))
         self._marks = np.zeros((rods, self.marks))
         self._stage_power = np.zeros(len(ACCOUNTS))
         self._bind_arguments()
         self._bind_observed()
         settings = model.settings
-        controls = self.driver.estimates_error and settings.time_step is None
+        controls = self.integrator.estimates_error and settings.time_step is None
         self.tolerance = settings.tolerance if controls else 0.0
         self._state_revision = -1
 
@@ -189,14 +180,15 @@ class Program:
         self._account, self._control = clock.together(ACCOUNT), clock.together(CONTROL)
         self._origin = clock.together(_ORIGIN)
         self._counts = clock.together(_COUNTS)
-        self._search = np.zeros(SEARCH)
+        self._search = np.zeros(len(Search))
 
     def _bind_arguments(self) -> None:
         """What advance() takes from the end of loads on."""
-        own = [*self._state, self._predicted, self._power, self._gained]
-        if self.driver.controlled:
-            own = [self._control, self._search, *self._state, self._work, self._rod_work, self._marks]
-            own += [self._power, self._gained, self._stage_power]
+        if self.integrator.controlled:
+            scratch = [self._search, self._work, self._rod_work, self._marks]
+            own = [self._control, *self._state, *scratch, self._power, self._gained, self._stage_power]
+        else:
+            own = [*self._state, self._predicted, self._power, self._gained]
         self._arguments = (*own, self._account, self.measures, *self._columns)
 
     def _bind_observed(self) -> None:
@@ -222,10 +214,10 @@ class Program:
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
         """Take up to `steps` steps; returns how many, and why it stopped.
 
-        A driver that controls its steps takes none that would end after `until` (s), and one that would
+        An integrator that controls its steps takes none that would end after `until` (s), and one that would
         pass `landing` (s) is cut to end there; for others the steps are clock.step_size long.
         """
-        if self.driver.controlled:
+        if self.integrator.controlled:
             return self._advance_controlled(steps, until, landing)
         time, size = self._control[:2].tolist()
         if until < math.inf:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from components.field import Column, Role
 from components.model import Model
-from systems.base import Driver, StepSystem, StopReason
+from systems.base import Integrator, StepSystem, StopReason
 from systems.program.binding import bind, read_only
 from systems.program.blocks import Layout, Numbers
 from systems.program.program import OBSERVED, Program
@@ -29,12 +29,12 @@ class ArrangedProgram(Program):
         self,
         model: Model,
         systems: Sequence[StepSystem],
-        driver: Driver,
+        integrator: Integrator,
         form: str,
         moving: NDArray[np.bool_] | None = None,
     ) -> None:
         self.moving = moving
-        super().__init__(model, systems, driver, form)
+        super().__init__(model, systems, integrator, form)
 
     def move(self, moving: NDArray[np.bool_]) -> None:
         """Move these particles from now on."""

@@ -7,6 +7,9 @@ from dataclasses import asdict, dataclass
 
 from components.field import Column
 from components.model import Model
+from systems.entries import Measure
+
+ENERGIES = [Measure.KINETIC, Measure.ELASTIC, Measure.POTENTIAL]  # what the account takes of the measures
 
 
 @dataclass(frozen=True)
@@ -57,7 +60,7 @@ class Account:
     def energy(self, *, edited: bool) -> Energy:
         """The account now; edited: something was, since it was closed."""
         clock = self._model.clock
-        kinetic, _, elastic, potential = self._measure()[:4].tolist()
+        kinetic, elastic, potential = self._measure()[ENERGIES].tolist()
         initial, work, reference = clock.initial_energy, clock.work, clock.potential_reference
         if edited:
             initial, work, reference = self._edited()
@@ -77,11 +80,11 @@ class Account:
         What an edit adds to the energy counts as work; the energy that a run begins with is its initial one.
         """
         clock = self._model.clock
-        kinetic, _, elastic, potential = self._measure()[:4].tolist()
+        kinetic, elastic, potential = self._measure()[ENERGIES].tolist()
         if self.before_edit is None:
             dissipated = clock.dissipated_damping + clock.dissipated_plastic + clock.dissipated_impact
             return kinetic + elastic + dissipated - clock.work, clock.work, potential
-        kinetic_before, _, elastic_before, potential_before = self.before_edit[:4].tolist()
+        kinetic_before, elastic_before, potential_before = self.before_edit[ENERGIES].tolist()
         work = potential_before - clock.potential_reference
         work += kinetic + elastic - kinetic_before - elastic_before
         return clock.initial_energy, clock.work + work, potential

@@ -16,14 +16,15 @@ from components.model import ADDED, Model
 from components.rod import is_warm
 from components.snapshot import Snapshot
 from components.world import Derivation
-from systems.base import Driver, StepSystem, StopReason
-from systems.catalogue import DRIVERS
+from systems.base import Integrator, StepSystem, StopReason
 from systems.collision.driven.stepper import Encounters
 from systems.collision.free.flight import Flight, part_overlaps
 from systems.collision.impacts import Impacts
 from systems.collision.system import Collision, FreeFlight
 from systems.edit.pull import Pull
+from systems.entries import Measure
 from systems.physics.automatic import choose
+from systems.physics.integrators import INTEGRATORS
 from systems.program.binding import ProgramError
 from systems.program.culprit import blame_mod, find_culprit
 from systems.program.parallel import make_program
@@ -82,7 +83,7 @@ class Simulation:
         self.compile_seconds = 0.0
         self.watch: Callable[[], int] | None = None
         self._programs: dict[tuple[str, ...], Program | Flight] = {}
-        self._driver: Driver | None = None
+        self._driver: Integrator | None = None
         self._program: Program | Flight | None = None
         self._binding = 0  # how often a program was bound
         self._present: tuple[int, Snapshot] | None = None  # the state at this revision
@@ -111,7 +112,7 @@ class Simulation:
     # --- getting ready ---------------------------------------------------------------------------
 
     @property
-    def driver(self) -> Driver:
+    def driver(self) -> Integrator:
         """The integrator that the settings ask for, or that suits the model; free particles need none."""
         if self._driver is None:
             plan = {type(system) for system in self.schedule.step_plan(self.model)}
@@ -122,11 +123,11 @@ class Simulation:
         return self._driver
 
     @property
-    def _integrator(self) -> Driver:
+    def _integrator(self) -> Integrator:
         """The one that the settings name; another where they name none, or that of a mod that is switched off."""
-        named = DRIVERS.get(self.model.settings.integrator)
+        named = INTEGRATORS.get(self.model.settings.integrator)
         if named is None or (named.mod is not None and named.mod.off):
-            return DRIVERS[choose(self.model)]
+            return INTEGRATORS[choose(self.model)]
         return named
 
     @property
@@ -570,8 +571,9 @@ class Simulation:
     @property
     def residual(self) -> float:
         """Largest unbalanced force on a free particle over the largest force of all, dampers apart."""
-        unbalanced, largest = self._measured()[4:6].tolist()
-        return float(unbalanced / largest) if largest > 0.0 else 0.0
+        measures = self._measured()
+        unbalanced, largest = float(measures[Measure.RESIDUAL]), float(measures[Measure.LARGEST_FORCE])
+        return unbalanced / largest if largest > 0.0 else 0.0
 
 
 def at_rest_since(time: float) -> str:

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.model import Model
-from systems.base import Driver
-from systems.catalogue import DRIVERS
+from systems.base import Integrator
 from systems.collision.system import FreeFlight
 from systems.physics.automatic import SMALL
+from systems.physics.integrators import INTEGRATORS
 from systems.physics.pace import natural_pace
 from systems.physics.spectrum import Spectrum, spectrum
 from systems.run.sleep import Sleep
@@ -33,7 +33,7 @@ class StepSize:
     smooth: steps are not longer than what is shown at once.
     """
 
-    def __init__(self, model: Model, sleep: Sleep, driver: Callable[[], Driver]) -> None:
+    def __init__(self, model: Model, sleep: Sleep, driver: Callable[[], Integrator]) -> None:
         self._model = model
         self._sleep = sleep
         self._driver = driver
@@ -84,7 +84,7 @@ class StepSize:
             return "Make the tolerance smaller."
         if driver.estimates_error:
             return "Set the time step to automatic, so that the error is controlled, or make it smaller."
-        if driver is not DRIVERS[DEFAULT_DRIVER]:
+        if driver is not INTEGRATORS[DEFAULT_DRIVER]:
             return f"Make the time step smaller, or choose the integrator {DEFAULT_DRIVER}."
         return "Make the time step smaller."
 

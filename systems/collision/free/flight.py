@@ -19,6 +19,7 @@ from systems.collision.columns import CROWD_COUNTS, CROWD_NUMBERS, MOVING
 from systems.collision.driven.compiled import kernels
 from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, engine, has_parts, load_part
 from systems.collision.impacts import Impacts
+from systems.entries import Measure
 
 if TYPE_CHECKING:
     from systems.collision.free.discs import Discs
@@ -93,7 +94,7 @@ class Flight:
     def __init__(self, model: Model, impacts: Impacts, pull: PullingHand | None = None) -> None:
         started = time.perf_counter()
         self.model = model
-        self.measures = np.zeros(8)
+        self.measures = np.zeros(len(Measure))
         self._impacts = impacts
         self._pull = pull
         for part in (EVENTS, WINDOWS):
@@ -254,16 +255,13 @@ class Flight:
         self.model.writable("particles.applied_force")[...] = force
         self.model.writable("particles.reaction")[...] = np.where(fixed, 0.0 - force, 0.0)
         free: NDArray[np.float64] = np.where(fixed, 0.0, force)
-        self.measures[:] = (
-            0.5 * float((particles.mass[:, None] * velocity * velocity).sum()),
-            1000.0 * float((free * particles.mobility * free).sum()),
-            0.0,
-            1000.0 * float((constant * particles.displacement).sum()),
-            float(np.abs(free).max(initial=0.0)),
-            float(np.abs(constant).max(initial=0.0)),
-            0.0,
-            1000.0 * float((free * velocity).sum()),
-        )
+        measures = self.measures
+        measures[Measure.KINETIC] = 0.5 * (particles.mass[:, None] * velocity * velocity).sum()
+        measures[Measure.POWER_NORM] = 1000.0 * (free * particles.mobility * free).sum()
+        measures[Measure.POTENTIAL] = 1000.0 * (constant * particles.displacement).sum()
+        measures[Measure.RESIDUAL] = np.abs(free).max(initial=0.0)
+        measures[Measure.LARGEST_FORCE] = np.abs(constant).max(initial=0.0)
+        measures[Measure.POWER] = 1000.0 * (free * velocity).sum()
 
     def conserved_energy(self) -> float:
         """Energy is exact to round-off: nothing guards it."""
