@@ -19,7 +19,7 @@ from components.paths import Paths, resting
 from components.snapshot import Snapshot
 from systems.base import StopReason
 from systems.collision.columns import WATCHED
-from systems.collision.driven.compiled import note_encounters
+from systems.collision.driven.compiled import contents
 from systems.collision.driven.contacts import Contacts, complementary
 from systems.collision.driven.crowds import Crowds
 from systems.collision.driven.impact import TOUCH, Strikes
@@ -27,6 +27,7 @@ from systems.collision.driven.neighbours import Vicinity
 from systems.collision.free.flight import part_overlaps
 from systems.collision.impacts import Impacts
 from systems.collision.system import contacts_of
+from systems.program.compiler import CompiledUnit
 from systems.program.program import Program
 
 FEW = 4  # steps; a shorter time is not worth letting pass unwatched
@@ -174,8 +175,8 @@ class Encounters:
         return reason
 
 
-def load_encounters() -> None:
-    """Have all that is compiled called once: it is compiled then, or loaded from the cache."""
+def _warm_up() -> None:
+    """Call every compiled function once."""
     model = Model()
     model.create(Particle, 2, position=[(0.0, 0.0), (0.09, 0.0)], velocity=[(1.0, 0.0), (0.0, 0.0)])
     part_overlaps(model)
@@ -189,8 +190,10 @@ def load_encounters() -> None:
     gap, normal = near.gaps(near.pairs, near.displacement)
     complementary(near.compliance(near.pairs, normal, normal), gap, np.zeros(len(gap)))
     encounters._strikes.happen(before)
-    note_encounters()
 
 
 def _nothing_to_bind() -> Program:
     raise NotImplementedError("two discs that only show what they would do have no program")
+
+
+DRIVEN = CompiledUnit("driven_collisions", contents, _warm_up)

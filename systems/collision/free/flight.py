@@ -17,7 +17,7 @@ from components.rod import nodes
 from systems.base import StopReason
 from systems.collision.columns import CROWD_COUNTS, CROWD_NUMBERS, MOVING
 from systems.collision.driven.compiled import kernels
-from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, engine, has_parts, load_part
+from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, engine
 from systems.collision.impacts import Impacts
 from systems.entries import Measure
 
@@ -97,10 +97,10 @@ class Flight:
         self.measures = np.zeros(len(Measure))
         self._impacts = impacts
         self._pull = pull
-        for part in (EVENTS, WINDOWS):
-            load_part(part)
-        if has_parts(PILES):
-            load_part(PILES)  # an edit that needs it would wait for that
+        for unit in (EVENTS, WINDOWS):
+            unit.load()
+        if PILES.is_compiled():
+            PILES.load()  # an edit that needs it would wait for that
         self.bind()
         self.compile_seconds = time.perf_counter() - started
 
@@ -113,7 +113,7 @@ class Flight:
     def bind(self) -> None:
         """The document changed: paths are found anew."""
         if may_pile(self.model, self._pull is not None):
-            load_part(PILES)
+            PILES.load()
         self._flying: Discs | None = None
         self._state_revision = -1
 
