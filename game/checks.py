@@ -13,8 +13,9 @@ import numpy as np
 from components.field import Column, Role, same
 from components.model import Model
 from game.documents import models
+from game.editor.frame import Frame
 from game.registry import SYSTEMS
-from game.session import Frame, Session
+from game.session import Session
 from systems.base import Commit, Integrator, Law, StepSystem, StopReason, System
 from systems.catalogue import step_systems
 from systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator

@@ -28,7 +28,7 @@ def source_of(function: Callable[..., Any]) -> str:
 def pasted(function: Callable[..., Any], decorator: str, name: str = "", **inserts: str | Sequence[str]) -> str:
     """A template with a decorator, under its own or another name."""
     head, body = source_of(function).split(":\n", 1)
-    head = re.sub(r"(?<=[(\s])(state|forces|scratch|bounds)(?=[,)])", r"*\1", head)
+    head = re.sub(r"(?<=[(\s])(state|forces|scratch|bounds|observed)(?=[,)])", r"*\1", head)
     if name:
         head = head.replace(f"def {function.__name__}(", f"def {name}(", 1)
     return "\n".join([f"@{decorator}", f"{head}:", *_filled(body.splitlines(), inserts)])

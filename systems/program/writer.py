@@ -45,6 +45,10 @@ _ALWAYS = (
     "rods_rest_length",
     "rods_stiffness",
 )
+_OBSERVED = (
+    *("rods_axial_force", "rods_length", "rods_strain", "yielding"),  # written
+    *("fixed", "tension", "compression", "yields"),  # read
+)
 _ENTRIES = (Account, Control, Mark, Measure, Search, StopReason)
 
 STATE = ("displacement", "velocity", "force", "resisting", "direction")
@@ -175,6 +179,7 @@ class Writer:
             "forces": STATE[2:],
             "scratch": self.scratch,
             "bounds": ("breaks", "until", "landing"),
+            "observed": _OBSERVED,
             "columns": self.columns,
         }
 

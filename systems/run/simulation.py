@@ -16,7 +16,7 @@ from components.model import ADDED, Model
 from components.rod import is_warm
 from components.snapshot import Snapshot
 from components.world import Derivation
-from systems.base import Integrator, StepSystem, StopReason
+from systems.base import Integrator, Phase, StepSystem, StopReason
 from systems.collision.driven.stepper import Encounters
 from systems.collision.free.flight import Flight, part_overlaps
 from systems.collision.impacts import Impacts
@@ -34,7 +34,7 @@ from systems.run.checkpoint import Moment
 from systems.run.energy import Account, Energy
 from systems.run.sleep import Sleep
 from systems.run.step_size import StepSize
-from systems.schedule import Schedule
+from systems.schedule import Plan, Schedule
 
 MOST_RETRIES = 6  # times that an automatic step is halved before a run is given up
 FREE_FLIGHT = FreeFlight()
@@ -64,12 +64,14 @@ class Simulation:
     note: what a person should know though the run goes on, or "".
     impacts: what collided so far.
     compute_seconds, compile_seconds: spent so far in steps, and in compiling or loading programs.
+    scene: the one whose laws, commits and integrators act.
     watch: asked before steps are taken; returns after how many at most it wants to be asked again.
     """
 
-    def __init__(self, model: Model, schedule: Schedule) -> None:
+    def __init__(self, model: Model, schedule: Schedule, scene: str = "simulation") -> None:
         self.model = model
         self.schedule = schedule
+        self.scene = scene
         self.reason = StopReason.DONE
         self.message = ""
         self.note = ""
@@ -106,6 +108,44 @@ class Simulation:
         )
 
     @property
+    def plan(self) -> list[StepSystem]:
+        """The laws and commits that act in its scene and that the model needs, in order."""
+        return self.schedule.step_plan(self.scene, self.model)
+
+    def planned(self) -> Plan:
+        """All systems that run in its scene with its model, the integrator among them, and why the others do not."""
+        found = self.schedule.plan(self.scene, self.model)
+        phases, left_out = dict(found.phases), dict(found.left_out)
+        for integrator in (*INTEGRATORS.values(), FREE_FLIGHT):
+            if not self.schedule.is_active(integrator, self.scene):
+                left_out[integrator.name] = self.schedule.inactive(integrator, self.scene)
+            elif integrator is self.driver:
+                phases[Phase.STEP] = (*phases[Phase.STEP], integrator)
+            else:
+                left_out[integrator.name] = f"{self.driver.name} integrates"
+        return Plan(self.scene, phases, left_out)
+
+    @contextmanager
+    def in_scene(self, scene: str) -> Iterator[None]:
+        """What is asked inside is answered as if the systems of a scene acted."""
+        driver, before = self._driver, self.scene
+        self._driver, self.scene = None, scene
+        try:
+            yield
+        finally:
+            self._driver, self.scene = driver, before
+
+    def act_in(self, scene: str) -> None:
+        """Let the systems of a scene act from now on. What they do otherwise counts as an edit."""
+        if scene != self.scene:
+            before, integrator = self.plan, self._integrator
+            here, self.scene = self.scene, scene
+            if self.plan != before or self._integrator is not integrator:
+                self.scene = here  # the energy from which the edit starts is that under the laws until now
+                self.before_change()
+                self.scene = scene
+
+    @property
     def _started(self) -> bool:
         return self.model.clock.step_size > 0.0
 
@@ -115,7 +155,7 @@ class Simulation:
     def driver(self) -> Integrator:
         """The integrator that the settings ask for, or that suits the model; free particles need none."""
         if self._driver is None:
-            plan = {type(system) for system in self.schedule.step_plan(self.model)}
+            plan = {type(system) for system in self.plan}
             if plan == {Collision} or (plan == {Collision, Pull} and self.model.particles.count > FEW):
                 self._driver = FREE_FLIGHT
             else:
@@ -126,7 +166,8 @@ class Simulation:
     def _integrator(self) -> Integrator:
         """The one that the settings name; another where they name none, or that of a mod that is switched off."""
         named = INTEGRATORS.get(self.model.settings.integrator)
-        if named is None or (named.mod is not None and named.mod.off):
+        off = named is None or (named.mod is not None and named.mod.off)
+        if named is None or off or not self.schedule.is_active(named, self.scene):
             return INTEGRATORS[choose(self.model)]
         return named
 
@@ -146,7 +187,7 @@ class Simulation:
     @property
     def ready(self) -> bool:
         """False if the next step or observation needs a program that is not loaded yet."""
-        return self._program is not None or self._key(self.schedule.step_plan(self.model)) in self._programs
+        return self._program is not None or self._key(self.plan) in self._programs
 
     @property
     def collides(self) -> bool:
@@ -261,7 +302,7 @@ class Simulation:
     def _bind(self) -> None:
         """Take hold of the model by the program of its plan, without mods whose systems cannot join it."""
         while self._program is None:
-            systems = self.schedule.step_plan(self.model)
+            systems = self.plan
             self._collides = any(isinstance(system, Collision) for system in systems)
             try:
                 self._program = self._bound(systems)
@@ -305,7 +346,7 @@ class Simulation:
     def _part_overlaps(self) -> None:
         """Particles that edits left in one another's place are moved apart; a note says so."""
         self.note = ""
-        if any(isinstance(system, Collision) for system in self.schedule.step_plan(self.model)):
+        if any(isinstance(system, Collision) for system in self.plan):
             self.note = part_overlaps(self.model)
 
     def _measured(self) -> Column:

@@ -9,6 +9,7 @@ program. Only numba ever runs it, and only there.
     *scratch    predicted, power, gained; of an integrator that controls its steps
                 search, work, rod_work, marks, power, gained, stage_power
     *bounds     breaks, until, landing
+    *observed   rods_axial_force, rods_length, rods_strain, yielding; fixed, tension, compression, yields
     insert(x)   the lines, or the expression, that the writer made for `x`
 
 In the head of a function, where Python allows one star only, the same words stand without it. Arrays are handed over

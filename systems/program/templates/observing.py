@@ -38,26 +38,7 @@ def measure(displacement, velocity, force, resisting, measures, *columns):
     measures[Measure.POWER] = measures[Measure.ASLEEP_POWER] + 1000.0 * power
 
 
-def observe(
-    time,
-    dt,
-    displacement,
-    velocity,
-    applied,
-    reaction,
-    forces,
-    power,
-    measures,
-    rods_axial_force,
-    rods_length,
-    rods_strain,
-    yielding,
-    fixed,
-    tension,
-    compression,
-    yields,
-    *columns,
-):
+def observe(time, dt, displacement, velocity, applied, reaction, forces, power, measures, observed, *columns):
     """The derived columns of rods and particles, and the measures, of a state.
 
     applied: what acts on each particle from outside (kN); reaction: of its support. yielding: which rods yield.
