@@ -164,7 +164,6 @@ class Driver(StepSystem):
         (1/s) of a model, not both 0; infinite if unconditionally stable, 0 if stable at none.
     order: of convergence. entry: source of the loop around the kernel. parts: sources that the kernel calls,
         "module:function" or "module:function=name in the program". constants: numbers and arrays by name.
-    side_by_side: module with sources of a loop for many variants at a time (see physics/side_by_side.py); "": there is none.
     controlled: it owns time and step size and locates events (see runge_kutta.py); else its steps are all
         alike. Either ends a step, or a piece of one, where a load changes abruptly.
     estimates_error: it chooses its steps so that settings.tolerance is met, unless the step is fixed.
@@ -179,7 +178,6 @@ class Driver(StepSystem):
     ends: ClassVar[str] = ""
     parts: ClassVar[tuple[str, ...]] = ()
     constants: ClassVar[Mapping[str, Any]] = {}
-    side_by_side: ClassVar[str] = ""
     controlled: ClassVar[bool] = False
     estimates_error: ClassVar[bool] = False
     particle_rows: ClassVar[int] = 0

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import inspect
-import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Column
-from game.sweeps.lane_program import LaneProgram
-from game.sweeps.lanes import lanes_for
 from game.sweeps.stack import Stack
 from systems.base import ACCOUNTS
 from systems.physics.integrators import SEARCH
@@ -38,16 +34,12 @@ class BatchProgram:
 
     Blocks are independent: they are shared out among threads, and results do not depend on how many.
 
-    varied_arrays: arrays of systems differ between blocks. many: there are so many that those which can take
-    their steps side by side do, for which more must be compiled.
+    varied_arrays: arrays of systems differ between blocks.
     """
 
-    def __init__(
-        self, program: Program, threads: int, *, varied_arrays: bool = False, many: bool = False
-    ) -> None:
+    def __init__(self, program: Program, threads: int, *, varied_arrays: bool = False) -> None:
         self.program = program
         self._varied = varied_arrays
-        self._side_by_side = many and not varied_arrays and bool(program.driver.side_by_side)
         self.driver = program.driver
         self.threads = threads
         self._columns = program.columns
@@ -142,30 +134,10 @@ class BatchProgram:
             given = [scratch[p] if p in scratch else arguments[p] for p in self._parameters[entry]]
             getattr(self._module, f"{entry}_each")(some, taken, reason, *given)
 
-        groups: list[NDArray[np.intp]] = []
-        if entry == "advance" and arguments["landing"] == math.inf:  # else most steps are cut short
-            groups, blocks = self._groups(blocks)
-        if groups:
-            lanes = self._lanes
-            self._share_out(lambda group: lanes.advance(group, arguments, taken, reason), groups)
         pieces = 1 if len(blocks) < 2 * self.threads else self.threads * _PIECES
         self._share_out(one_by_one, np.array_split(blocks, pieces))
         note_compiled(self._module)
         return taken, reason
-
-    def _groups(self, blocks: NDArray[np.intp]) -> tuple[list[NDArray[np.intp]], NDArray[np.intp]]:
-        """The blocks that take their steps side by side, in groups, and the others, which are too few."""
-        if not self._side_by_side:
-            return [], blocks
-        lanes = lanes_for(self.program.model.particles.count)
-        whole = len(blocks) // lanes + (len(blocks) % lanes >= lanes // 2)
-        return [blocks[k * lanes : (k + 1) * lanes] for k in range(whole)], blocks[whole * lanes :]
-
-    @cached_property
-    def _lanes(self) -> LaneProgram:
-        return LaneProgram(
-            self.program, self._scratch("advance"), lanes_for(self.program.model.particles.count)
-        )
 
     def _share_out(self, work: Callable[[NDArray[np.intp]], None], pieces: Sequence[NDArray[np.intp]]) -> None:
         """Let threads do the work on each piece."""

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from game.sweeps.specimen import Specimen
 
 MOST_NUMBERS = 2_000_000  # in the largest array of a batch: of stiffness, rods × directions of particles
-MANY = 30_000  # variants × rods from which steps side by side are worth compiling for
 # What makes another model of it, or lets its parts rest by themselves.
 _ALONE = ("particles.name", "particles.fixed", "rods.name", "loads.name", "settings.sleeping")
 _REPORTED = ("particles", "rods")
@@ -48,7 +47,6 @@ class Batches:
             self._base = Stack.of(specimen.model, 1) if self._suits() else None
         self._loads_vary = any(target.table.name == "loads" for target in self._targets)
         rods, particles = specimen.model.rods.count, specimen.model.particles.count
-        self._many = plan.size * rods >= MANY
         most = MOST_NUMBERS // max(2 * rods * particles, 1)
         self.size = max(min(most, 1024), 1) if self._base is not None else 1
 
@@ -146,9 +144,7 @@ class Batches:
                 simulation = self._specimen.simulation
                 program = simulation.program
                 if isinstance(program, Program) and not simulation.collides:
-                    self._programs[key] = BatchProgram(
-                        program, self._threads, varied_arrays=self._loads_vary, many=self._many
-                    )
+                    self._programs[key] = BatchProgram(program, self._threads, varied_arrays=self._loads_vary)
         return self._programs[key]
 
     # --- running them -----------------------------------------------------------------------------------

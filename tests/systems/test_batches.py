@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from game.commands.reports.report import Analysis
-from game.sweeps import batch_program, batches
-from game.sweeps.lane_program import LaneProgram
 from game.sweeps.plan import Plan, Record
 from game.sweeps.run import plan_of
 from game.sweeps.specimen import Specimen
@@ -45,20 +43,6 @@ def loaded_cables() -> dict[str, Any]:
         rod | {"tension_only": rod["name"] == "CA", "compressive_strength": None} for rod in TRIANGLE["rods"]
     ]
     return loaded() | {"rods": rods}
-
-
-class Counted:
-    """Counts the steps that variants take side by side."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.steps = 0
-        own = LaneProgram.advance
-
-        def advance(program: LaneProgram, blocks: Any, arguments: Any, taken: Any, reason: Any) -> None:
-            own(program, blocks, arguments, taken, reason)
-            self.steps += int(taken[blocks].sum())
-
-        monkeypatch.setattr(LaneProgram, "advance", advance)
 
 
 def planned(source: Any, vary: list[str], analysis: Analysis, samples: int | None = None) -> Plan:
@@ -120,7 +104,7 @@ def test_together_they_have_the_bits_of_single_runs(name: str) -> None:
     assert together == {number: alone(plan, number) for number in range(plan.size)}
 
 
-SIDE_BY_SIDE: dict[str, tuple[Any, list[str], Analysis]] = {
+BY_INTEGRATOR: dict[str, tuple[Any, list[str], Analysis]] = {
     "dop853": (TRIANGLE, ["rods.BC.compressive_strength=150:215:11"], Analysis()),
     "rk4": (loaded_cables(), ["environment.drag=0.5,10", "rods.AB.stiffness=1e5:2e5:5"], TIMES),
     "velocity_verlet": (TRIANGLE, ["rods.BC.compressive_strength=150:215:11"], Analysis()),
@@ -129,18 +113,12 @@ SIDE_BY_SIDE: dict[str, tuple[Any, list[str], Analysis]] = {
 }
 
 
-@pytest.mark.parametrize("integrator", SIDE_BY_SIDE)
-def test_side_by_side_they_have_the_bits_of_single_runs(
-    integrator: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Four at a time: some steps are rejected or end at events, some lanes end early or are empty."""
-    monkeypatch.setattr(batch_program, "lanes_for", lambda particles: 4)
-    monkeypatch.setattr(batches, "MANY", 1)
-    side_by_side = Counted(monkeypatch)
-    source, vary, analysis = SIDE_BY_SIDE[integrator]
+@pytest.mark.parametrize("integrator", BY_INTEGRATOR)
+def test_by_every_integrator_they_have_the_bits_of_single_runs(integrator: str) -> None:
+    """Some steps are rejected or end at events, some variants end early."""
+    source, vary, analysis = BY_INTEGRATOR[integrator]
     plan = plan_of(source, vary, MEASURES, analysis, (f"settings.integrator={integrator}",), None, 1)
     together = Worker(plan).together(range(plan.size))
-    assert side_by_side.steps > 0
     assert together == {number: alone(plan, number) for number in range(plan.size)}
 
 
