@@ -21,7 +21,7 @@ from systems.collision.driven.compiled import has_encounters
 from systems.collision.driven.stepper import load_encounters
 from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, has_parts
 from systems.collision.free.flight import may_pile
-from systems.collision.system import Collision, Support, contacts_of
+from systems.collision.system import Support, contacts_of
 from systems.edit.pull import Pull
 from systems.program.compiler import is_blank, load_compiler
 from systems.program.program import has_program
@@ -102,7 +102,7 @@ class Preparation(System):
 
     def _load_pulled(self, simulation: Simulation) -> None:
         """While nothing happens: what takes the steps while a hand pulls, for loading it takes two frames."""
-        if self._seen == self._looked or simulation.integrator == FLIGHT:
+        if self._seen == self._looked or simulation.driver.exact:
             return
         plan = simulation.schedule.step_plan(simulation.model)
         pulled = (*_job(simulation, plan), Pull.name)
@@ -123,7 +123,7 @@ class Preparation(System):
 
     def waits_for(self, simulation: Simulation) -> float | None:
         """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
-        if simulation.integrator == FLIGHT:  # it may be ready, but not for piles
+        if simulation.driver.exact:  # it may be ready, but not for piles
             waits = [self._waits(half, partial(has_parts, *half[1:])) for half in _halves(simulation)]
             return max((waited for waited in waits if waited is not None), default=None)
         if simulation.ready:
@@ -175,7 +175,7 @@ class Preparation(System):
 def _may_meet(simulation: Simulation) -> bool:
     """True if particles that do not fly free may meet."""
     plan = simulation.schedule.step_plan(simulation.model)
-    return simulation.integrator != FLIGHT and any(isinstance(system, Collision) for system in plan)
+    return not simulation.driver.exact and any(system.impulsive for system in plan)
 
 
 def _may_rest(model: Model) -> bool:
@@ -203,7 +203,7 @@ def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
 
 def _is_compiled(simulation: Simulation) -> bool:
     """True if its program need only be loaded."""
-    if simulation.integrator == FLIGHT:
+    if simulation.driver.exact:
         return all(has_parts(*half[1:]) for half in _halves(simulation))
     return _has_program(simulation, simulation.schedule.step_plan(simulation.model))
 

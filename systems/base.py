@@ -103,11 +103,17 @@ class StepSystem(System):
     kernel: "module:function" of a numba-compiled function, or the function itself. Its parameters are
         bound by name: `<table>_<column>`, `time`, `dt`, an entry of `arrays`, or one of the quantities
         that the role provides. "": what it does is not part of the step program.
+    impulsive: it acts at instants, by impacts, at which steps have to end.
     """
 
     phase: ClassVar[Phase] = Phase.STEP
     scenes: ClassVar[tuple[str, ...] | None] = ("simulation", "force method")
     kernel: ClassVar[str | Callable[..., Any]] = ""
+    impulsive: ClassVar[bool] = False
+
+    def leaves_flight_exact(self, model: Model) -> bool:
+        """True if particles fly on exact paths between impacts all the same, for which no integrator is needed."""
+        return False
 
     def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
         """Further read-only arrays for the kernel, renewed whenever the document changes."""
@@ -167,6 +173,7 @@ class Driver(StepSystem):
     controlled: it owns time and step size and locates events (see runge_kutta.py); else its steps are all
         alike. Either ends a step, or a piece of one, where a load changes abruptly.
     estimates_error: it chooses its steps so that settings.tolerance is met, unless the step is fixed.
+    exact: its results do not depend on the steps; it has no kernel.
     particle_rows, rod_rows: arrays of shape (particles, 2) and (rods,) that it needs.
     check_interval: steps between checks for rest and divergence; larger: notices later.
     guard: which energy it conserves, for the check for divergence; `shadow` in systems/physics/kernels.py.
@@ -180,6 +187,7 @@ class Driver(StepSystem):
     constants: ClassVar[Mapping[str, Any]] = {}
     controlled: ClassVar[bool] = False
     estimates_error: ClassVar[bool] = False
+    exact: ClassVar[bool] = False
     particle_rows: ClassVar[int] = 0
     rod_rows: ClassVar[int] = 0
     check_interval: ClassVar[int] = 128

@@ -27,9 +27,13 @@ class Collision(StepSystem):
     name = "collision.discs"
     reads = ("particles.radius", "particles.mobility", "settings.restitution")
     writes = ("particles.velocity", "clock.collisions", "clock.dissipated_impact")
+    impulsive = True
 
     def needs(self, model: Model) -> bool:
         return model.settings.collisions and can_touch(model)
+
+    def leaves_flight_exact(self, model: Model) -> bool:
+        return True
 
 
 def can_touch(model: Model) -> bool:
@@ -111,6 +115,7 @@ class FreeFlight(Driver):
 
     name = "collision.free_flight"
     controlled = True
+    exact = True
 
     @staticmethod
     def stable_step(frequency: float, decay: float) -> float:

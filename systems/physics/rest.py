@@ -17,8 +17,8 @@ _BEYOND = np.errstate(over="ignore", invalid="ignore")  # what is no finite numb
 
 
 @dataclass(frozen=True)
-class Stillness:
-    """What tells how still the particles and rods of a model are, row by row.
+class RestMeasure:
+    """How near to rest the particles and rods of a model are, row by row.
 
     residual: unbalanced force on particles where they are free (kN). kinetic: energy of particles (J). load, pull:
     largest force on particles, and in rods (kN). elastic: energy of rods (J). round_off: of forces in rods (kN).
@@ -33,8 +33,11 @@ class Stillness:
 
     @classmethod
     @_BEYOND
-    def of(cls, model: Model, unbalanced: Array) -> Stillness:
-        """That of the state last observed, by the forces on the particles but those of dampers and drag (kN)."""
+    def of(cls, model: Model, unbalanced: Array) -> RestMeasure:
+        """That of the state last observed.
+
+        unbalanced: the sum of all forces on each particle but those of dampers and drag (kN).
+        """
         particles, rods = model.particles, model.rods
         pull, flexibility = np.abs(rods.axial_force), rods.rest_length / rods.stiffness
         moved = np.abs(particles.displacement).max(axis=1, initial=0.0)
@@ -51,7 +54,10 @@ class Stillness:
     def at_rest(
         self, of_particle: Rows, of_rod: Rows, force_scale: Array | float, energy_scale: Array | float
     ) -> Mask:
-        """Which islands are at rest, given those of the particles and rods, and what clocks say of all or of each."""
+        """Which islands are at rest.
+
+        of_particle, of_rod: the island of each. force_scale (kN), energy_scale (J): the clock's, of each or all.
+        """
         from systems.physics.kernels import (
             REST_RESIDUAL,
             SMALL_SHARE,

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from game.commands.reports.report import Analysis
-from game.sweeps.plan import Plan, Record
-from game.sweeps.run import plan_of
-from game.sweeps.specimen import Specimen
-from game.sweeps.stack import Stack
-from game.sweeps.worker import Worker
+from game.sweeps.batched_model import BatchedModel
+from game.sweeps.execution import Worker
+from game.sweeps.plan import Plan, Record, plan_of
+from game.sweeps.variant_runner import VariantRunner
 from systems.physics.automatic import choose, stiffnesses, suited_to
 from systems.physics.spectrum import spectra, spectrum
 from tests.reference.models import square, triangle
@@ -50,7 +49,7 @@ def planned(source: Any, vary: list[str], analysis: Analysis, samples: int | Non
 
 
 def alone(plan: Plan, number: int) -> list[Record]:
-    return Specimen(plan).records(number)
+    return VariantRunner(plan).records(number)
 
 
 CASES: dict[str, tuple[Any, list[str], Analysis, int | None]] = {
@@ -148,7 +147,7 @@ def test_what_cannot_be_computed_together_is_left_to_single_runs() -> None:
     worker = Worker(plan)
     together = worker.together(range(plan.size))
     assert set(together) == {plan.size - 1}
-    statuses = {records[-1][0] for _, records in worker.compute(range(plan.size))}
+    statuses = {records[-1][0] for _, records in worker.compute(range(plan.size)).outcomes}
     assert statuses == {"failed", "diverged", "limit reached", "at rest"}
 
 
@@ -228,17 +227,17 @@ def test_structures_whose_particles_can_meet_are_single_runs() -> None:
 )
 def test_limits_of_a_block_are_those_of_its_model(source: Any) -> None:
     plan = planned(source, ["rods.*.stiffness~normal(164640,30%)"], TIMES, 3)
-    specimen = Specimen(plan)
-    stack = Stack.of(specimen.model, 3)
+    runner = VariantRunner(plan)
+    batched = BatchedModel.of(runner.model, 3)
     expected = []
     for number in range(3):
-        with specimen.taken_back():
-            specimen.override(plan.overrides_of(number))
-            stack["rods.stiffness"][number] = specimen.model.rods.stiffness
-            found = spectrum(specimen.model, specimen.model.rods.axial_force)
-            expected.append((found.frequency, found.decay, choose(specimen.model)))
-            stack["rods.axial_force"][number] = specimen.model.rods.axial_force
+        with runner.taken_back():
+            runner.override(plan.overrides_of(number))
+            batched["rods.stiffness"][number] = runner.model.rods.stiffness
+            found = spectrum(runner.model, runner.model.rods.axial_force)
+            expected.append((found.frequency, found.decay, choose(runner.model)))
+            batched["rods.axial_force"][number] = runner.model.rods.axial_force
     drag = np.zeros(3)
-    frequency, decay = spectra(stack.as_model(), stack.rods.axial_force, drag)
-    chosen = [suited_to(stiffness) for stiffness in stiffnesses(stack.as_model(), drag).tolist()]
+    frequency, decay = spectra(batched.as_model(), batched.rods.axial_force, drag)
+    chosen = [suited_to(stiffness) for stiffness in stiffnesses(batched.as_model(), drag).tolist()]
     assert list(zip(frequency.tolist(), decay.tolist(), chosen, strict=True)) == expected
