@@ -25,6 +25,7 @@ class Collision(StepSystem):
     """Discs that meet push one another apart; see systems/collision/free/flight.py for what drives them."""
 
     name = "collision.discs"
+    unneeded = "no two particles, and no particle and obstacle, can meet; or settings.collisions is off"
     reads = ("particles.radius", "particles.mobility", "settings.restitution")
     writes = ("particles.velocity", "clock.collisions", "clock.dissipated_impact")
     impulsive = True
@@ -56,6 +57,7 @@ class Support(Law):
     """Forces in lasting contacts of particles that rods or other laws drive; constant during a step."""
 
     name = "collision.support"
+    unneeded = "no contact lasts among particles that rods, drag or laws of mods drive"
     each = "particles"
     kernel = "systems.collision.kernels.support:support"
     adds = ("particles.force",)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from components.model import Model
 from components.rod import is_warm
-from systems.base import Driver, StepSystem
+from systems.base import Driver, Phase, StepSystem
 from systems.catalogue import DRIVERS
 from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
@@ -19,7 +21,7 @@ from systems.program.parallel import make_program
 from systems.program.program import Program
 from systems.program.stepper import Dynamics
 from systems.program.writer import form_of
-from systems.schedule import Schedule
+from systems.schedule import Plan, Schedule
 
 FREE_FLIGHT = FreeFlight()
 
@@ -39,10 +41,12 @@ class Bound:
 class Programs:
     """The step programs of one model, made once for each plan; the present plan's is bound to the model.
 
-    bindings: how often one was bound. compile_seconds: spent in compiling or loading them.
+    scene: the one whose systems act. bindings: how often one was bound. compile_seconds: spent in compiling or
+    loading them.
     """
 
-    def __init__(self, model: Model, schedule: Schedule, impacts: Impacts) -> None:
+    def __init__(self, model: Model, schedule: Schedule, impacts: Impacts, scene: str) -> None:
+        self.scene = scene
         self._model = model
         self._schedule = schedule
         self._impacts = impacts
@@ -54,8 +58,39 @@ class Programs:
 
     @property
     def plan(self) -> list[StepSystem]:
-        """The systems that act on the model as it is now."""
-        return self._schedule.step_plan(self._model)
+        """The laws and commits that act in the scene and that the model needs, in order."""
+        return self._schedule.step_plan(self.scene, self._model)
+
+    def planned(self) -> Plan:
+        """All systems that run in the scene with the model, the integrator among them, and why the others do not."""
+        found = self._schedule.plan(self.scene, self._model)
+        phases, left_out = dict(found.phases), dict(found.left_out)
+        for integrator in (*DRIVERS.values(), FREE_FLIGHT):
+            if not self._schedule.is_active(integrator, self.scene):
+                left_out[integrator.name] = self._schedule.inactive(integrator, self.scene)
+            elif integrator is self.driver:
+                phases[Phase.STEP] = (*phases[Phase.STEP], integrator)
+            else:
+                left_out[integrator.name] = f"{self.driver.name} integrates"
+        return Plan(self.scene, phases, left_out)
+
+    @contextmanager
+    def in_scene(self, scene: str) -> Iterator[None]:
+        """What is asked inside is answered as if the systems of this scene acted."""
+        driver, before = self._driver, self.scene
+        self._driver, self.scene = None, scene
+        try:
+            yield
+        finally:
+            self._driver, self.scene = driver, before
+
+    def differ_in(self, scene: str) -> bool:
+        """True if other systems, or another integrator, act in this scene."""
+        if scene == self.scene:
+            return False
+        here = self.plan, self._integrator
+        with self.in_scene(scene):
+            return (self.plan, self._integrator) != here
 
     @property
     def driver(self) -> Driver:
@@ -68,9 +103,10 @@ class Programs:
 
     @property
     def _integrator(self) -> Driver:
-        """The one that the settings name; if they name none, or that of a mod switched off, one that suits."""
+        """The one that the settings name; one that suits if they name none, or one that does not act now."""
         named = DRIVERS.get(self._model.settings.integrator)
-        if named is None or (named.mod is not None and named.mod.off):
+        off = named is None or (named.mod is not None and named.mod.off)
+        if named is None or off or not self._schedule.is_active(named, self.scene):
             return DRIVERS[choose(self._model)]
         return named
 

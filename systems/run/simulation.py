@@ -13,7 +13,7 @@ from components.field import Column, Role
 from components.model import ADDED, Model
 from components.snapshot import Snapshot
 from components.world import Derivation
-from systems.base import Driver, StopReason
+from systems.base import Driver, StepSystem, StopReason
 from systems.collision.driven.stepper import Encounters
 from systems.collision.free.flight import part_overlaps
 from systems.collision.impacts import Impacts
@@ -28,14 +28,9 @@ from systems.run.programs import Programs
 from systems.run.recovery import Recovery
 from systems.run.sleep import Sleep
 from systems.run.step_size import StepSize
-from systems.schedule import Schedule
+from systems.schedule import Plan, Schedule
 
-CHOSEN = (
-    "step_size",
-    "guard_energy",
-    "initial_energy",
-    "potential_reference",
-)  # of the clock, when a run begins
+CHOSEN = ("step_size", "guard_energy", "initial_energy", "potential_reference")  # of the clock, as a run begins
 
 ENDS = (StopReason.REST, StopReason.DIVERGED)  # of a run
 
@@ -58,7 +53,7 @@ class Simulation:
     watch: asked before steps are taken; returns after how many at most it wants to be asked again.
     """
 
-    def __init__(self, model: Model, schedule: Schedule) -> None:
+    def __init__(self, model: Model, schedule: Schedule, scene: str = "simulation") -> None:
         self.model = model
         self.schedule = schedule
         self.reason = StopReason.DONE
@@ -67,7 +62,7 @@ class Simulation:
         self.compute_seconds = 0.0
         self.watch: Callable[[], int] | None = None
         self.impacts = Impacts(model)
-        self._programs = Programs(model, schedule, self.impacts)
+        self._programs = Programs(model, schedule, self.impacts, scene)
         self._sleep = Sleep(model)
         self._step_size = StepSize(model, self._programs, self._sleep)
         self._steps = ProgramSteps(model, self._programs, self._sleep, self._step_size)
@@ -93,6 +88,27 @@ class Simulation:
         )
 
     # --- what takes the steps ------------------------------------------------------------------------
+
+    @property
+    def scene(self) -> str:
+        """The name of the scene whose laws, commits and integrators act."""
+        return self._programs.scene
+
+    @property
+    def plan(self) -> list[StepSystem]:
+        """The laws and commits that act in its scene and that the model needs, in order."""
+        return self._programs.plan
+
+    def planned(self, scene: str = "") -> Plan:
+        """All systems that run in a scene (none given: its own) with its model, and why the others do not."""
+        with self._programs.in_scene(scene or self.scene):
+            return self._programs.planned()
+
+    def act_in(self, scene: str) -> None:
+        """Let the systems of a scene act from now on. What they do otherwise counts as an edit."""
+        if self._programs.differ_in(scene):
+            self.before_change()  # the edit starts from the energy under the laws until now
+        self._programs.scene = scene
 
     @property
     def driver(self) -> Driver:
@@ -182,7 +198,7 @@ class Simulation:
 
     def _part_overlaps(self) -> None:
         """Particles that edits left in one another's place are moved apart; a note says so."""
-        collides = any(system.impulsive for system in self._programs.plan)
+        collides = any(system.impulsive for system in self.plan)
         self.note = part_overlaps(self.model) if collides else ""
 
     def account_for_edits(self) -> None:
