@@ -45,7 +45,7 @@ def _toggle_energy(context: Context, pixel: Vector) -> None:
 
 @action("next shape", while_drawing=True)
 def _next_shape(context: Context, pixel: Vector) -> None:
-    """Mechanisms, then natural modes, then none."""
+    """Show the next mechanism or natural mode; after the last, none."""
     try:
         context.document.shapes.next()
     except NoShape as error:
@@ -55,7 +55,7 @@ def _next_shape(context: Context, pixel: Vector) -> None:
 
 @action("next theme", while_drawing=True)
 def _next_theme(context: Context, pixel: Vector) -> None:
-    """The one after the present one."""
+    """The theme after the present one."""
     view = context.view
     after = (*THEMES[THEMES.index(view.theme) + 1 :], THEMES[0]) if view.theme in THEMES else THEMES
     view.theme = after[0]
@@ -64,7 +64,7 @@ def _next_theme(context: Context, pixel: Vector) -> None:
 
 @action("toggle help", while_drawing=True)
 def _toggle_help(context: Context, pixel: Vector) -> None:
-    """The next page; after the last, none."""
+    """Show the next page of keys; after the last, none."""
     context.view.help = (context.view.help + 1) % (len(pages_of_help(context)) + 1)
 
 
@@ -75,7 +75,7 @@ def _close_help(context: Context, pixel: Vector) -> None:
 
 @action("pan", while_drawing=True)
 def _pan(context: Context, pixel: Vector) -> None:
-    """Here `pixel` is how far the pointer was dragged."""
+    """pixel: how far the pointer was dragged."""
     context.scenes.active.pan(context, pixel)
 
 

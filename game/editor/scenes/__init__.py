@@ -18,10 +18,10 @@ SCENES: list[Callable[[], Scene]] = []  # that mods add; made anew for every ses
 
 
 def all_scenes() -> list[Scene]:
-    """The six modes, the first of which the program starts in, and those of mods."""
+    """The six modes of Pinjoint, beginning with the one that the program starts in, and the modes of mods."""
     return [Pause(), Simulation(), Properties(), Save(), Load(), ForceMethod(), *(scene() for scene in SCENES)]
 
 
 def scene_systems() -> list[System]:
-    """The systems that some of the modes bring."""
+    """The systems that belong to single modes."""
     return [Pictures(), Sets()]

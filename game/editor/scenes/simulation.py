@@ -1,4 +1,4 @@
-"""Simulation: physics runs and the picture is live."""
+"""Simulation: time passes and the picture follows."""
 
 from __future__ import annotations
 
