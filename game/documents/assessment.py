@@ -95,8 +95,8 @@ class Assessment:
     def error(self, most_work: float | None = None) -> MeasuredError | None:
         """The measured error of the displacements; None where it is not known.
 
-        most_work: evaluations of the forces of rods that measuring it may take; None: as many as no frame
-        would notice. What was measured before is known at once.
+        most_work: evaluations of the forces of rods that measuring may take; None: few enough for one frame. An error
+        measured before is kept.
         """
         from systems.run.measured_error import IN_A_FRAME, measure_error, work
 

@@ -1,4 +1,4 @@
-"""Hover: what a click would hit is marked before the click."""
+"""Hover: marks the element that a click would hit."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Hover(System):
     scenes = ("simulation", "pause", "properties", "force method")
 
     def __init__(self) -> None:
-        self._looked: Any = None  # at what, from where and at which point, in the last frame
+        self._looked: Any = None  # context, revision, camera and pointer of the last frame
 
     def needs(self, model: Model) -> bool:
         return model.particles.count + model.grids.count > 0 or any(outlines(model))
