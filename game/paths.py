@@ -18,7 +18,7 @@ import msgspec
 from components.field import Field, FieldError, Role
 from components.handle import Handle
 from components.model import Model
-from components.spelling import missing, remedy
+from components.suggestions import missing, remedy
 from components.table import Table
 from systems.run.energy import Energy
 

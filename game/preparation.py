@@ -9,8 +9,9 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from components.model import Model
 from components.obstacles import any_obstacles
 from components.rod import is_warm, nodes
 from game.mods import MODS
@@ -26,12 +27,9 @@ from systems.edit.pull import Pull
 from systems.program.compiler import is_blank, load_compiler
 from systems.program.program import has_program
 from systems.program.writer import form_of, read_sources
+from systems.render.raster import Raster
 from systems.render.raster_program import has_raster, load_raster
-
-if TYPE_CHECKING:
-    from components.model import Model
-    from systems.render.raster import Raster
-    from systems.run.simulation import Simulation
+from systems.run.simulation import Simulation
 
 FREE = (FLIGHT, EVENTS), (FLIGHT, WINDOWS)  # two processes compile the two halves of what free particles need
 PULLED = (FLIGHT, EVENTS), (FLIGHT, WINDOWS, PILES)  # and what they need where they may pile up

@@ -27,7 +27,7 @@ from game.commands.options import NOT_ANSWERED, use_cores_as_asked
 from game.commands.output import ResultError, write
 from game.commands.reports.report import AnalysisError
 from game.documents.document import ModelError
-from game.editor.shapes import NoShape
+from game.documents.shapes import NoShape
 from game.mods.mod import ModError
 from game.paths import PathError
 from game.scripts.script import ScriptError

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from components.model import Model
-from components.spelling import missing
+from components.suggestions import missing
 from game.checks import EVERYTHING
 from game.commands import COMMANDS
 from game.commands.arguments import Parser
@@ -20,10 +20,11 @@ from game.commands.output import Row, add_output, write_result
 from game.documents import models
 from game.documents.library import data_folder
 from game.documents.locks import lock_file
+from game.editor.context import FAULTS
 from game.editor.scenes import all_scenes
 from game.mods.finding import mods_folder
 from game.mods.loading import MODS, load
-from game.mods.mod import FAULTS, INCLUDED, LOG, Mod, ModError
+from game.mods.mod import INCLUDED, LOG, Mod, ModError
 from game.mods.skeleton import write_skeleton
 from game.version import __version__
 from systems.base import Commit, Law

@@ -14,7 +14,7 @@ from game.commands.output import Row, add_output, write_result
 from game.commands.window import in_window
 from game.documents import library, models
 from game.documents.open_documents import file_of
-from game.scripts import script
+from game.scripts import playing, script
 
 
 def command(words: Sequence[str]) -> int:
@@ -44,10 +44,10 @@ def command(words: Sequence[str]) -> int:
         if options.window:
             failures = in_window(models.load(loaded.source), file_of(loaded.source), lesson=loaded)
         else:
-            session = loaded.open()
+            session = playing.session_of(loaded)
             if not loaded.has_data:  # so that it ends alike however often it is played
                 kept.enter_context(library.data_apart())
-            failures = loaded.play(session)
+            failures = playing.play(loaded, session)
     found = {
         "script": options.script,
         "lines": len(loaded.lines) - 1,

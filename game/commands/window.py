@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from components.model import Model
-from components.spelling import nearest
+from components.suggestions import nearest
 from game.commands import COMMANDS
 from game.commands.arguments import Parser, UsageError
 from game.commands.mods import in_use
@@ -18,6 +18,7 @@ from game.commands.output import writable
 from game.documents import models
 from game.documents.open_documents import ModelFile, file_of
 from game.scripts import script
+from game.scripts.playing import Failure
 from game.version import __version__
 from systems.render.theme import theme_names
 
@@ -74,7 +75,7 @@ def command(words: Sequence[str]) -> int:
     return ANSWERED
 
 
-def in_window(model: Model, file: ModelFile, theme: str | None = None, **further: Any) -> list[script.Failure]:
+def in_window(model: Model, file: ModelFile, theme: str | None = None, **further: Any) -> list[Failure]:
     """Show a model until the window is closed; returns the failed expectations of the script that was played."""
     try:
         from game.app import NoDisplay, open_window

@@ -23,7 +23,7 @@ from components.model import ADDED, Model
 from components.particle import Particle, check_velocities
 from components.rod import Rod
 from components.settings import Settings
-from components.spelling import missing, remedy
+from components.suggestions import missing, remedy
 from components.table import fields_of
 
 FORMAT = "pinjoint model"

@@ -21,7 +21,7 @@ from typing import Any, NoReturn
 import msgspec
 
 from components.model import Model
-from components.spelling import nearest
+from components.suggestions import nearest
 from game.documents.document import ModelError, document, parse
 
 _ENCODER = msgspec.json.Encoder()

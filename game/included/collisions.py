@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from components import Model, Plot, Readout, Vector
 from components.rod import nodes
+from game.editor.context import Context
 from game.mods import App
-from game.session import Session
 
 MANY = 100  # particles without rods, from which on their speeds are shown unasked
 BINS = 16
 RANGE = 2.5  # times the root mean square speed, that the bars cover
 
-_asked: weakref.WeakKeyDictionary[Session, bool] = weakref.WeakKeyDictionary()
+_asked: weakref.WeakKeyDictionary[Context, bool] = weakref.WeakKeyDictionary()
 
 
 def free_speeds(model: Model) -> NDArray[np.float64]:
@@ -56,7 +56,7 @@ def is_gas(model: Model) -> bool:
     return not pulled and not model.rods.count and int((~model.particles.fixed.all(axis=1)).sum()) >= MANY
 
 
-def toggle_speeds(session: Session, pixel: Vector) -> None:
+def toggle_speeds(session: Context, pixel: Vector) -> None:
     """Show or hide the speeds of the particles."""
     shown = _asked[session] = not _asked.get(session, is_gas(session.model))
     session.notice = "Speeds beside Rayleigh's curve." if shown else "Speeds are not shown."
@@ -64,7 +64,7 @@ def toggle_speeds(session: Session, pixel: Vector) -> None:
         session.notice += " They appear as soon as a particle that no rod holds is moving."
 
 
-def panels(session: Session) -> Sequence[Readout]:
+def panels(session: Context) -> Sequence[Readout]:
     """A panel with the number of impacts once there are any, and one with the speeds of a gas, or where asked for."""
     made = []
     if session.model.clock.collisions:

@@ -15,9 +15,9 @@ import numpy as np
 
 from components import Model, Particle, Plot, Readout, Rod, Vector
 from game.documents.models import replace
+from game.editor.context import Context
 from game.mods import App
 from game.paths import TIME, Quantity, quantity
-from game.session import Session
 from systems.base import Phase, System
 from systems.edit.refusal import Refusal
 
@@ -57,7 +57,7 @@ class Probe:
         """The time of the last sample (s)."""
         return self.samples[-2 - len(self.read)] if self.samples else None
 
-    def sample(self, session: Session) -> None:
+    def sample(self, session: Context) -> None:
         """Take one sample; samples at this time or later are dropped first (time was taken back)."""
         width, time = 2 + len(self.read), session.time
         while self.samples and self.samples[-width] >= time:
@@ -92,7 +92,7 @@ class Probes:
         self.span = 1.0
         self._model: weakref.ref[Model] | None = None
 
-    def add(self, session: Session, paths: Iterable[str], against: str = TIME) -> Probe:
+    def add(self, session: Context, paths: Iterable[str], against: str = TIME) -> Probe:
         """Sample these quantities from now on. Raises PathError. Of more than FEW probes the oldest is dropped."""
         model = session.model
         probe = Probe(quantity(model, against), tuple(quantity(model, path) for path in paths))
@@ -105,7 +105,7 @@ class Probes:
         if self._model is None or self._model() is not model:
             self.all = []
 
-    def sample(self, session: Session) -> None:
+    def sample(self, session: Context) -> None:
         """Take a sample of every probe for which time has passed."""
         behind = [probe for probe in self.all if probe.time != session.time]
         if behind and session.simulation.ready:
@@ -114,10 +114,10 @@ class Probes:
                 probe.sample(session)
 
 
-_probes: weakref.WeakKeyDictionary[Session, Probes] = weakref.WeakKeyDictionary()
+_probes: weakref.WeakKeyDictionary[Context, Probes] = weakref.WeakKeyDictionary()
 
 
-def probes_of(session: Session) -> Probes:
+def probes_of(session: Context) -> Probes:
     """The probes of a session, all of them of the model that is open."""
     probes = _probes.setdefault(session, Probes())
     probes.keep_to(session.model)
@@ -138,7 +138,7 @@ class Sampling(System):
         probes_of(frame.session).sample(frame.session)
 
 
-def choices(session: Session) -> list[tuple[tuple[str, ...], str]]:
+def choices(session: Context) -> list[tuple[tuple[str, ...], str]]:
     """(paths, path against which) of the plots that suit the selection; the energies if nothing is selected."""
     found: list[tuple[tuple[str, ...], str]] = []
     for handle in session.selected[-1:]:
@@ -148,7 +148,7 @@ def choices(session: Session) -> list[tuple[tuple[str, ...], str]]:
     return found or [(ENERGIES, TIME)]
 
 
-def plot_next(session: Session, pixel: Vector) -> None:
+def plot_next(session: Context, pixel: Vector) -> None:
     """Plot the first quantity of the selection, then the next; after the last one, none."""
     probes = probes_of(session)
     offered = choices(session)
@@ -166,14 +166,14 @@ def plot_next(session: Session, pixel: Vector) -> None:
     session.notice = f"Plot: {title} against {probe.against.title}; O: the next."
 
 
-def zoom(factor: float, session: Session) -> None:
+def zoom(factor: float, session: Context) -> None:
     """Show a shorter or longer part of the time."""
     probes = probes_of(session)
     probes.span = min(max(probes.span * factor, 1.0 / 1024.0), 1.0)
     session.notice = f"Plots: the last {100.0 * probes.span:.3g} % of the time."
 
 
-def save(session: Session, pixel: Vector) -> None:
+def save(session: Context, pixel: Vector) -> None:
     """Write every plot as CSV and PNG into the working folder."""
     paths = [Path.cwd() / f"pinjoint-plot-{number}.csv" for number, _ in enumerate(probes_of(session).all, 1)]
     try:
@@ -206,7 +206,7 @@ def write_png(probe: Probe, path: Path, theme: str = "light") -> None:
     plot_png(probe.plot(1.0), path, theme)
 
 
-def panels(session: Session) -> Sequence[Readout]:
+def panels(session: Context) -> Sequence[Readout]:
     """Each probe as a panel with its plot."""
     probes = probes_of(session)
     return [Readout(_heading(probe), (), probe.plot(probes.span)) for probe in probes.all]
@@ -248,7 +248,7 @@ def run(words: list[str]) -> int:
     return 0
 
 
-def record(session: Session, probe: Probe, until: float, samples: int) -> None:
+def record(session: Context, probe: Probe, until: float, samples: int) -> None:
     """Run to a time (s), reading after the last full step before evenly spaced times. Ends early at rest."""
     simulation = session.simulation
     simulation.advance(0)

@@ -5,8 +5,9 @@
 []
 """
 
+from game.editor.context import FAULTS
 from game.mods.app import App
 from game.mods.loading import MODS, include, load, load_all, unload
-from game.mods.mod import FAULTS, Mod, ModError
+from game.mods.mod import Mod, ModError
 
 __all__ = ["FAULTS", "MODS", "App", "Mod", "ModError", "include", "load", "load_all", "unload"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -22,11 +22,10 @@ from game.commands import COMMANDS, Command
 from game.commands.arguments import BAD_INPUT, UsageError
 from game.documents import models
 from game.editor.actions.drawing import use
-from game.editor.actions.registry import ACTIONS, WHILE_DRAWING, Action, action
+from game.editor.context import ACTIONS, PANELS, WHILE_DRAWING, Action, Context, action
 from game.editor.gestures import TOOL_HINTS, TOOLS
 from game.editor.gestures.drawing import drawing_of
 from game.editor.scenes import SCENES, Scene, all_scenes
-from game.editor.view_model import PANELS
 from game.mods.guard import guarded_history, guarded_integrator, guarded_scene, guarded_system
 from game.mods.mod import Mod, ModError
 from game.paths import PathError
@@ -45,12 +44,9 @@ from systems.input.bindings import (
 from systems.render.icons import ICONS, Part
 from systems.render.layers import ABOVE, BELOW, Layer
 
-if TYPE_CHECKING:
-    from game.session import Session
-
 T = TypeVar("T")
 MISTAKES = (UsageError, models.ModelError, FieldError, PathError)  # of a person at the command line
-Panel = Callable[["Session"], Readout | Sequence[Readout] | None]
+Panel = Callable[[Context], Readout | Sequence[Readout] | None]
 
 
 class App:
@@ -261,12 +257,12 @@ class App:
     def _guarded_action(self, name: str, function: Action) -> Action:
         mod = self._mod
 
-        def act(session: Session, pixel: Vector) -> None:
+        def act(context: Context, pixel: Vector) -> None:
             if mod.off:
                 raise Refusal(f"The mod '{mod.name}' is switched off: {mod.problem}")
             try:
-                with session.model.transaction(name):
-                    function(session, pixel)
+                with context.model.transaction(name):
+                    function(context, pixel)
             except (Refusal, FieldError):
                 raise
             except Exception as error:  # any error of code that is not ours
@@ -290,9 +286,9 @@ def _as_list(draw: Layer) -> Callable[[Any], list[Any]]:
     return lambda sheet: list(draw(sheet))
 
 
-def _readouts(read: Panel) -> Callable[[Session], Sequence[Readout]]:
-    def readouts(session: Session) -> Sequence[Readout]:
-        made = read(session)
+def _readouts(read: Panel) -> Callable[[Context], Sequence[Readout]]:
+    def readouts(context: Context) -> Sequence[Readout]:
+        made = read(context)
         several = () if made is None else [made] if isinstance(made, Readout) else made
         if isinstance(several, str) or not all(isinstance(readout, Readout) for readout in several):
             raise TypeError(f"{getattr(read, '__name__', 'a panel')} returned {made!r}, not a Readout or None")

@@ -5,19 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from components.field import FieldError
 from components.load import History, HistoryKind
+from components.model import Model
 from components.snapshot import Snapshot
-from game.editor.scenes import Scene
+from game.editor.context import Scene
 from game.mods.mod import INCLUDED, Mod
 from game.mods.watchdog import interrupted_after, stop_after
 from systems.base import Driver, StepSystem, System
 from systems.physics.integrators import VelocityVerlet
-
-if TYPE_CHECKING:
-    from components.model import Model
 
 PATIENCE = 2.0  # s that a frame system may take; a longer one is interrupted
 

@@ -10,10 +10,11 @@ from pathlib import Path
 from types import ModuleType
 
 from game.documents.preferences import preferred_keys
+from game.editor.context import FAULTS
 from game.mods import finding
 from game.mods.app import App, check_plugin
 from game.mods.finding import in_order, required
-from game.mods.mod import FAULTS, MANIFEST, Mod, ModError
+from game.mods.mod import MANIFEST, Mod, ModError
 from game.mods.watchdog import interrupted_after
 from game.version import __version__
 from systems.catalogue import all_systems

@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from game.editor.context import FAULTS
+
 LOG = logging.getLogger("pinjoint.mods")
-FAULTS: list[str] = []  # sentences about mods that failed while the program ran, the oldest first
 INCLUDED = "Pinjoint"  # the source of the mods that come with the program
 MANIFEST = "mod.toml"
 

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Protocol
 
-from components.spelling import missing
+from components.suggestions import missing
 from game.paths import Readable, locate_one
 
 _OF_SESSION = ("scene", "time", "message")

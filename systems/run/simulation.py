@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
-from components.extremes import incomputable
 from components.field import Column, Role, same
 from components.load import loads_end
 from components.model import ADDED, Model
+from components.numeric_range import incomputable
 from components.rod import is_warm
 from components.snapshot import Snapshot
 from components.world import Derivation

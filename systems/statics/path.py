@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.model import Model
-from components.spelling import missing
+from components.suggestions import missing
 from systems.statics.equations import Array, Structure
 from systems.statics.external import External, external_forces
 from systems.statics.follow import Path, Point, Step, Tangent

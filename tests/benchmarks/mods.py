@@ -14,7 +14,7 @@ from numba import njit
 from components.model import Model
 from game import Session
 from game.documents.document import document
-from game.editor.view_model import PANELS
+from game.editor.context import PANELS
 from game.mods import Mod
 from game.mods.guard import guarded_system
 from systems.base import StepSystem, System

@@ -186,7 +186,7 @@ def test_what_is_compiled_is_loaded_before_a_key_needs_it(
     for rod in app.session.rods:
         rod.tensile_strength = rod.compressive_strength = None  # so that no picture needs the program
     simulation, before = app.session.simulation, app.session.model.newest(Role.DOCUMENT)
-    saved = app.session.desk.unsaved
+    saved = app.session.document.unsaved
     compiler.status = 0
     frames(app, 2)
     assert not simulation.ready  # it could not be compiled there; here it is when it must be, not before
@@ -194,7 +194,7 @@ def test_what_is_compiled_is_loaded_before_a_key_needs_it(
     frames(app, 1)
     assert simulation.ready
     assert app.session.model.newest(Role.DOCUMENT) == before
-    assert app.session.desk.unsaved == saved
+    assert app.session.document.unsaved == saved
 
 
 def test_what_a_hand_needs_is_loaded_while_nothing_happens(

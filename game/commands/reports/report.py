@@ -14,13 +14,12 @@ from components.model import Model
 from game.commands.output import ResultError
 from game.commands.reports.results import Run, State, state
 from game.paths import ENERGIES
-from game.session import DEFAULT_LIMIT
+from game.session import DEFAULT_LIMIT, Session
 from systems.base import StopReason
 from systems.run.measured_error import IN_A_COMMAND
 from systems.run.simulation import Simulation
 
-if TYPE_CHECKING:
-    from game.session import Session
+if TYPE_CHECKING:  # they import scipy
     from systems.statics.events import Event
     from systems.statics.settle import StaticState
 
@@ -58,7 +57,7 @@ class Analysis:
             return self.run(session.simulation, name)
         session.run(steps=0)  # the beginning is noted, for theory beside the run
         found = self.run(session.simulation, name)
-        error = session.desk.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
+        error = session.document.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
         return {
             **found,
             "message": session.message,

@@ -1,34 +1,6 @@
-"""Named actions, by subject: the only way in, for keys, mouse, scripts and mods."""
+"""Named actions, by subject: the only way in, for keys, mouse, scripts and mods; importing them registers them."""
 
-from game.editor.actions import (
-    clipboard,
-    drawing,
-    editing,
-    files,
-    force_method,
-    forms,
-    grids,
-    scenes,
-    selection,
-    time,
-    view,
-)
-from game.editor.actions.registry import ACTIONS, WHILE_DRAWING, Action, action
+from game.editor.actions import drawing, editing, force_method, modes, time, view
+from game.editor.context import ACTIONS, Action, action
 
-__all__ = [
-    "ACTIONS",
-    "WHILE_DRAWING",
-    "Action",
-    "action",
-    "clipboard",
-    "drawing",
-    "editing",
-    "files",
-    "force_method",
-    "forms",
-    "grids",
-    "scenes",
-    "selection",
-    "time",
-    "view",
-]
+__all__ = ["ACTIONS", "Action", "action", "drawing", "editing", "force_method", "modes", "time", "view"]

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from game.editor.scenes.base import PHYSICS, Scene, SceneError, Scenes, Stage
+from game.editor.context import PHYSICS, Scene, SceneError, Scenes, Stage
 from game.editor.scenes.files import Pictures
 from game.editor.scenes.force_method import ForceMethod, Sets
 from game.editor.scenes.load import Load

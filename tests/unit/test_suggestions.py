@@ -2,7 +2,7 @@
 
 import pytest
 
-from components.spelling import missing, nearest
+from components.suggestions import missing, nearest
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from components.extremes import incomputable
 from components.field import FieldError
+from components.numeric_range import incomputable
 from game import Session
 from game.commands.command_line import main
 
