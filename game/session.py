@@ -211,8 +211,7 @@ class Session(Context):
         >>> Session.open("isostatic").plan("pause").left_out["run.time"]
         'not active in pause, only in simulation'
         """
-        with self.simulation.in_scene(scene or self.scene):
-            return self.simulation.planned()
+        return self.simulation.planned(scene or self.scene)
 
     def act(self, name: str, pixel: Vector | None = None) -> None:
         """Perform a named action with the pointer at a pixel; what it refuses is said in `notice`."""

@@ -28,8 +28,9 @@ from game.mods.mod import INCLUDED, LOG, Mod, ModError
 from game.mods.skeleton import write_skeleton
 from game.version import __version__
 from systems.base import Commit, Law
-from systems.catalogue import DRIVERS, all_systems
+from systems.catalogue import all_systems
 from systems.input.bindings import BINDINGS
+from systems.physics.integrators import INTEGRATORS
 from systems.program.binding import ProgramError, bind, problem_of
 from systems.program.writer import read_sources
 
@@ -147,10 +148,10 @@ def problems(mod: Mod) -> Iterator[str]:
     for system in all_systems():
         if system.mod is mod and isinstance(system, Law | Commit):
             yield from filter(None, [_problem_of(system, model)])
-    for driver in DRIVERS.values():
-        if driver.mod is mod:
+    for integrator in INTEGRATORS.values():
+        if integrator.mod is mod:
             try:
-                read_sources([driver])
+                read_sources([integrator])
             except ProgramError as error:
                 yield str(error)
     scenes = {scene.name for scene in all_scenes()}

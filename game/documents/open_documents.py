@@ -21,8 +21,8 @@ from game.documents.history.log import Edit, Entry
 from game.documents.history.timeline import Timeline
 from game.documents.shapes import Shapes
 from systems.edit.pull import Pull
-from systems.run.real_time import Live
-from systems.run.simulation import FREE_FLIGHT, Simulation
+from systems.run.real_time import RealTimeRunner
+from systems.run.simulation import Simulation
 from systems.schedule import Schedule
 
 Source = str | Path | Mapping[str, Any]  # of a model: a file, the name of a bundled one, or its content
@@ -68,7 +68,7 @@ class OpenDocument:
         self.simulation = Simulation(model, schedule)
         self.timeline = Timeline(self.simulation, pull)
         self.history = History(model, self.simulation, on_change=self._changed)
-        self.live = Live(self.simulation)
+        self.live = RealTimeRunner(self.simulation)
         self.beginning: Snapshot | None = None
         self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)
@@ -122,7 +122,7 @@ class OpenDocument:
             model.give("clock.time", np.array([time]))
             model.give("clock.origin", np.array([time]))
             model.give("clock.origin_steps", np.array([clock.steps]))
-            if len(found.final.contacts) and self.simulation.driver is not FREE_FLIGHT:
+            if len(found.final.contacts) and not self.simulation.driver.exact:
                 clock.paths = resting(found.final.contacts, 1000.0 * found.final.contact_force)
         account, yielded = [found.account], np.flatnonzero(found.final.plastic_strain != strain)
         if len(yielded) and not found.events:  # at once: what it began from is beyond the strengths

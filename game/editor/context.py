@@ -33,7 +33,7 @@ from systems.collision.impacts import Impacts
 from systems.edit.pull import Pull
 from systems.physics.pace import natural_pace
 from systems.run.energy import Energy
-from systems.run.frame_clock import FrameClock
+from systems.run.real_time import TimeScale
 from systems.run.simulation import Simulation
 from systems.run.system import Time
 from systems.schedule import Schedule
@@ -350,7 +350,7 @@ class Context:
         return self.model.clock.time
 
     @property
-    def clock(self) -> FrameClock:
+    def clock(self) -> TimeScale:
         """How fast time passes in the window."""
         return self.document.live.clock
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from components.obstacles import any_obstacles, obstacles
 from components.paths import Paths
-from systems.base import Driver, Law, StepSystem
+from systems.base import Integrator, Law, StepSystem
 from systems.broad_phase import nearest
 
 if TYPE_CHECKING:
@@ -28,9 +28,13 @@ class Collision(StepSystem):
     unneeded = "no two particles, and no particle and obstacle, can meet; or settings.collisions is off"
     reads = ("particles.radius", "particles.mobility", "settings.restitution")
     writes = ("particles.velocity", "clock.collisions", "clock.dissipated_impact")
+    impulsive = True
 
     def needs(self, model: Model) -> bool:
         return model.settings.collisions and can_touch(model)
+
+    def leaves_flight_exact(self, model: Model) -> bool:
+        return True
 
 
 def can_touch(model: Model) -> bool:
@@ -108,11 +112,12 @@ def support_forces(
     return total
 
 
-class FreeFlight(Driver):
+class FreeFlight(Integrator):
     """Exact: particles fly on parabolas from impact to impact, whatever the step."""
 
     name = "collision.free_flight"
     controlled = True
+    exact = True
 
     @staticmethod
     def stable_step(frequency: float, decay: float) -> float:

@@ -18,7 +18,8 @@ from game.editor.context import PANELS
 from game.mods import Mod
 from game.mods.guard import guarded_system
 from systems.base import StepSystem, System
-from systems.catalogue import DRIVERS, SYSTEMS, step_systems
+from systems.catalogue import SYSTEMS, step_systems
+from systems.physics.integrators import INTEGRATORS
 from systems.physics.system import Drag
 from systems.program.parallel import make_program
 from systems.program.program import Program
@@ -49,7 +50,7 @@ def _program(model: Model, law: System) -> Program:
     plan = Schedule([*systems, law]).step_plan("simulation", model)
     assert any(isinstance(system, Drag) for system in plan)
     model.writable("clock.step_size")[0] = STEP
-    return make_program(model, plan, DRIVERS["velocity_verlet"])
+    return make_program(model, plan, INTEGRATORS["velocity_verlet"])
 
 
 def kernels(*, quick: bool) -> list[Row]:
