@@ -13,9 +13,9 @@ app.py                    the window
 preparation.py prepare.py compiling ahead of need, in another process
 """
 
-from game.interrupts import unheard
+from game.interrupts import quietly_interrupted
 
-with unheard():
+with quietly_interrupted():
     from game import included as _included  # noqa: F401 (registers what is written as mods are)
     from game.checks import SystemCheckError, check_system
     from game.session import Session

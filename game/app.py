@@ -147,7 +147,7 @@ class App:
         systems: list[System] = [self.input, Hover(), *further, self.render]
         self.session = Session(model, systems, View(theme=theme), file)
         self.session.window = self
-        self.session.faults_told = 0  # also which mods were left out is shown
+        self.session.faults_seen = 0  # also which mods were left out is shown
         self.session.autosave = self.autosave = autosave
         self.session.preparation = self.preparation = preparation
         self._theme = theme

@@ -21,8 +21,8 @@ from components.table import Table
 from components.view import View
 from game.documents import models
 from game.documents.open_documents import ModelFile, Source, file_of
-from game.editor import actions as _actions  # noqa: F401 (they register themselves)
-from game.editor.context import ACTIONS, FAULTS, WHILE_DRAWING, Context, Stage
+from game.editor.actions import ACTIONS, WHILE_DRAWING
+from game.editor.context import FAULTS, Context, Stage
 from game.editor.frame import Frame, frame_systems
 from game.editor.scenes import all_scenes, scene_systems
 from game.editor.toolbar import toolbar_of
@@ -31,8 +31,8 @@ from game.mods import load_all
 from game.scripts.expectation import expect
 from systems.base import Phase, StopReason, System
 from systems.catalogue import SYSTEMS, step_systems
+from systems.edit import Refusal
 from systems.edit.pull import Pull
-from systems.edit.refusal import Refusal
 from systems.input.bindings import FORMS, TEXT, action_for, key_named
 from systems.run.system import Time
 from systems.schedule import Plan, Schedule
@@ -247,7 +247,7 @@ class Session(Context):
         pixel = pixel if pixel is not None else self.pointer
         name = self._action_at(key, pixel)
         if key == "escape" and self.fault and self.scene not in FORMS:
-            self.faults_told = len(FAULTS)
+            self.faults_seen = len(FAULTS)
         elif name is not None:
             if self.on_press is not None:
                 self.on_press(key, pixel)

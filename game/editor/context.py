@@ -246,7 +246,7 @@ class Context:
     window, autosave, preparation: what a window gives, see host.py; None without one. performing: a script is
     shown in the window, so input is not for the scenes and no time passes by itself. footer: the strip below
     the picture meanwhile. lesson: the script that a person asked for. awaited: the simulation that cannot go on
-    before its step program is compiled. faults_told: how many faults of mods were shown and taken away.
+    before its step program is compiled. faults_seen: how many faults of mods were shown and taken away.
     """
 
     def __init__(
@@ -268,7 +268,7 @@ class Context:
         self.footer: View | None = None
         self.lesson: Script | None = None
         self.awaited: Simulation | None = None
-        self.faults_told = len(FAULTS)
+        self.faults_seen = len(FAULTS)
 
     # --- documents ---------------------------------------------------------------------------------
 
@@ -372,7 +372,7 @@ class Context:
     @property
     def fault(self) -> str:
         """The mod that failed last and why, until Escape is pressed; "" if none did."""
-        return FAULTS[-1] if len(FAULTS) > self.faults_told else ""
+        return FAULTS[-1] if len(FAULTS) > self.faults_seen else ""
 
     # --- time --------------------------------------------------------------------------------------
 
@@ -513,10 +513,26 @@ class Context:
         return described[:1].upper() + described[1:]
 
     def leave_gesture(self) -> None:
-        """End what is being drawn or dragged, because something else begins."""
+        """End what is being drawn or dragged before something else begins."""
         gesture, self.gesture = self.gesture, None
         if gesture is not None:
             gesture.leave(self)
+
+    def cancel_gesture(self) -> bool:
+        """Take back what is being drawn or dragged, else put the tool away; False if there is neither."""
+        gesture, self.gesture = self.gesture, None
+        if gesture is not None:
+            gesture.cancel(self)
+        elif self.view.tool:
+            self.view.tool = ""
+        else:
+            return False
+        return True
+
+    def take_up(self, tool: str) -> None:
+        """Let clicks use a tool from now on; if they use it already, put it away."""
+        self.leave_gesture()
+        self.view.tool = "" if self.view.tool == tool else tool
 
     @property
     def clipboard(self) -> str:

@@ -10,7 +10,7 @@ from game.editor.context import Context
 from game.editor.gestures import TOOL_HINTS
 from game.editor.readouts import own_readouts
 from systems.base import StopReason
-from systems.edit.refusal import Refusal
+from systems.edit import Refusal
 from systems.input.bindings import LIVE, help_lines
 from systems.render.help import help_pages
 

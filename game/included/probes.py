@@ -19,7 +19,7 @@ from game.editor.context import Context
 from game.mods import App
 from game.paths import TIME, Quantity, quantity
 from systems.base import Phase, System
-from systems.edit.refusal import Refusal
+from systems.edit import Refusal
 
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time

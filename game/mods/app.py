@@ -20,8 +20,8 @@ from components.view import Readout
 from game.commands import COMMANDS, Command
 from game.commands.arguments import BAD_INPUT, UsageError
 from game.documents import models
-from game.editor.actions.drawing import use
-from game.editor.context import ACTIONS, PANELS, WHILE_DRAWING, Action, Context, action
+from game.editor.actions import ACTIONS, WHILE_DRAWING, Action, action
+from game.editor.context import PANELS, Context
 from game.editor.gestures import TOOL_HINTS, TOOLS
 from game.editor.gestures.drawing import drawing_of
 from game.editor.scenes import SCENES, Scene, all_scenes
@@ -30,7 +30,7 @@ from game.mods.mod import Mod, ModError
 from game.paths import PathError
 from systems.base import Integrator, System
 from systems.catalogue import SYSTEMS
-from systems.edit.refusal import Refusal
+from systems.edit import Refusal
 from systems.input.bindings import (
     LIVE,
     Binding,
@@ -42,7 +42,7 @@ from systems.input.bindings import (
 )
 from systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
 from systems.render.icons import ICONS, Part
-from systems.render.layers import ABOVE, BELOW, Layer
+from systems.render.sheet import ABOVE, BELOW, Layer
 
 T = TypeVar("T")
 MISTAKES = (UsageError, models.ModelError, FieldError, PathError)  # of a person at the command line
@@ -101,7 +101,7 @@ class App:
         )
         self._undo += [lambda: TOOLS.pop(name), lambda: TOOL_HINTS.pop(name)]
         self.action(name, key=key, title=title or f"{kind.noun}, from point to point", while_drawing=True)(
-            use(name)
+            TOOLS[name].use
         )
         if icon:
             ICONS[name] = tuple(icon)

@@ -1,6 +1,17 @@
 """Named actions, by subject: the only way in, for keys, mouse, scripts and mods; importing them registers them."""
 
-from game.editor.actions import drawing, editing, force_method, modes, time, view
-from game.editor.context import ACTIONS, Action, action
+from game.editor.actions import editing, force_method, modes, pointer, time, view
+from game.editor.context import ACTIONS, WHILE_DRAWING, Action, action
 
-__all__ = ["ACTIONS", "Action", "action", "drawing", "editing", "force_method", "modes", "time", "view"]
+__all__ = [
+    "ACTIONS",
+    "WHILE_DRAWING",
+    "Action",
+    "action",
+    "editing",
+    "force_method",
+    "modes",
+    "pointer",
+    "time",
+    "view",
+]

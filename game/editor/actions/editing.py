@@ -8,12 +8,12 @@ from components.field import Vector
 from components.grid import Grid
 from components.handle import Handle
 from components.particle import Particle
-from game.editor.clipboard import Part, chosen, parsed, paste, taken, written
+from game.editor.clipboard import Part, as_text, part_in, part_of, paste, selected_rows
 from game.editor.context import Context, action
+from systems.edit import Refusal
 from systems.edit.moving import Movable, nudged
 from systems.edit.picking import pick_particle
 from systems.edit.placing import place, snapped
-from systems.edit.refusal import Refusal
 from systems.edit.rods import delete
 from systems.edit.supports import next_support
 from systems.forms.properties import heading
@@ -21,9 +21,9 @@ from systems.forms.properties import heading
 
 @action("place", while_drawing=True)
 def _place(context: Context, pixel: Vector) -> None:
-    """Under the pointer; from the toolbar, with the clicks that follow."""
+    """A particle under the pointer; from the toolbar, under the clicks that follow."""
     if context.view.strip.contains(pixel):
-        take_up(context, "place")
+        context.take_up("place")
         return
     particle = place(context.model, context.view, pixel)
     x, y = particle.position
@@ -39,28 +39,22 @@ def _delete(context: Context, pixel: Vector) -> None:
     named = context.name(doomed[0])
     delete(context.model, doomed)
     gone = {name: count - context.model.tables[name].count for name, count in before.items()}
-    told = [f"{count} {name if count > 1 else name[:-1]}" for name, count in gone.items() if count]
-    context.notice = f"{named} deleted." if sum(gone.values()) == 1 else f"{', '.join(told)} deleted."
+    gone_by_kind = [f"{count} {name if count > 1 else name[:-1]}" for name, count in gone.items() if count]
+    context.notice = f"{named} deleted." if sum(gone.values()) == 1 else f"{', '.join(gone_by_kind)} deleted."
 
 
 @action("support")
 def _support(context: Context, pixel: Vector) -> None:
-    """Of the particle under the pointer, or of the selected ones; without any, of those clicked or dragged next."""
+    """The next support of the particle under the pointer, else of the selected ones; without any, take up the tool."""
     hit = pick_particle(context.model, context.view, pixel)
     chosen = [handle for handle in context.selected if isinstance(handle, Particle)]
     if hit is not None and hit not in chosen:
         chosen = [hit]
     if not chosen:
-        take_up(context, "support")
+        context.take_up("support")
         return
     support = next_support(context.model, chosen)
     context.notice = f"{_all_of(context, chosen)}: {support}"
-
-
-def take_up(context: Context, tool: str) -> None:
-    """Let clicks use a tool from now on; if they do already, put it away."""
-    context.leave_gesture()
-    context.view.tool = "" if context.view.tool == tool else tool
 
 
 def _all_of(context: Context, particles: list[Particle]) -> str:
@@ -68,7 +62,7 @@ def _all_of(context: Context, particles: list[Particle]) -> str:
 
 
 def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
-    """Move what is selected by about a pixel, or (far) a grid spacing; False if nothing is."""
+    """Move the selected elements by about a pixel or, if far, a grid spacing; False if none are selected."""
     model = context.model
     chosen = Movable(model, context.selected)
     if not len(chosen):
@@ -97,7 +91,7 @@ def _new_grid(context: Context, pixel: Vector) -> None:
 
 @action("next grid")
 def _next_grid(context: Context, pixel: Vector) -> None:
-    """The one after the shown grid; after the last, none; after none, the first."""
+    """Show the grid after the shown one; after the last, none; after none, the first."""
     grids = list(context.model.grids)
     shown = [index for index, grid in enumerate(grids) if grid.shown]
     following = shown[-1] + 1 if shown else 0
@@ -107,7 +101,7 @@ def _next_grid(context: Context, pixel: Vector) -> None:
                 grid.shown = index == following
 
 
-# --- the clipboard ---------------------------------------------------------------------------------------
+# --- clipboard ----------------------------------------------------------------------------------------
 
 
 BESIDE = 30.0  # points to the right and down, where a duplicate appears
@@ -115,23 +109,23 @@ BESIDE = 30.0  # points to the right and down, where a duplicate appears
 
 @action("copy")
 def _copy(context: Context, pixel: Vector) -> None:
-    _take_along(context)
+    _put_on_clipboard(context)
     context.notice = "Copied; Ctrl+V pastes it at the pointer."
 
 
 @action("cut")
 def _cut(context: Context, pixel: Vector) -> None:
-    _take_along(context)
+    _put_on_clipboard(context)
     delete(context.model, context.selected)
     context.notice = "Cut; Ctrl+V pastes it at the pointer."
 
 
 @action("paste")
 def _paste(context: Context, pixel: Vector) -> None:
-    """With the middle at the pointer, from the toolbar in the middle; the first place snaps to the grid."""
+    """Paste around the pointer, from the toolbar around the middle of the view; the first place snaps to the grid."""
     if context.view.strip.contains(pixel):
         pixel = context.view.canvas.middle
-    source = _taken_along(context)
+    source = _clipboard(context)
     position = source.position
     middle = 0.5 * (position.min(axis=0) + position.max(axis=0))
     x, y = (position[0] + context.view.camera.to_model(pixel) - middle).tolist()
@@ -143,20 +137,20 @@ def _paste(context: Context, pixel: Vector) -> None:
 def _duplicate(context: Context, pixel: Vector) -> None:
     view = context.view
     beside = BESIDE * view.pixel_ratio / view.camera.scale
-    source = taken(context.model, chosen(context.model))
+    source = part_of(context.model, selected_rows(context.model))
     _show(context, paste(context.model, source, snapped(context.model, view, (beside, -beside))), "Duplicated")
 
 
-def _take_along(context: Context) -> None:
-    rows = chosen(context.model)
-    context.clipboard = text = written(context.model, rows)
-    context.copied = text, taken(context.model, rows)
+def _put_on_clipboard(context: Context) -> None:
+    rows = selected_rows(context.model)
+    context.clipboard = text = as_text(context.model, rows)
+    context.copied = text, part_of(context.model, rows)
 
 
-def _taken_along(context: Context) -> Part:
-    """What is on the clipboard; it is read only if it is not what was copied here last."""
+def _clipboard(context: Context) -> Part:
+    """The part on the clipboard; its text is parsed only if it was not copied here."""
     text, copied = context.clipboard, context.copied
-    return copied[1] if copied is not None and copied[0] == text else parsed(text)
+    return copied[1] if copied is not None and copied[0] == text else part_in(text)
 
 
 def _show(context: Context, made: list[Handle], done: str) -> None:

@@ -9,8 +9,8 @@ from components.field import Vector
 from game.editor.context import Context, action
 from game.editor.scenes.force_method import ForceMethod
 from game.force_method import PARTS
+from systems.edit import Refusal
 from systems.edit.picking import pick
-from systems.edit.refusal import Refusal
 
 if TYPE_CHECKING:  # it imports scipy
     from game.force_method.guide import Guide

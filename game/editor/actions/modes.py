@@ -8,28 +8,23 @@ from dataclasses import replace
 from components.field import Vector
 from game.documents.models import ModelError
 from game.documents.open_documents import stamp_of
-from game.editor.actions.drawing import put_away
 from game.editor.context import Context, SceneError, action
 from game.editor.scenes.form import FormScene
 from game.editor.scenes.properties import Properties
-from systems.edit.refusal import Refusal
+from systems.edit import Refusal
 from systems.forms import typing
 
 
 @action("pause")
-def _pause(context: Context, pixel: Vector) -> None:
-    context.scenes.request("pause")
-
-
 @action("back")
-def _back(context: Context, pixel: Vector) -> None:
+def _pause(context: Context, pixel: Vector) -> None:
     context.scenes.request("pause")
 
 
 @action("escape", while_drawing=True)
 def _escape(context: Context, pixel: Vector) -> None:
-    """Leave a drawing, else the tool, else the run or the selection; with nothing to leave, run."""
-    if put_away(context):
+    """Cancel the drawing, else put the tool away, else end the run or deselect; with nothing to end, run."""
+    if context.cancel_gesture():
         return
     if context.scene == "simulation":
         context.scenes.request("pause")
@@ -70,7 +65,7 @@ def _load(context: Context, pixel: Vector) -> None:
 
 @action("save again")
 def _save_again(context: Context, pixel: Vector) -> None:
-    """Under the same name; a model without one is given it first. What somebody else wrote there is asked for."""
+    """Save to the same file; a model without one is named first, and a file that was changed since is asked about."""
     file = context.file
     if file.path is None:
         _to_pause_and(context, "save")
@@ -95,7 +90,7 @@ def _new(context: Context, pixel: Vector) -> None:
 
 @action("properties")
 def _properties(context: Context, pixel: Vector) -> None:
-    """Of the selected elements, or the environment; leaving goes back to where it was opened."""
+    """The properties of the selected elements, or the environment; leaving them leads back to this scene."""
     properties = context.scenes["properties"]
     assert isinstance(properties, Properties)
     properties.opened_from(context.scene)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from components.field import Vector
 from game.editor.actions.editing import nudge
 from game.editor.context import Action, Context, action
-from systems.edit.refusal import Refusal
+from systems.edit import Refusal
 
 PACE_STEP = 2.0
 FAR = 0.2  # s shown, by which time is skipped forward or back

@@ -6,7 +6,7 @@ from components.field import Vector
 from game.documents.shapes import NoShape
 from game.editor.context import Action, Context, action
 from game.editor.view_model import pages_of_help
-from systems.edit.refusal import Refusal
+from systems.edit import Refusal
 from systems.render.theme import load_theme
 
 ZOOM_STEP = 1.2

@@ -10,27 +10,46 @@ from components.handle import Handle
 from components.particle import Particle
 from components.view import Preview, drawn_positions
 from game.editor.context import Context, Gesture
+from systems.edit import Refusal
 from systems.edit.arrows import arrow_end, arrow_value, usual_force, usual_speed
 from systems.edit.picking import PARTICLE_REACH, pick_particle
 from systems.edit.placing import snapped_to_points
-from systems.edit.refusal import Refusal
 from systems.edit.rods import check_ends, distance, join
 from systems.edit.supports import NAMES, next_support, support, support_towards
 
+SMALLEST_RIM = 5.0  # points, of a particle as it is drawn
+
 
 class Drawing(Gesture):
-    """What clicks and drags draw while a tool is in hand."""
+    """A drawing by clicks, drags or the key of a tool. tool: the name of the tool and of its action."""
 
     tool: ClassVar[str]
 
     @classmethod
     def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
-        """A new one that begins at a pixel; None if it cannot begin there, or another of its kind is to go on."""
+        """A new drawing from a pixel; None if none can begin there, or one of this kind is to go on."""
         raise NotImplementedError
+
+    @classmethod
+    def use(cls, context: Context, pixel: Vector) -> None:
+        """The action of the tool: finish its drawing, else begin one at a pixel, else take the tool up or put it away."""
+        gesture = context.gesture
+        if isinstance(gesture, Drawing) and gesture.tool == cls.tool:
+            gesture.finish(context, pixel)
+            return
+        context.leave_gesture()
+        context.gesture = cls.begin(context, pixel)
+        if context.gesture is None:
+            context.take_up(cls.tool)
+
+    def finish(self, context: Context, pixel: Vector) -> None:
+        """End at a pixel; where that is refused, the drawing goes on."""
+        self.drop(context, pixel)
+        context.gesture = None
 
 
 class DrawFromParticle(Drawing):
-    """What begins at a particle."""
+    """A drawing that begins at a particle."""
 
     def __init__(self, context: Context, particle: Particle) -> None:
         self.particle = particle
@@ -41,14 +60,14 @@ class DrawFromParticle(Drawing):
         return cls(context, particle) if particle is not None else None
 
     def start(self, context: Context) -> Vector:
-        """Where that particle is drawn (m). Raises Refusal if it is gone."""
+        """Where the particle is drawn (m). Raises Refusal if it was deleted."""
         if not self.particle.exists:
             raise Refusal("The particle where this began was deleted meanwhile; begin at another one.")
         return drawn_at(context, self.particle)
 
 
 class DrawRod(DrawFromParticle):
-    """From one particle to another."""
+    """A rod from one particle to another."""
 
     tool = "rod"
 
@@ -79,7 +98,7 @@ class DrawRod(DrawFromParticle):
 
 
 class DrawArrow(DrawFromParticle):
-    """A vector of a particle, as an arrow from it."""
+    """A vector of a particle, drawn as an arrow from the particle."""
 
     title: ClassVar[str]
     unit: ClassVar[str]
@@ -94,22 +113,22 @@ class DrawArrow(DrawFromParticle):
         raise NotImplementedError
 
     def value(self, context: Context, pixel: Vector) -> Vector:
-        """What the arrow to a pixel stands for."""
+        """The vector that the arrow to a pixel stands for."""
         return arrow_value(context.view, self.start(context), pixel, self.usual(context))
 
-    def told(self, value: Vector) -> str:
-        """A value as it is shown."""
+    def shown(self, value: Vector) -> str:
+        """The text of a vector."""
         return f"({value[0]:g}, {value[1]:g}) {self.unit}"
 
     def drop(self, context: Context, pixel: Vector) -> None:
         value = self.value(context, pixel)
         context.model.assign([self.particle], self.tool, [value])
-        context.notice = f"{self.title} {self.particle.name}: {self.told(value)}"
+        context.notice = f"{self.title} {self.particle.name}: {self.shown(value)}"
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         value, start = self.value(context, pixel), self.start(context)
         end = arrow_end(context.view, start, value, self.usual(context))
-        return Preview(self.tool, start, end, self.told(value))
+        return Preview(self.tool, start, end, self.shown(value))
 
 
 class DrawForce(DrawArrow):
@@ -176,18 +195,8 @@ def _length_and_angle(start: Vector, end: Vector) -> str:
 
 
 def drawing_of(kind: type[Handle], tool: str, key: str) -> type[DrawElement]:
-    """What draws elements of a kind with two points; `tool` is the name of its action."""
+    """The drawing of elements of a kind with two points, by a tool and its key."""
     return type(f"Draw{kind.__name__}", (DrawElement,), {"kind": kind, "tool": tool, "key": key})
-
-
-TOOL_HINTS = {
-    "place": "click where particles are to be     Esc done",
-    "support": "supports: drag from a particle to its ground, or click for the next kind     Esc done",
-    "rod": "rods: click two particles, or drag from one to another     L or Esc done",
-    "force": "forces: drag an arrow from a particle     F or Esc done",
-    "velocity": "velocities: drag an arrow from a particle     V or Esc done",
-}
-TOOLS: dict[str, type[Drawing]] = {kind.tool: kind for kind in (DrawRod, DrawForce, DrawVelocity)}
 
 
 def drawn_at(context: Context, particle: Particle) -> Vector:
@@ -196,13 +205,10 @@ def drawn_at(context: Context, particle: Particle) -> Vector:
     return x, y
 
 
-SMALLEST_RIM = 5.0  # points, of a particle as it is drawn
-
-
 class DrawSupport(DrawFromParticle):
-    """The support of a particle, or of all that are selected if it is one of them.
+    """The support of a particle, or of all selected particles if it is one of them.
 
-    Who hardly drags at all meant to click, which leads to the next kind.
+    A drag that ends on the particle counts as a click, which takes the next kind of support.
     """
 
     tool = "support"
@@ -224,7 +230,7 @@ class DrawSupport(DrawFromParticle):
         context.notice = f"{context.name(self.particle)}{others}: {name}"
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
-        """The symbol on the side to which it was dragged, with its point on the particle's rim."""
+        """The symbol of the support on the side of the pointer, with its point on the rim of the particle."""
         along, (x, y) = self._along(context, pixel), self.start(context)
         if along is None:
             return None
@@ -237,8 +243,19 @@ class DrawSupport(DrawFromParticle):
         return Preview("pinned" if all(fixed) else "roller", start, end, NAMES[fixed])
 
     def _along(self, context: Context, pixel: Vector) -> Vector | None:
-        """From the particle to a pixel (m), or None if that is still on it."""
+        """The vector from the particle to a pixel (m); None if the pixel lies on the particle."""
         start, end = self.start(context), context.view.camera.to_model(pixel)
         reach = PARTICLE_REACH * context.view.pixel_ratio / context.view.camera.scale
         along = end[0] - start[0], end[1] - start[1]
         return along if math.hypot(*along) > max(reach, self.particle.radius) else None
+
+
+# By tool: the status line while clicks use it, and what it draws ("place" draws nothing, "support" has an action).
+TOOL_HINTS = {
+    "place": "click where particles are to be     Esc done",
+    "support": "supports: drag from a particle to its ground, or click for the next kind     Esc done",
+    "rod": "rods: click two particles, or drag from one to another     L or Esc done",
+    "force": "forces: drag an arrow from a particle     F or Esc done",
+    "velocity": "velocities: drag an arrow from a particle     V or Esc done",
+}
+TOOLS: dict[str, type[Drawing]] = {kind.tool: kind for kind in (DrawRod, DrawForce, DrawVelocity)}

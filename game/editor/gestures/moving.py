@@ -11,16 +11,16 @@ from components.handle import Handle
 from components.particle import Particle
 from components.view import Preview, drawn_positions
 from game.editor.context import Context, Gesture
+from systems.edit import Refusal
 from systems.edit.moving import Movable
 from systems.edit.picking import Grip
 from systems.edit.placing import check_free, snapped, snapped_to_points
 from systems.edit.pull import hand_on
-from systems.edit.refusal import Refusal
 from systems.edit.selecting import inside
 
 
 class _Placing(Gesture):
-    """A drag whose every move changes the document; one entry of the log, however far it goes."""
+    """A drag of which every move changes the document; all its moves are one entry of the log."""
 
     hint = "let go to place     Esc put back"
 
@@ -31,11 +31,11 @@ class _Placing(Gesture):
         context.history.retract(self)
 
     def leave(self, context: Context) -> None:
-        """What was moved stays where it is."""
+        """The elements stay where they are."""
 
 
 class Move(_Placing):
-    """Dragging elements moves their original positions."""
+    """Drags elements, by their original positions."""
 
     def __init__(self, context: Context, hit: Handle, pixel: Vector) -> None:
         selected = context.selected
@@ -44,7 +44,9 @@ class Move(_Placing):
             context.select(hit)
         self._movable = Movable(context.model, chosen)
         self._start = self._movable.positions
-        self._leader = self._movable.index(hit)  # the one that keeps to the grid
+        self._leader = self._movable.index(
+            hit
+        )  # index of the element under the pointer, which keeps to the grid
         self._grip = np.subtract(self._start[self._leader], context.view.camera.to_model(pixel))
 
     def move(self, context: Context, pixel: Vector) -> None:
@@ -58,17 +60,17 @@ class Move(_Placing):
         except (Refusal, FieldError) as error:
             context.notice = str(error)
         else:
-            context.notice = self._told(target)
+            context.notice = self._place_of(target)
 
     def _check_free(self, context: Context, target: Vector) -> None:
-        """Raise Refusal if the particle that keeps to the grid would come to lie on another."""
+        """Raise Refusal if the leading particle would come to lie on another."""
         particles = self._movable.particles
         if self._leader < len(particles):
             leader = particles[self._leader]
             x, y = np.subtract(drawn_positions(context.model)[leader.row], leader.position).tolist()
             check_free(context.model, context.view, (target[0] + x, target[1] + y), besides=particles)
 
-    def _told(self, target: Vector) -> str:
+    def _place_of(self, target: Vector) -> str:
         particles, count = self._movable.particles, len(self._movable)
         leader = particles[self._leader] if self._leader < len(particles) else self._movable.others[0]
         others = f" and {count - 1} more" if count > 1 else ""
@@ -76,7 +78,7 @@ class Move(_Placing):
 
 
 class MovePoint(_Placing):
-    """Dragging one point of an element, such as the end of a wall."""
+    """Drags one point of an element, such as the end of a wall."""
 
     def __init__(self, context: Context, grip: Grip) -> None:
         context.select(grip.element)
@@ -96,7 +98,7 @@ class MovePoint(_Placing):
 
 
 class PullParticle(Gesture):
-    """Dragging a particle while time passes pulls it by a spring; see systems/edit/pull.py."""
+    """Pulls a particle by a spring while time passes; see systems/edit/pull.py."""
 
     hint = "pull with the pointer     let go to release"
 
@@ -135,7 +137,7 @@ class PullParticle(Gesture):
 
 
 class BoxSelect(Gesture):
-    """Selects what lies inside a box; `adding`: besides what was selected before."""
+    """Selects the elements inside a box. adding: the elements selected before stay selected."""
 
     hint = "let go to select what is inside     Esc cancel"
 

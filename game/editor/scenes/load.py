@@ -143,7 +143,7 @@ def _lessons() -> list[dict[str, Any]]:
 
 def _examples() -> list[dict[str, Any]]:
     """Tiles of the bundled models, their pictures to be read later."""
-    names = sorted(models.bundled(), key=lambda name: models.told(name).title)
+    names = sorted(models.bundled(), key=lambda name: models.header_of(name).title)
     names.sort(key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
-    shown = [(name, models.told(name)) for name in names]
+    shown = [(name, models.header_of(name)) for name in names]
     return [tile(EXAMPLES, told.title or name, name, name, name, told.description) for name, told in shown]

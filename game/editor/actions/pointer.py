@@ -1,4 +1,4 @@
-"""Actions with the pointer: drawing, dragging, selecting."""
+"""Actions of the pointer: drawing with tools, dragging, selecting."""
 
 from __future__ import annotations
 
@@ -6,24 +6,23 @@ from components.field import Vector
 from components.particle import Particle
 from components.rod import Rod
 from components.tags import DiagramShown
-from game.editor.actions.editing import take_up
-from game.editor.context import ACTIONS, Action, Context, action
+from game.editor.context import ACTIONS, Context, action
 from game.editor.gestures import TOOLS, BoxSelect, Drawing, DrawSupport, Move, MovePoint, PullParticle
+from systems.edit import Refusal
 from systems.edit.picking import pick, pick_line, pick_particle, pick_point
-from systems.edit.refusal import Refusal
 from systems.edit.selecting import everything
 
 
 @action("drag", while_drawing=True)
 def _drag(context: Context, pixel: Vector) -> None:
-    """With a tool, draw; else drag what is under the pointer, or a box to select where nothing is."""
+    """With a tool, draw; else drag the element under the pointer; where there is none, a box to select in."""
     model, view = context.model, context.view
     particle = pick_particle(model, view, pixel)
     tool = context.gesture.tool if isinstance(context.gesture, Drawing) else view.tool
     if tool == DrawSupport.tool and particle is not None:
         context.gesture = DrawSupport(context, particle)
     elif tool:
-        _use_at(context, tool, pixel)
+        _draw(context, tool, pixel)
     elif particle is not None and context.scene == "simulation":
         context.gesture = PullParticle(context, particle)
     elif context.scene == "pause" and particle is None and (grip := pick_point(model, view, pixel)) is not None:
@@ -52,10 +51,10 @@ def _drop(context: Context, pixel: Vector) -> None:
         gesture.drop(context, pixel)
 
 
-def _use_at(context: Context, tool: str, pixel: Vector) -> None:
-    """Begin at the particle under the pointer; without one, what was begun by a key goes on.
+def _draw(context: Context, tool: str, pixel: Vector) -> None:
+    """Begin a drawing with a tool at a pixel; where none can begin, one that a key began goes on.
 
-    A tool that is done with at once is just used.
+    Tools without a drawing of their own ("place", "support") act at once.
     """
     if tool not in TOOLS:
         ACTIONS[tool](context, pixel)
@@ -67,55 +66,8 @@ def _use_at(context: Context, tool: str, pixel: Vector) -> None:
         raise Refusal("Begin at a particle. Esc puts the tool away, P makes a new particle.")
 
 
-def finish_drawing(context: Context, pixel: Vector) -> None:
-    """End what was begun by a key or a click; where that is refused, it goes on."""
-    assert context.gesture is not None
-    context.gesture.drop(context, pixel)
-    context.gesture = None
-
-
-def click_with_tool(context: Context, pixel: Vector) -> bool:
-    """Let a click begin or end a drawing; False if no tool is in hand."""
-    if isinstance(context.gesture, Drawing):
-        finish_drawing(context, pixel)
-    elif context.view.tool:
-        _use_at(context, context.view.tool, pixel)
-    else:
-        return False
-    return True
-
-
-def use(tool: str) -> Action:
-    """A tool's key: where it can begin it does, pressed again it ends; elsewhere it takes the tool up."""
-
-    def key(context: Context, pixel: Vector) -> None:
-        if isinstance(context.gesture, Drawing) and context.gesture.tool == tool:
-            finish_drawing(context, pixel)
-            return
-        context.leave_gesture()
-        begun = TOOLS[tool].begin(context, pixel)
-        if begun is not None:
-            context.gesture = begun
-        else:
-            take_up(context, tool)
-
-    return key
-
-
-for _tool in TOOLS:
-    action(_tool, while_drawing=True)(use(_tool))
-
-
-def put_away(context: Context) -> bool:
-    """Cancel what is being drawn, else put the tool away; False if there is neither."""
-    gesture, context.gesture = context.gesture, None
-    if gesture is not None:
-        gesture.cancel(context)
-    elif context.view.tool:
-        context.view.tool = ""
-    else:
-        return False
-    return True
+for _kind in TOOLS.values():
+    action(_kind.tool, while_drawing=True)(_kind.use)
 
 
 # --- selecting -------------------------------------------------------------------------------------------
@@ -123,8 +75,12 @@ def put_away(context: Context) -> bool:
 
 @action("select", while_drawing=True)
 def _select(context: Context, pixel: Vector) -> None:
-    """With a tool in hand, a click draws instead."""
-    if not click_with_tool(context, pixel):
+    """With a tool in hand, a click begins or finishes a drawing instead."""
+    if isinstance(context.gesture, Drawing):
+        context.gesture.finish(context, pixel)
+    elif context.view.tool:
+        _draw(context, context.view.tool, pixel)
+    else:
         hit = pick(context.model, context.view, pixel)
         context.select(*([hit] if hit is not None else []))
 
@@ -146,7 +102,7 @@ def _select_all(context: Context, pixel: Vector) -> None:
 
 @action("toggle diagrams", while_drawing=True)
 def _toggle_diagrams(context: Context, pixel: Vector) -> None:
-    """Of the selected particles and rods; of all when nothing is selected."""
+    """The diagrams of the selected particles and rods; of all when nothing is selected."""
     model, view = context.model, context.view
     if not context.has_selected:
         view.all_diagrams = not view.all_diagrams
