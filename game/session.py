@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -23,13 +24,13 @@ from game.documents import models
 from game.documents.open_documents import ModelFile, Source, file_of
 from game.editor.actions import ACTIONS, WHILE_DRAWING
 from game.editor.context import FAULTS, Context, Stage
-from game.editor.frame import Frame, frame_systems
+from game.editor.frame import Frame, Unseen, frame_systems
 from game.editor.scenes import all_scenes, scene_systems
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
 from game.mods import load_all
 from game.scripts.expectation import expect
-from systems.base import Phase, StopReason, System
+from systems.base import EVENT_INTERVAL, Phase, StopReason, System
 from systems.catalogue import SYSTEMS, step_systems
 from systems.edit import Refusal
 from systems.edit.pull import Pull
@@ -168,19 +169,41 @@ class Session(Context):
         self.history.begin_run()
         self.timeline.begin()
         reached = "time reached"
-        if until is not None:
-            reached = "limit reached"
-            self.simulation.run_until_rest(self.time + limit)
-        elif time is not None:
-            self.simulation.run_to(self.time + time)
-        elif steps is not None:
-            self.simulation.advance(steps)
+        with self.without_frames():
+            if until is not None:
+                reached = "limit reached"
+                self.simulation.run_until_rest(self.time + limit)
+            elif time is not None:
+                self.simulation.run_to(self.time + time)
+            elif steps is not None:
+                self.simulation.advance(steps)
         if self.simulation.reason is not StopReason.REST and steps is None:
             self.timeline.clear()  # the last step was a short one, which stepping back does not take again
         if not self.time_passes:
             self.history.end_run()
         ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
         return ended.get(self.simulation.reason, reached)
+
+    @contextmanager
+    def without_frames(self) -> Iterator[None]:
+        """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
+        simulation, frame = self.simulation, Unseen(self, 0.0)
+        if self.performing or not self.schedule.runs_headless(Phase.EVENTS, simulation.scene, self.model):
+            yield
+            return
+
+        def follow() -> int:
+            beyond = self.model.clock.steps % EVENT_INTERVAL
+            if beyond == 0:
+                self.schedule.run(Phase.EVENTS, frame, headless=True)
+            return EVENT_INTERVAL - beyond
+
+        simulation.watchers.append(follow)
+        try:
+            yield
+        finally:
+            simulation.watchers.remove(follow)
+        self.schedule.run(Phase.EVENTS, frame, headless=True)
 
     def compare(self) -> Comparison:
         """The run as it is now beside linear and exact theory: `rows` of every element, and the `worst`.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import re
+from collections.abc import Callable
 from typing import Any, NoReturn
 
 BAD_INPUT = 2
@@ -31,35 +32,26 @@ class Parser(argparse.ArgumentParser):
 
 def positive(text: str) -> float:
     """A finite number above 0."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text} is not a number of seconds above 0")
-    return value
+    return _number(text, float, lambda value: 0.0 < value < math.inf, "a number of seconds above 0")
 
 
 def count(text: str, least: int = 2) -> int:
     """A whole number of at least `least`."""
-    try:
-        value = int(text)
-    except ValueError:
-        value = least - 1
-    if value < least:
-        raise argparse.ArgumentTypeError(f"{text} is not a whole number of at least {least}")
-    return value
+    return int(_number(text, int, lambda value: value >= least, f"a whole number of at least {least}"))
 
 
 def finite(text: str) -> float:
     """A finite number."""
+    return _number(text, float, math.isfinite, "a finite number")
+
+
+def _number(text: str, kind: type[float], fits: Callable[[float], bool], wanted: str) -> float:
     try:
-        value = float(text)
+        if fits(value := kind(text)):
+            return value
     except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text} is not a finite number")
-    return value
+        pass
+    raise argparse.ArgumentTypeError(f"{text} is not {wanted}")
 
 
 def numbers(option: str, text: str) -> tuple[float, ...]:

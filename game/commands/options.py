@@ -32,15 +32,24 @@ def use_cores_as_asked(words: Sequence[str]) -> list[str]:
 def add_model(parser: argparse.ArgumentParser) -> None:
     """Add the argument MODEL and the options that change the model before anything is computed."""
     parser.add_argument("model", help="a model file, or the name of a bundled model")
-    parser.add_argument("--integrator", metavar="NAME", help=f"one of {', '.join(INTEGRATORS)}")
-    parser.add_argument("--time-step", type=positive, metavar="S", help="fixed time step in seconds")
-    parser.add_argument(
+    change = partial(parser.add_argument, dest="set", action="append", default=[])
+    change(
+        "--integrator",
+        type="settings.integrator={}".format,
+        metavar="NAME",
+        help=f"one of {', '.join(INTEGRATORS)}",
+    )
+    change("--time-step", type=_time_step, metavar="S", help="fixed time step in seconds")
+    change(
         "--set",
-        action="append",
-        default=[],
         metavar="PATH=VALUE",
         help="change the model first, such as particles.B.force=120,-160 or rods.*.damping=0",
     )
+
+
+def _time_step(text: str) -> str:
+    """A time step in seconds as an override."""
+    return f"settings.time_step={positive(text)}"
 
 
 def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> Session:
@@ -50,10 +59,6 @@ def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> S
         print(f"pinjoint: {session.notice}", file=sys.stderr)
     for override in options.set:
         apply_override(session.model, override)
-    if options.integrator is not None:
-        session.settings.integrator = options.integrator
-    if options.time_step is not None:
-        session.settings.time_step = options.time_step
     return session
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import io
+import json
 import re
 import shlex
 from contextlib import redirect_stdout
@@ -136,6 +137,16 @@ def test_a_command_prints_what_a_page_shows(
     wanted, lines = shown.splitlines(), capsys.readouterr().out.splitlines()
     starts = range(len(lines) - len(wanted) + 1)
     assert any(all(map(alike, wanted, lines[start:])) for start in starts), "\n".join(lines)
+
+
+def test_the_picture_of_a_frame_is_the_plan(capsys: pytest.CaptureFixture[str]) -> None:
+    (picture,) = (text for text in blocks("text") if "for phase in Phase" in text)
+    assert main(["plan", "isostatic", "--format", "json"]) == 0
+    phases = json.loads(capsys.readouterr().out)["phases"]
+    assert re.findall(r"\b[A-Z]+\b", picture) == [phase.upper() for phase in phases]
+    named = re.findall(r"\b[a-z]+\.[a-z]+\b", picture.partition("INPUT")[2])
+    assert len(named) > len(phases)
+    assert set(named) <= {name for names in phases.values() for name in names}
 
 
 # --- keys ------------------------------------------------------------------------------------------------
