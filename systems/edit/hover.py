@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from components.field import Vector
 from components.kind import outlines
+from components.model import Model
 from components.tags import Hovered
 from components.view import View
 from systems.base import Phase, System
 from systems.edit.picking import pick
-
-if TYPE_CHECKING:
-    from components.model import Model
 
 
 class Hover(System):

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from components.form import Form
+from components.model import Model
 from components.toolbar import Toolbar
 from components.view import View, drawn_positions
 from systems.render.arrows import draw_loads, draw_velocities
@@ -22,9 +21,6 @@ from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Theme
 from systems.render.toolbar import compose_toolbar
 from systems.render.tools import draw_flashes, draw_preview
-
-if TYPE_CHECKING:
-    from components.model import Model
 
 __all__ = ["compose", "drawn_positions"]
 

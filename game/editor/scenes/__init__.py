@@ -5,11 +5,10 @@ from collections.abc import Callable
 from game.editor.context import PHYSICS, Scene, SceneError, Scenes, Stage
 from game.editor.scenes.files import Pictures
 from game.editor.scenes.force_method import ForceMethod, Sets
+from game.editor.scenes.live import Pause, Simulation
 from game.editor.scenes.load import Load
-from game.editor.scenes.pause import Pause
 from game.editor.scenes.properties import Properties
 from game.editor.scenes.save import Save
-from game.editor.scenes.simulation import Simulation
 from systems.base import System
 
 __all__ = ["PHYSICS", "SCENES", "Scene", "SceneError", "Scenes", "Stage", "all_scenes", "scene_systems"]
