@@ -8,7 +8,7 @@ from typing import Any
 from components.tags import DiagramShown
 from components.toolbar import Tool, Toolbar
 from game.editor.context import Context
-from game.editor.gestures import Drawing
+from game.editor.gestures.drawing import Drawing
 from systems.input.bindings import Binding, toolbar
 
 Condition = Callable[["Context"], bool]

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from components.view import Preview, Status
 from game.editor.context import Context
-from game.editor.gestures import TOOL_HINTS
+from game.editor.gestures.drawing import TOOL_HINTS
 from game.editor.readouts import own_readouts
 from systems.base import StopReason
 from systems.edit import Refusal

@@ -54,14 +54,10 @@ def _step(context: Context, steps: int) -> None:
         context.notice = context.simulation.message
 
 
-@action("step")
-def _step_forward(context: Context, pixel: Vector) -> None:
-    _step(context, 1)
-
-
-@action("step back")
-def _step_back(context: Context, pixel: Vector) -> None:
-    _step(context, -1)
+action("step")(lambda context, pixel: _step(context, 1))
+action("step back")(lambda context, pixel: _step(context, -1))
+action("faster", while_drawing=True)(lambda context, pixel: context.clock.faster(PACE_STEP))
+action("slower", while_drawing=True)(lambda context, pixel: context.clock.faster(1.0 / PACE_STEP))
 
 
 @action("restart")
@@ -70,16 +66,6 @@ def _restart(context: Context, pixel: Vector) -> None:
         raise Refusal("This is the beginning: no time has passed. Ctrl+Z takes back edits and settling.")
     context.restart()
     context.notice = "Back at the beginning; all edits are kept."
-
-
-@action("faster", while_drawing=True)
-def _faster(context: Context, pixel: Vector) -> None:
-    context.clock.faster(PACE_STEP)
-
-
-@action("slower", while_drawing=True)
-def _slower(context: Context, pixel: Vector) -> None:
-    context.clock.faster(1.0 / PACE_STEP)
 
 
 @action("natural pace", while_drawing=True)

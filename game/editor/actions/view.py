@@ -13,34 +13,25 @@ ZOOM_STEP = 1.2
 THEMES = ("light", "dark", "colour-blind", "colour-blind-dark")  # in the order in which one follows another
 
 
-@action("fit", while_drawing=True)
-def _fit(context: Context, pixel: Vector) -> None:
-    context.scenes.active.fit(context)
+_SCENE: dict[str, Action] = {
+    "fit": lambda context, pixel: context.scenes.active.fit(context),
+    "zoom in": lambda context, pixel: context.scenes.active.zoom(context, ZOOM_STEP, pixel),
+    "zoom out": lambda context, pixel: context.scenes.active.zoom(context, 1.0 / ZOOM_STEP, pixel),
+    "pan": lambda context, pixel: context.scenes.active.pan(
+        context, pixel
+    ),  # by how far the pointer was dragged
+}
+for _name, _act in _SCENE.items():
+    action(_name, while_drawing=True)(_act)
 
 
-@action("zoom in", while_drawing=True)
-def _zoom_in(context: Context, pixel: Vector) -> None:
-    context.scenes.active.zoom(context, ZOOM_STEP, pixel)
+def _toggle(shown: str) -> Action:
+    """Show something in the view, or hide it."""
+    return lambda context, pixel: setattr(context.view, shown, not getattr(context.view, shown))
 
 
-@action("zoom out", while_drawing=True)
-def _zoom_out(context: Context, pixel: Vector) -> None:
-    context.scenes.active.zoom(context, 1.0 / ZOOM_STEP, pixel)
-
-
-@action("toggle legend", while_drawing=True)
-def _toggle_legend(context: Context, pixel: Vector) -> None:
-    context.view.legend = not context.view.legend
-
-
-@action("toggle theory", while_drawing=True)
-def _toggle_theory(context: Context, pixel: Vector) -> None:
-    context.view.theory = not context.view.theory
-
-
-@action("toggle energy", while_drawing=True)
-def _toggle_energy(context: Context, pixel: Vector) -> None:
-    context.view.energy = not context.view.energy
+for _shown in ("legend", "theory", "energy"):
+    action(f"toggle {_shown}", while_drawing=True)(_toggle(_shown))
 
 
 @action("next shape", while_drawing=True)
@@ -71,12 +62,6 @@ def _toggle_help(context: Context, pixel: Vector) -> None:
 @action("close help", while_drawing=True)
 def _close_help(context: Context, pixel: Vector) -> None:
     context.view.help = 0
-
-
-@action("pan", while_drawing=True)
-def _pan(context: Context, pixel: Vector) -> None:
-    """pixel: how far the pointer was dragged."""
-    context.scenes.active.pan(context, pixel)
 
 
 @action("toggle full screen", while_drawing=True)
