@@ -1,4 +1,4 @@
-"""Step programs of very large models, which hold them in blocks."""
+"""Step programs of very large models, in blocks that cores share; and which kind of program a model gets."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from systems.program.reordered import ArrangedProgram
 from systems.program.writer import VERY_MANY, form_of
 
 _QUICK = ("omp", "tbb")  # threading layers that start the cores in some microseconds
-_SPINS = "10000"  # some 0.1 ms for which a core waits awake: to be woken costs as much as a step of 10 000 rods
-_WORTHWHILE = 100_000  # rods from which another, that takes 50 of them, is worth it
+_SPINS = "10000"  # some 0.1 ms that a core waits awake: waking it costs as much as a step of 10 000 rods
+_WORTHWHILE = 100_000  # rods from which a layer that takes 50 µs to start the cores is worth it
 
 
 def make_program(
@@ -53,7 +53,7 @@ class BlockProgram(ArrangedProgram):
         super().bind()
 
     def _arrange(self) -> Layout:
-        """The layout of the model, found anew where that changed which it follows from."""
+        """The layout of the model, found anew if positions or rods changed."""
         model = self.model
         versions = model.particles.version("position"), model.rods.version("between")
         if versions != self._arranged:
@@ -71,14 +71,14 @@ class BlockProgram(ArrangedProgram):
         return None if path.startswith("block.") else super()._column(path)
 
     def _loads(self, prefix: str, arranged: Mapping[str, Any]) -> dict[str, Any]:
-        """The same, and where those of each block begin."""
+        """The same, and the first load of each block."""
         loads = super()._loads(prefix, arranged)
         first = np.searchsorted(loads[f"{prefix}_on"], self.layout.first_particle)
         return loads | {f"block_{prefix}": first}
 
     def _cores(self) -> int:
-        """How many cores are worth it; results do not depend on it."""
-        os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # else they wait at full speed for milliseconds
+        """How many cores are worth using; results do not depend on it."""
+        os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # else idle threads spin for milliseconds
         os.environ.setdefault("GOMP_SPINCOUNT", _SPINS)
         import numba
 

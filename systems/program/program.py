@@ -199,7 +199,9 @@ class Program:
             self.model.column(path)  # brings it up to date
         storage = {name: self._storage(path) for name, path in (derived | _GIVEN).items()}
         storage |= {f"rods_{name}": storage[name] for name in ("axial_force", "length", "strain")}
-        apart = {name: np.zeros_like(self._arrays[name]) for name in ("force", "resisting", "direction", "power")}
+        apart = {
+            name: np.zeros_like(self._arrays[name]) for name in ("force", "resisting", "direction", "power")
+        }
         self._unbalanced = apart["force"]
         self._observed = self._after(
             "dt",

@@ -20,9 +20,9 @@ _STATE = ("particles.displacement", "particles.velocity")
 
 
 class ArrangedProgram(Program):
-    """A step program that holds rows in an order of its own, and brings its model's up to date after every call.
+    """A step program with copies of its model's rows in an order of its own; every call brings the model up to date.
 
-    moving: which particles it moves, shape (n,), with their rods and what these are held by; None: all.
+    moving: which particles it moves, shape (n,); it holds them, their rods and the other ends of these. None: all.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class ArrangedProgram(Program):
         self.bind()
 
     def bind(self) -> None:
-        """Take hold of the model's columns: arrange them anew."""
+        """Take hold of the model's columns: copy them in order."""
         whole = self._arrange()
         self.layout = whole if self.moving is None else whole.part(self.moving)
         self._places = {"particles": self.layout.particles, "rods": self.layout.rods}
@@ -86,7 +86,7 @@ class ArrangedProgram(Program):
         return self._held[path][-1]
 
     def _of_systems(self, columns: Mapping[str, Any]) -> dict[str, Any]:
-        """The arrays of the systems, arranged."""
+        """The arrays of the systems, in order."""
         arranged: dict[str, Any] = {}
         self._of_kernels: list[tuple[Column, Numbers, Column]] = []
         for system in self.systems:
@@ -102,7 +102,7 @@ class ArrangedProgram(Program):
         return arranged
 
     def _loads(self, prefix: str, arranged: Mapping[str, Any]) -> dict[str, Any]:
-        """The arrays of a law of loads on what is held, in the order of the rows that they act on."""
+        """The arrays of a law of loads on particles that it holds, in the order of these."""
         on = self.layout.row[arranged[f"{prefix}_on"]]
         order = np.argsort(on, kind="stable")[np.count_nonzero(on < 0) :]
         return {
@@ -117,16 +117,16 @@ class ArrangedProgram(Program):
         everywhere[self.layout.particles] = super().unbalanced
         return everywhere
 
-    # --- the state, as it is held and in the model's columns -----------------------------------------
+    # --- the copies and the model's columns -----------------------------------------
 
     def _load(self) -> None:
-        """Bring what is held up to date, if anything else changed the state, and systems' own arrays."""
+        """Bring the copies up to date: of systems' arrays, and of the state if anything else changed it."""
         changed = self._held_revision != self.model.newest(Role.STATE)
         for own, rows, held in (*self._of_kernels, *(self._of_state if changed else ())):
             np.take(own, rows, axis=0, out=held)
 
     def _store(self) -> None:
-        """Bring the columns of the state up to date with what is held."""
+        """Bring the model's columns of the state up to date with the copies."""
         for own, rows, held in self._of_state:
             own[rows] = held
         self._held_revision = self.model.newest(Role.STATE)
