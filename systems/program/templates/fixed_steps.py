@@ -104,7 +104,7 @@ def powers():
         power[k] = gained[k]
 
 
-def push(dt, velocity, force, resisting, predicted, *columns):
+def push(dt, velocity, force, resisting, predicted, particles_mobility):
     """predicted ← the velocities to which the present forces lead in a step."""
     for i in range(velocity.shape[0]):
         for d in range(2):
@@ -172,7 +172,7 @@ def advance(
             measure(displacement, velocity, force, resisting, measures, *columns)
             ahead = 0.0
             if LOADS:
-                push(dt, velocity, force, resisting, predicted, *columns)
+                push(dt, velocity, force, resisting, predicted, particles_mobility)
                 ahead = 1000.0 * dt * abs(load_power(time, predicted, *columns))
             reason = judge(measures, account, dt, SHADOW, ahead, time >= loads_end)
             if reason != StopReason.DONE:
