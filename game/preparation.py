@@ -18,7 +18,7 @@ from systems.base import Phase, StepSystem, System
 from systems.collision.driven.stepper import DRIVEN
 from systems.collision.free.compiled import EVENTS, PILES, WINDOWS
 from systems.collision.free.flight import may_pile
-from systems.collision.system import Collision, FreeFlight, Support, contacts_of
+from systems.collision.system import Support, contacts_of
 from systems.edit.pull import Pull
 from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import CompiledUnit, is_blank, load_compiler
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from systems.render.raster import Raster
     from systems.run.simulation import Simulation
 
-FLIGHT = FreeFlight.name.rpartition(".")[2]
 
 Units = tuple[CompiledUnit, ...]  # that one process compiles
 FREE: tuple[Units, ...] = (EVENTS,), (WINDOWS,)  # for free particles
@@ -101,7 +100,7 @@ class Preparation(System):
 
     def _load_pulled(self, simulation: Simulation) -> None:
         """While nothing happens: what takes the steps while a hand pulls, for loading it takes two frames."""
-        if self._seen == self._looked or simulation.integrator == FLIGHT:
+        if self._seen == self._looked or simulation.driver.exact:
             return
         plan = simulation.plan
         pulled = (*_job(simulation, plan), Pull.name)
@@ -122,7 +121,7 @@ class Preparation(System):
 
     def waits_for(self, simulation: Simulation) -> float | None:
         """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
-        if simulation.integrator == FLIGHT:  # it may be ready, but not for piles
+        if simulation.driver.exact:  # it may be ready, but not for piles
             waits = [self._waits_for_units(units) for units in _units(simulation)]
             return max((waited for waited in waits if waited is not None), default=None)
         if simulation.ready:
@@ -177,7 +176,7 @@ class Preparation(System):
 def _may_meet(simulation: Simulation) -> bool:
     """True if particles that do not fly free may meet."""
     plan = simulation.plan
-    return simulation.integrator != FLIGHT and any(isinstance(system, Collision) for system in plan)
+    return not simulation.driver.exact and any(system.impulsive for system in plan)
 
 
 def _may_rest(model: Model) -> bool:
@@ -209,7 +208,7 @@ def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
 
 def _is_compiled(simulation: Simulation) -> bool:
     """True if its program need only be loaded."""
-    if simulation.integrator == FLIGHT:
+    if simulation.driver.exact:
         return all(_are_compiled(units) for units in _units(simulation))
     return _has_program(simulation, simulation.plan)
 

@@ -105,11 +105,17 @@ class StepSystem(System):
     kernel: "module:function" of a numba-compiled function, or the function itself. Its parameters are
         bound by name: `<table>_<column>`, `time`, `dt`, an entry of `arrays`, or one of the quantities
         that the role provides. "": what it does is not part of the step program.
+    impulsive: it acts at instants, by impacts, at which steps have to end.
     """
 
     phase: ClassVar[Phase] = Phase.STEP
     scenes: ClassVar[tuple[str, ...] | None] = ("simulation", "force method")
     kernel: ClassVar[str | Callable[..., Any]] = ""
+    impulsive: ClassVar[bool] = False
+
+    def leaves_flight_exact(self, model: Model) -> bool:
+        """True if particles fly on exact paths between impacts all the same, for which no integrator is needed."""
+        return False
 
     def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
         """Further read-only arrays for the kernel, renewed whenever the document changes."""
@@ -166,10 +172,10 @@ class Integrator(StepSystem):
         (1/s) of a model, not both 0; infinite if unconditionally stable, 0 if stable at none.
     order: of convergence. entry: the loop around the kernel. parts: templates that the kernel calls,
         "module:function" or "module:function=name in the program". constants: numbers and arrays by name.
-    side_by_side: module with a loop for many variants at a time (see physics/side_by_side.py); "": there is none.
     controlled: it owns time and step size and locates events (see templates/runge_kutta.py); else its steps are all
         alike. Either ends a step, or a piece of one, where a load changes abruptly.
     estimates_error: it chooses its steps so that settings.tolerance is met, unless the step is fixed.
+    exact: its results do not depend on the steps; it has no kernel.
     particle_rows, rod_rows: arrays of shape (particles, 2) and (rods,) that it needs.
     check_interval: steps between checks for rest and divergence; larger: notices later.
     guard: which energy it conserves, for the check for divergence; `shadow` in systems/physics/kernels.py.
@@ -183,9 +189,9 @@ class Integrator(StepSystem):
     ends: ClassVar[str] = ""
     parts: ClassVar[tuple[str, ...]] = ()
     constants: ClassVar[Mapping[str, Any]] = {}
-    side_by_side: ClassVar[str] = ""
     controlled: ClassVar[bool] = False
     estimates_error: ClassVar[bool] = False
+    exact: ClassVar[bool] = False
     particle_rows: ClassVar[int] = 0
     rod_rows: ClassVar[int] = 0
     check_interval: ClassVar[int] = 128

@@ -28,9 +28,13 @@ class Collision(StepSystem):
     unneeded = "no two particles, and no particle and obstacle, can meet; or settings.collisions is off"
     reads = ("particles.radius", "particles.mobility", "settings.restitution")
     writes = ("particles.velocity", "clock.collisions", "clock.dissipated_impact")
+    impulsive = True
 
     def needs(self, model: Model) -> bool:
         return model.settings.collisions and can_touch(model)
+
+    def leaves_flight_exact(self, model: Model) -> bool:
+        return True
 
 
 def can_touch(model: Model) -> bool:
@@ -113,6 +117,7 @@ class FreeFlight(Integrator):
 
     name = "collision.free_flight"
     controlled = True
+    exact = True
 
     @staticmethod
     def stable_step(frequency: float, decay: float) -> float:

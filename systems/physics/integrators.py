@@ -32,7 +32,6 @@ class VelocityVerlet(Integrator):
 
     name = "physics.velocity_verlet"
     parts = _PLAIN
-    side_by_side = f"{_FIXED_STEPS}_lanes"
     begins = f"{_FIXED_STEPS}:verlet_begins"
     ends = f"{_FIXED_STEPS}:verlet_ends"
     order: ClassVar[int] = 2
@@ -53,7 +52,6 @@ class SemiImplicitEuler(Integrator):
     name = "physics.semi_implicit_euler"
     guard = 2.0
     parts = _PLAIN
-    side_by_side = f"{_FIXED_STEPS}_lanes"
     begins = f"{_FIXED_STEPS}:euler_begins"
     ends = f"{_FIXED_STEPS}:euler_ends"
     order: ClassVar[int] = 1
@@ -72,7 +70,6 @@ class ThesisTaylor(Integrator):
 
     name = "physics.taylor2"
     parts = _PLAIN
-    side_by_side = f"{_FIXED_STEPS}_lanes"
     begins = f"{_FIXED_STEPS}:taylor2_begins"
     ends = f"{_FIXED_STEPS}:taylor2_ends"
     order: ClassVar[int] = 1
@@ -126,7 +123,6 @@ class RungeKutta4(Integrator):
         f"{_RUNGE_KUTTA}:explicit_stages=stages",
         f"{_RUNGE_KUTTA}:attempt",
     )
-    side_by_side = f"{_RUNGE_KUTTA}_lanes"
     order: ClassVar[int] = 4
     controlled = True
     guard = -1.0

@@ -18,7 +18,7 @@ _BEYOND = np.errstate(over="ignore", invalid="ignore")  # a number that is not f
 
 
 @dataclass(frozen=True)
-class Stillness:
+class RestMeasure:
     """How near to rest the particles and rods of a model are, row by row.
 
     residual: unbalanced force on particles where they are free (kN). kinetic: energy of particles (J). load, pull:
@@ -34,7 +34,7 @@ class Stillness:
 
     @classmethod
     @_BEYOND
-    def of(cls, model: Model, unbalanced: Array) -> Stillness:
+    def of(cls, model: Model, unbalanced: Array) -> RestMeasure:
         """That of the state last observed. unbalanced: force on each particle without dampers and drag (kN)."""
         particles, rods = model.particles, model.rods
         pull, flexibility = np.abs(rods.axial_force), rods.rest_length / rods.stiffness

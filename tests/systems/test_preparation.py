@@ -320,7 +320,7 @@ CHECK = f"""
 from game import Session
 session = Session.open({ALONE})
 session.simulation.program
-module = session.simulation.program.module
+module = session.simulation.step_program.module
 for entry in (module.advance, module.observe):
     print(sum(entry.stats.cache_hits.values()), sum(entry.stats.cache_misses.values()))
 """

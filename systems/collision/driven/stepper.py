@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 
@@ -29,6 +30,7 @@ from systems.collision.impacts import Impacts
 from systems.collision.system import contacts_of
 from systems.program.compiler import CompiledUnit
 from systems.program.program import Program
+from systems.program.stepper import Stepper
 
 FEW = 4  # steps; a shorter time is not worth letting pass unwatched
 SOME = 16  # steps that pass unwatched at once where others than ours decide what pushes particles
@@ -38,29 +40,31 @@ MOST_TRIES = 60  # of the length of a step that ends at an impact
 Take = Callable[[float | None], StopReason]  # takes a step: a whole one, or up to a time (s)
 
 
+class Steps(Stepper, Protocol):
+    """The steps of a program, which end at no impact."""
+
+    @property
+    def program(self) -> Program:
+        """What takes the next steps."""
+
+    def rebound(self) -> Program:
+        """What takes the next steps, now that an impact changed the plan."""
+
+
 class Encounters:
-    """Takes the steps of a program of one model, and ends them where particles meet.
+    """The stepper that takes the steps of a program of one model, and ends them where particles meet."""
 
-    land: takes a short step to a time (s). rebind: the plan changed; returns the program for it.
-    """
-
-    def __init__(
-        self,
-        model: Model,
-        impacts: Impacts,
-        land: Callable[[float], StopReason],
-        rebind: Callable[[], Program],
-    ) -> None:
+    def __init__(self, model: Model, impacts: Impacts, steps: Steps) -> None:
         self.model = model
         self._near = Vicinity(model)
         self._contacts = Contacts(model, self._near)
         self._strikes = Strikes(model, impacts, self._near)
         self._crowds = Crowds(model, self._near, self._strikes)
-        self._land = land
-        self._rebind = rebind
+        self._steps = steps
 
-    def advance(self, program: Program, steps: int, until: float) -> tuple[int, StopReason]:
-        """Take up to `steps` steps that end by `until` (s); returns how many, and why it stopped."""
+    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
+        """Take up to `steps` steps that end by `until` (s), as every stepper does; none is cut at `landing`."""
+        program = self._steps.program
         self._near.look_up()
         clock = self.model.clock
         first = clock.steps
@@ -72,8 +76,9 @@ class Encounters:
                 return clock.steps - first, reason
         return clock.steps - first, StopReason.DONE
 
-    def land(self, program: Program, target: float) -> StopReason:
+    def land(self, target: float) -> StopReason:
         """Take the last, short step to a time (s), in parts if there are impacts, or if steps are shorter."""
+        program = self._steps.program
         self._near.look_up()
         self._near.clear_time(0.0)
         clock, reason = self.model.clock, StopReason.DONE
@@ -112,16 +117,16 @@ class Encounters:
         def once(end: float | None) -> StopReason:
             if end is None:
                 return program.advance(1, until)[1]
-            return self._land(end) if end <= until else StopReason.DONE
+            return self._steps.land(end) if end <= until else StopReason.DONE
 
         crowd = self._crowds.found(until, landing)
         if crowd is not None:
             if held is None:
                 self.model.writable("clock.paths")[0] = resting(crowd.pairs, np.zeros(len(crowd.pairs)))
-                program = self._rebind()
+                program = self._steps.rebound()
             reason = self._crowds.step(crowd, program, before, once, until, landing)
             if contacts_of(self.model) is None:
-                program = self._rebind()
+                program = self._steps.rebound()
             return clock.steps - steps, reason, program
 
         def take(target: float | None) -> StopReason:
@@ -146,7 +151,7 @@ class Encounters:
             reason = take(tried)
             lasts = self._strikes.happen(before)
         if lasts or (held is not None and contacts_of(self.model) is None):
-            program = self._rebind()
+            program = self._steps.rebound()
         return max(clock.steps - steps, 1), reason, program
 
     def _end_at_meeting(self, before: Snapshot, held: Paths | None, take: Take, time: float) -> StopReason:
@@ -180,20 +185,16 @@ def _warm_up() -> None:
     model = Model()
     model.create(Particle, 2, position=[(0.0, 0.0), (0.09, 0.0)], velocity=[(1.0, 0.0), (0.0, 0.0)])
     part_overlaps(model)
-    encounters = Encounters(model, Impacts(model), lambda target: StopReason.DONE, _nothing_to_bind)
+    near = Vicinity(model)
+    strikes = Strikes(model, Impacts(model), near)
     before = Snapshot.take(model)
-    near = encounters._near
     near.look_up()
     near.clear_time()
     model.writable("clock.time")[0] = 1e-3
     near.meeting(before, None)
     gap, normal = near.gaps(near.pairs, near.displacement)
     complementary(near.compliance(near.pairs, normal, normal), gap, np.zeros(len(gap)))
-    encounters._strikes.happen(before)
-
-
-def _nothing_to_bind() -> Program:
-    raise NotImplementedError("two discs that only show what they would do have no program")
+    strikes.happen(before)
 
 
 DRIVEN = CompiledUnit("driven_collisions", contents, _warm_up)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 import time
 from typing import TYPE_CHECKING, Protocol
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Role
+from components.load import loads_end
 from components.model import Model
 from components.obstacles import obstacles
 from components.paths import Paths
@@ -86,7 +88,7 @@ class PullingHand(Protocol):
 class Flight:
     """The particles of one model on their exact paths from impact to impact.
 
-    measures: as of a step program. compile_seconds: what compiling it took, or loading it from the cache.
+    measures, compile_seconds, follows_state: as of Dynamics. unbalanced: force on each particle as last observed (kN).
     What the paths are is part of the model's state: clock.paths. pull: of a hand; its force is constant during a step,
     so that the paths are exact in it.
     """
@@ -95,6 +97,8 @@ class Flight:
         started = time.perf_counter()
         self.model = model
         self.measures = np.zeros(len(Measure))
+        self.unbalanced = np.zeros((model.particles.count, 2))
+        self.follows_state = False  # what is pressed together stays so by contacts
         self._impacts = impacts
         self._pull = pull
         for unit in (EVENTS, WINDOWS):
@@ -103,6 +107,16 @@ class Flight:
             PILES.load()  # an edit that needs it would wait for that
         self.bind()
         self.compile_seconds = time.perf_counter() - started
+
+    @property
+    def changes_end(self) -> float:
+        """The time (s) at which the last load history ends."""
+        return loads_end(self.model)
+
+    @property
+    def lasting(self) -> str:
+        """Nothing changes with time for ever."""
+        return ""
 
     @property
     def resists_motion(self) -> bool:
@@ -159,11 +173,21 @@ class Flight:
     # --- running -----------------------------------------------------------------------------------
 
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
-        """Let the time of up to `steps` steps pass; returns how many, and why it stopped.
+        """Let the time of up to `steps` steps pass, none of which ends after `until` (s), as every stepper does.
 
-        No step ends after `until` (s); one that would pass `landing` (s) is cut to end there. Steps are only
-        where one looks: what happens does not depend on them, unless a hand pulls.
+        None is cut at `landing`: steps are only where one looks. What happens does not depend on them, unless a
+        hand pulls.
         """
+        return self._take(steps, until, math.inf)
+
+    def land(self, target: float) -> StopReason:
+        """Let time pass to exactly `target` (s)."""
+        clock, reason = self.model.clock, StopReason.DONE
+        while clock.time < target and reason is StopReason.DONE:
+            _, reason = self._take(sys.maxsize, target, target)
+        return reason
+
+    def _take(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         if self._pull is None:
             return self._pass(steps, until, landing)
         taken, reason = 0, StopReason.DONE
@@ -255,6 +279,7 @@ class Flight:
         self.model.writable("particles.applied_force")[...] = force
         self.model.writable("particles.reaction")[...] = np.where(fixed, 0.0 - force, 0.0)
         free: NDArray[np.float64] = np.where(fixed, 0.0, force)
+        self.unbalanced = force
         measures = self.measures
         measures[Measure.KINETIC] = 0.5 * (particles.mass[:, None] * velocity * velocity).sum()
         measures[Measure.POWER_NORM] = 1000.0 * (free * particles.mobility * free).sum()
