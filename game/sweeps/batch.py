@@ -18,10 +18,10 @@ from components.load import load_breaks, loads_end
 from game.sweeps.batch_program import BatchProgram
 from game.sweeps.batched_model import BatchedModel
 from systems.base import StopReason
+from systems.entries import ACCOUNT, CONTROL, Measure
 from systems.islands import HELD, islands
 from systems.physics.rest import RestMeasure
 from systems.physics.spectrum import spectra
-from systems.program.program import ACCOUNT, CONTROL
 from systems.program.writer import REVIEW_INTERVAL
 from systems.run.energy import ENTRIES, Energy, energy_of, opened
 from systems.run.policy import (
@@ -49,19 +49,19 @@ class Batch:
     def __init__(self, model: BatchedModel, program: BatchProgram) -> None:
         self.model = model
         self.program = program
-        self.driver = program.driver
+        self.integrator = program.integrator
         variants = model.variants
         self.resting, self.alone = np.zeros(variants, dtype=bool), np.zeros(variants, dtype=bool)
         self.rested = np.zeros(variants)
-        self.measures = np.zeros((variants, 16))
+        self.measures = np.zeros((variants, len(Measure)))
         self.unbalanced = np.zeros_like(model["particles.displacement"])
         self._may_sleep = bool(model.single("settings.sleeping").any()) and program.program.follows_state
         self._may_sleep &= islands(model.part(np.zeros(1, dtype=np.intp)).as_model()).max(initial=HELD) > 1
         fixed, rods = model.single("settings.time_step"), model.rods.count // variants
         self._policies = [
-            StepPolicy(self.driver, None if math.isnan(size) else size, rods) for size in fixed.tolist()
+            StepPolicy(self.integrator, None if math.isnan(size) else size, rods) for size in fixed.tolist()
         ]
-        self._controls_error = np.isnan(fixed) & self.driver.estimates_error
+        self._controls_error = np.isnan(fixed) & self.integrator.estimates_error
         self._columns = program.columns(model)
         self._breaks = np.array([*load_breaks(model.as_model()), math.inf])
         self._loads_end = loads_end(model.as_model())
@@ -113,7 +113,9 @@ class Batch:
         """What the state last observed allows each variant."""
         model, drag = self.model.as_model(), self.model.single("environment.drag")
         frequency, decay = spectra(model, self.model.rods.axial_force, drag)
-        return [Limits.of(self.driver, f, d) for f, d in zip(frequency.tolist(), decay.tolist(), strict=True)]
+        return [
+            Limits.of(self.integrator, f, d) for f, d in zip(frequency.tolist(), decay.tolist(), strict=True)
+        ]
 
     def _begin_steps(self, variants: Rows, sizes: Column) -> None:
         """From now on steps have these sizes; the guard against divergence compares with this moment."""
@@ -175,7 +177,7 @@ class Batch:
         time, size, total = (self.clock(name).copy() for name in ("time", "step_size", "steps"))
         first = total - self.clock("origin_steps")
         wanted = np.full(self.model.variants, steps, dtype=np.int64)
-        if until < math.inf and not self.driver.controlled:  # of the others, steps may have no size
+        if until < math.inf and not self.integrator.controlled:  # of the others, steps may have no size
             left = ((until - time[variants]) / size[variants] * (1.0 + 1e-12)).astype(np.int64)
             wanted[variants] = np.clip(left, 0, wanted[variants])
         account, control = self._clocks(ACCOUNT), self._clocks(CONTROL)
@@ -198,7 +200,7 @@ class Batch:
             account=account,
         )
         moved = np.zeros(self.model.variants, dtype=bool)
-        if self.driver.controlled:
+        if self.integrator.controlled:
             moved[variants] = control[variants, 0] > time[variants]
             landed = moved & (control[:, 0] == landing)
             self._put_clocks(CONTROL, control, np.flatnonzero(moved))
@@ -265,7 +267,7 @@ class Batch:
         variants = np.flatnonzero((self.clock("time") < target) & ~self.alone)
         if not len(variants):
             return
-        if self.driver.controlled:
+        if self.integrator.controlled:
             while len(variants):
                 _, reason = self._advance(variants, REVIEW_INTERVAL, target, target)
                 going_on = np.isin(reason[variants], GOING_ON)

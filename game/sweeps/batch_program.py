@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from components.field import Column
 from game.sweeps.batched_model import BatchedModel
-from systems.base import ACCOUNTS
-from systems.physics.integrators import SEARCH
 from systems.program.compiler import compile_module, note_compiled
 from systems.program.program import Program
 
@@ -40,35 +38,17 @@ class BatchProgram:
     def __init__(self, program: Program, threads: int, *, varied_arrays: bool = False) -> None:
         self.program = program
         self._varied = varied_arrays
-        self.driver = program.driver
+        self.integrator = program.integrator
         self.threads = threads
         self._columns = program.columns
         entries = {name: getattr(program.module, name, None) for name in ("advance", "observe", "commit")}
         self._entries = {name: entry for name, entry in entries.items() if entry is not None}
         self.has_history = "commit" in self._entries
-        self._scratch_shapes = self._shapes()
+        self._scratch_shapes = program.scratch
         self._parameters = {
             name: tuple(inspect.signature(entry.py_func).parameters) for name, entry in self._entries.items()
         }
         self._module = compile_module(self._source(), self._entries)
-
-    def _shapes(self) -> dict[str, tuple[int, ...]]:
-        """Of what is written anew for each variant and read by nobody else."""
-        program, driver = self.program, self.driver
-        particles, rods = program.model.particles.count, program.model.rods.count
-        vectors = dict.fromkeys(("force", "resisting", "predicted"), (particles, 2))
-        accounts = dict.fromkeys(("power", "gained", "stage_power"), (len(ACCOUNTS),))
-        return (
-            vectors
-            | accounts
-            | {
-                "direction": (rods, 2),
-                "work": (driver.particle_rows, particles, 2),
-                "rod_work": (driver.rod_rows, rods),
-                "marks": (rods, program.marks),
-                "search": (SEARCH,),
-            }
-        )
 
     def _scratch(self, entry: str) -> dict[str, tuple[int, ...]]:
         """What of this an entry writes; the forces that are observed are kept for each variant."""

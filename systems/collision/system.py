@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from components.obstacles import any_obstacles, obstacles
 from components.paths import Paths
-from systems.base import Driver, Law, StepSystem
+from systems.base import Integrator, Law, StepSystem
 from systems.broad_phase import nearest
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def support_forces(
     return total
 
 
-class FreeFlight(Driver):
+class FreeFlight(Integrator):
     """Exact: particles fly on parabolas from impact to impact, whatever the step."""
 
     name = "collision.free_flight"

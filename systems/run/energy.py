@@ -8,7 +8,9 @@ from typing import Any
 
 from components.field import Column
 from components.model import Model
+from systems.entries import Measure
 
+ENERGIES = (Measure.KINETIC, Measure.ELASTIC, Measure.POTENTIAL)  # what the account takes of the measures
 DISSIPATED = ("dissipated_damping", "dissipated_plastic", "dissipated_impact")
 ENTRIES = ("initial_energy", "work", "potential_reference")  # of the clock; as `opened` returns them
 
@@ -43,14 +45,14 @@ def opened(measures: Any, clock: Clock) -> tuple[Any, Any, Any]:
 
     measures: as of Dynamics, along the first axis.
     """
-    kinetic, _, elastic, potential = measures[:4]
+    kinetic, elastic, potential = (measures[entry] for entry in ENERGIES)
     damping, plastic, impact = map(clock, DISSIPATED)
     return kinetic + elastic + (damping + plastic + impact) - clock("work"), clock("work"), potential
 
 
 def energy_of(measures: Any, clock: Clock, entries: tuple[Any, Any, Any]) -> Energy:
     """The account in the state that was measured, given ENTRIES."""
-    kinetic, _, elastic, potential = measures[:4]
+    kinetic, elastic, potential = (measures[entry] for entry in ENERGIES)
     initial, work, reference = entries
     return Energy(initial, work + potential - reference, kinetic, elastic, *map(clock, DISSIPATED))
 
@@ -92,8 +94,8 @@ class Account:
         if self.before_edit is None:
             return opened(measures, self._clock)
         clock = self._model.clock
-        kinetic, _, elastic, potential = measures[:4]
-        kinetic_before, _, elastic_before, potential_before = self.before_edit[:4].tolist()
+        kinetic, elastic, potential = (measures[entry] for entry in ENERGIES)
+        kinetic_before, elastic_before, potential_before = self.before_edit[list(ENERGIES)].tolist()
         work = potential_before - clock.potential_reference
         work += kinetic + elastic - kinetic_before - elastic_before
         return clock.initial_energy, clock.work + work, potential

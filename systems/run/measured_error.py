@@ -59,7 +59,7 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
             largest, factor = _by_tolerance(program, target), 1.0
         else:
             largest = _by_steps(simulation, program, target, size)
-            order = 1 if yielded and not program.driver.controlled else program.driver.order
+            order = 1 if yielded and not program.integrator.controlled else program.integrator.order
             factor = 2.0**order / (2.0**order - 1.0)
         again = model.particles.displacement.copy()
     largest = max(largest, _size(reached))
@@ -90,7 +90,7 @@ def _by_steps(simulation: Simulation, program: Program, target: float, size: flo
     clock = program.model.clock
     steps = math.ceil(2.0 * (target - clock.time) / size * (1.0 - 1e-9))
     simulation.begin_step_size((target - clock.time) / steps)
-    if program.driver.controlled:
+    if program.integrator.controlled:
         return _pieces(program, target)
     largest, piece = 0.0, -(-steps // PIECES)
     while steps > 0:

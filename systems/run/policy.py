@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from components.field import Column
-from systems.base import Driver, StopReason
+from systems.base import Integrator, StopReason
+from systems.entries import Measure
 from systems.physics.automatic import SMALL
 
 GOING_ON = (StopReason.DONE, StopReason.REVIEW)  # reasons for which nothing ends
@@ -47,7 +48,7 @@ class Limits:
     stable_step: float
 
     @classmethod
-    def of(cls, integrator: Driver, frequency: float, decay: float) -> Limits:
+    def of(cls, integrator: Integrator, frequency: float, decay: float) -> Limits:
         """Those of an integrator; infinite where nothing swings or decays."""
         limited = frequency > 0.0 or decay > 0.0
         return cls(frequency, decay, integrator.stable_step(frequency, decay) if limited else math.inf)
@@ -66,7 +67,7 @@ class StepPolicy:
     shown: gives the longest step (s) that a person can follow.
     """
 
-    integrator: Driver
+    integrator: Integrator
     fixed: float | None
     rods: int
     shown: Callable[[], float] = not_shown
@@ -158,7 +159,7 @@ def residual(measures: Column) -> Column:
 
     measures: as of Dynamics, along the first axis.
     """
-    unbalanced, largest = measures[4:6]
+    unbalanced, largest = measures[Measure.RESIDUAL], measures[Measure.LARGEST_FORCE]
     found: Column = np.divide(unbalanced, largest, out=np.zeros(largest.shape), where=largest > 0.0)
     return found
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 from components.model import Model
 from components.rod import is_warm
-from systems.base import Driver, Phase, StepSystem
-from systems.catalogue import DRIVERS
+from systems.base import Integrator, Phase, StepSystem
 from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
 from systems.collision.system import FreeFlight
 from systems.edit.pull import Pull
 from systems.physics.automatic import choose
+from systems.physics.integrators import INTEGRATORS
 from systems.program.binding import ProgramError
 from systems.program.culprit import blame_mod
 from systems.program.parallel import make_program
@@ -53,7 +53,7 @@ class Programs:
         self.bindings = 0
         self.compile_seconds = 0.0
         self._made: dict[Key, Bound] = {}
-        self._driver: Driver | None = None
+        self._driver: Integrator | None = None
         self._bound: Bound | None = None
 
     @property
@@ -65,7 +65,7 @@ class Programs:
         """All systems that run in the scene with the model, the integrator among them, and why the others do not."""
         found = self._schedule.plan(self.scene, self._model)
         phases, left_out = dict(found.phases), dict(found.left_out)
-        for integrator in (*DRIVERS.values(), FREE_FLIGHT):
+        for integrator in (*INTEGRATORS.values(), FREE_FLIGHT):
             if not self._schedule.is_active(integrator, self.scene):
                 left_out[integrator.name] = self._schedule.inactive(integrator, self.scene)
             elif integrator is self.driver:
@@ -93,7 +93,7 @@ class Programs:
             return (self.plan, self._integrator) != here
 
     @property
-    def driver(self) -> Driver:
+    def driver(self) -> Integrator:
         """Exact flight if every system of the plan leaves it exact, else the integrator."""
         if self._driver is None:
             plan = self.plan
@@ -102,12 +102,12 @@ class Programs:
         return self._driver
 
     @property
-    def _integrator(self) -> Driver:
+    def _integrator(self) -> Integrator:
         """The one that the settings name; one that suits if they name none, or one that does not act now."""
-        named = DRIVERS.get(self._model.settings.integrator)
+        named = INTEGRATORS.get(self._model.settings.integrator)
         off = named is None or (named.mod is not None and named.mod.off)
         if named is None or off or not self._schedule.is_active(named, self.scene):
-            return DRIVERS[choose(self._model)]
+            return INTEGRATORS[choose(self._model)]
         return named
 
     @property

@@ -13,7 +13,7 @@ from components.field import Column, Role
 from components.model import ADDED, Model
 from components.snapshot import Snapshot
 from components.world import Derivation
-from systems.base import Driver, StepSystem, StopReason
+from systems.base import Integrator, StepSystem, StopReason
 from systems.collision.driven.stepper import Encounters
 from systems.collision.free.flight import part_overlaps
 from systems.collision.impacts import Impacts
@@ -111,7 +111,7 @@ class Simulation:
         self._programs.scene = scene
 
     @property
-    def driver(self) -> Driver:
+    def driver(self) -> Integrator:
         """What advances time: an integrator, or exact flight."""
         return self._programs.driver
 

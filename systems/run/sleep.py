@@ -15,6 +15,7 @@ import numpy as np
 from components.field import Role
 from components.load import load_ends
 from components.model import Model
+from systems.entries import ASLEEP
 from systems.islands import HELD, Rows, islands
 from systems.physics.rest import Array, Mask, RestMeasure
 from systems.program.parallel import make_program
@@ -145,10 +146,10 @@ class Sleep:
         moving = ~asleep & (self._of_particle != HELD)
         part = self._parts.get(program)
         if part is None:
-            made = make_program(self.model, program.systems, program.driver, program.form, moving)
+            made = make_program(self.model, program.systems, program.integrator, program.form, moving)
             assert isinstance(made, ArrangedProgram)
             part = self._parts[program] = made
         else:
             part.move(moving)
-        part.measures[8:] = self._observed(program).measures(self.model, *part.left_out)
+        part.measures[ASLEEP] = self._observed(program).measures(self.model, *part.left_out)
         return part

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.model import Model
-from systems.catalogue import DRIVERS
+from systems.physics.integrators import INTEGRATORS
 from systems.physics.pace import natural_pace
 from systems.physics.spectrum import spectrum
 from systems.run.policy import ERROR_CONTROL, Limits, StepPolicy, begin_steps
@@ -111,6 +111,6 @@ class StepSize:
             return "Make the tolerance smaller."
         if driver.estimates_error:
             return "Set the time step to automatic, so that the error is controlled, or make it smaller."
-        if driver is not DRIVERS[DEFAULT_DRIVER]:
+        if driver is not INTEGRATORS[DEFAULT_DRIVER]:
             return f"Make the time step smaller, or choose the integrator {DEFAULT_DRIVER}."
         return "Make the time step smaller."

@@ -97,7 +97,7 @@ class Contacts:
             h = float(self.model.clock.time - before.columns["clock.time"][0])
             if h == 0.0 or reason is StopReason.DIVERGED:
                 return reason, turn == 0  # the fault is not that of forces that were tried
-            if program.driver.controlled:
+            if program.integrator.controlled:
                 until = self.model.clock.time
             gap, last = near.gaps(pairs, near.displacement)
             gap -= least

@@ -101,7 +101,7 @@ class Crowds:
             if clock.time == start or reason is StopReason.DIVERGED:
                 before.restore(self.model)
                 return reason
-            if program.driver.controlled:
+            if program.integrator.controlled:
                 end = clock.time
             if squeeze.holds(forces, moved()):
                 break

@@ -20,7 +20,7 @@ from components.paths import Paths, resting
 from components.snapshot import Snapshot
 from systems.base import StopReason
 from systems.collision.columns import WATCHED
-from systems.collision.driven.compiled import note_encounters
+from systems.collision.driven.compiled import contents
 from systems.collision.driven.contacts import Contacts, complementary
 from systems.collision.driven.crowds import Crowds
 from systems.collision.driven.impact import TOUCH, Strikes
@@ -28,6 +28,7 @@ from systems.collision.driven.neighbours import Vicinity
 from systems.collision.free.flight import part_overlaps
 from systems.collision.impacts import Impacts
 from systems.collision.system import contacts_of
+from systems.program.compiler import CompiledUnit
 from systems.program.program import Program
 from systems.program.stepper import Stepper
 
@@ -179,8 +180,8 @@ class Encounters:
         return reason
 
 
-def load_encounters() -> None:
-    """Have all that is compiled called once: it is compiled then, or loaded from the cache."""
+def _warm_up() -> None:
+    """Call every compiled function once."""
     model = Model()
     model.create(Particle, 2, position=[(0.0, 0.0), (0.09, 0.0)], velocity=[(1.0, 0.0), (0.0, 0.0)])
     part_overlaps(model)
@@ -194,4 +195,6 @@ def load_encounters() -> None:
     gap, normal = near.gaps(near.pairs, near.displacement)
     complementary(near.compliance(near.pairs, normal, normal), gap, np.zeros(len(gap)))
     strikes.happen(before)
-    note_encounters()
+
+
+DRIVEN = CompiledUnit("driven_collisions", contents, _warm_up)

@@ -1,23 +1,21 @@
-"""The compiled parts of the engine of flight: each is a program of its own, so that two are compiled at once.
+"""The compiled units of free flight; each is a module of its own, so that two processes can compile two at once.
 
-`fly` lets events happen, `open_window` foresees them, `take_steps` moves piles; only what is pulled forms these.
+EVENTS lets events happen, WINDOWS foresees them, PILES takes the steps of piles, which only a hand that pulls, or
+gravity, forms.
 """
 
 from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from functools import cache
-from types import ModuleType
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 from systems.collision.columns import RENEW, STEPPING
-from systems.program.compiler import compile_module, is_compiled, note_compiled
+from systems.program.compiler import CompiledUnit
 
 if TYPE_CHECKING:
     from systems.collision.free.discs import Discs
-
-EVENTS, WINDOWS, PILES = "fly", "open_window", "take_steps"
 
 _SOURCE = '''\
 """A part of the engine of collisions. Generated; safe to delete."""
@@ -33,42 +31,38 @@ def {part}({arguments}):
 '''
 
 
-def _program(part: str) -> tuple[str, dict[str, Callable[..., int]]]:
-    """Source of a part, and what it calls."""
+def _contents(name: str) -> tuple[str, dict[str, Callable[..., int]]]:
     from systems.collision.kernels.flight import fly, take_steps
     from systems.collision.kernels.horizon import open_window
 
-    kernel = {EVENTS: fly, WINDOWS: open_window, PILES: take_steps}[part]
+    kernel = {"fly": fly, "open_window": open_window, "take_steps": take_steps}[name]
     arguments = ", ".join(inspect.signature(kernel.py_func).parameters)
-    return _SOURCE.format(part=part, arguments=arguments), {"kernel": kernel}
+    return _SOURCE.format(part=name, arguments=arguments), {"kernel": kernel}
 
 
-@cache
-def _module(part: str) -> ModuleType:
-    return compile_module(*_program(part))
-
-
-def has_parts(*parts: str) -> bool:
-    """True if these parts need not be compiled any more, only loaded."""
-    return all(is_compiled(*_program(part)) for part in parts)
-
-
-@cache
-def load_part(part: str) -> None:
-    """Have a part called once: it is compiled then, or loaded from the cache."""
+def _warm_up(name: str) -> None:
     discs = engine()([[0.0, 0.0]], [[0.0, 0.0]], [1.0], [[1.0, 1.0]])
-    if part == WINDOWS:
+    if name == "open_window":
         discs.open_window(discs.rows, discs.grid, discs.ties, discs.queue, discs.numbers, discs.counts)
     else:
-        discs.counts[RENEW], discs.counts[STEPPING] = 0, part == PILES
-        discs.advance(discs.now - float(part == PILES))  # before the first step of a pile
-    note_compiled(_module(part))
+        steps = name == "take_steps"
+        discs.counts[RENEW], discs.counts[STEPPING] = 0, steps
+        discs.advance(discs.now - float(steps))  # before the first step of a pile
+
+
+def _unit(name: str) -> CompiledUnit:
+    return CompiledUnit(name, partial(_contents, name), partial(_warm_up, name))
+
+
+EVENTS, WINDOWS, PILES = _unit("fly"), _unit("open_window"), _unit("take_steps")
 
 
 @cache
 def engine() -> type[Discs]:
-    """Discs whose parts are compiled once and for all; each by its first call, unless it is loaded before."""
+    """Discs whose kernels are compiled; each by its first call, unless its unit was loaded before."""
     from systems.collision.free.discs import Discs
 
-    kernels: dict[str, Any] = {part: _module(part) for part in (EVENTS, WINDOWS, PILES)}
-    return type("Compiled", (Discs,), {part: staticmethod(getattr(kernels[part], part)) for part in kernels})
+    kernels: dict[str, Any] = {
+        unit.name: staticmethod(getattr(unit.module, unit.name)) for unit in (EVENTS, WINDOWS, PILES)
+    }
+    return type("Compiled", (Discs,), kernels)

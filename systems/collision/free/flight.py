@@ -19,8 +19,9 @@ from components.rod import nodes
 from systems.base import StopReason
 from systems.collision.columns import CROWD_COUNTS, CROWD_NUMBERS, MOVING
 from systems.collision.driven.compiled import kernels
-from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, engine, has_parts, load_part
+from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, engine
 from systems.collision.impacts import Impacts
+from systems.entries import Measure
 
 if TYPE_CHECKING:
     from systems.collision.free.discs import Discs
@@ -95,15 +96,15 @@ class Flight:
     def __init__(self, model: Model, impacts: Impacts, pull: PullingHand | None = None) -> None:
         started = time.perf_counter()
         self.model = model
-        self.measures = np.zeros(8)
+        self.measures = np.zeros(len(Measure))
         self.unbalanced = np.zeros((model.particles.count, 2))
         self.follows_state = False  # what is pressed together stays so by contacts
         self._impacts = impacts
         self._pull = pull
-        for part in (EVENTS, WINDOWS):
-            load_part(part)
-        if has_parts(PILES):
-            load_part(PILES)  # an edit that needs it would wait for that
+        for unit in (EVENTS, WINDOWS):
+            unit.load()
+        if PILES.is_compiled():
+            PILES.load()  # an edit that needs it would wait for that
         self.bind()
         self.compile_seconds = time.perf_counter() - started
 
@@ -126,7 +127,7 @@ class Flight:
     def bind(self) -> None:
         """The document changed: paths are found anew."""
         if may_pile(self.model, self._pull is not None):
-            load_part(PILES)
+            PILES.load()
         self._flying: Discs | None = None
         self._state_revision = -1
 
@@ -279,16 +280,13 @@ class Flight:
         self.model.writable("particles.reaction")[...] = np.where(fixed, 0.0 - force, 0.0)
         free: NDArray[np.float64] = np.where(fixed, 0.0, force)
         self.unbalanced = force
-        self.measures[:] = (
-            0.5 * float((particles.mass[:, None] * velocity * velocity).sum()),
-            1000.0 * float((free * particles.mobility * free).sum()),
-            0.0,
-            1000.0 * float((constant * particles.displacement).sum()),
-            float(np.abs(free).max(initial=0.0)),
-            float(np.abs(constant).max(initial=0.0)),
-            0.0,
-            1000.0 * float((free * velocity).sum()),
-        )
+        measures = self.measures
+        measures[Measure.KINETIC] = 0.5 * (particles.mass[:, None] * velocity * velocity).sum()
+        measures[Measure.POWER_NORM] = 1000.0 * (free * particles.mobility * free).sum()
+        measures[Measure.POTENTIAL] = 1000.0 * (constant * particles.displacement).sum()
+        measures[Measure.RESIDUAL] = np.abs(free).max(initial=0.0)
+        measures[Measure.LARGEST_FORCE] = np.abs(constant).max(initial=0.0)
+        measures[Measure.POWER] = 1000.0 * (free * velocity).sum()
 
     def conserved_energy(self) -> float:
         """Energy is exact to round-off: nothing guards it."""
