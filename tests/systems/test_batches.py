@@ -10,10 +10,10 @@ import pytest
 
 from game.commands.command_line import main
 from game.commands.reports.report import Analysis
-from game.sweeps.batched_model import BatchedModel
-from game.sweeps.execution import Worker
 from game.sweeps import sweep
+from game.sweeps.batched_model import BatchedModel
 from game.sweeps.batches import Batches
+from game.sweeps.execution import Worker
 from game.sweeps.plan import Plan, Record, plan_of
 from game.sweeps.variant_runner import VariantRunner
 from systems.physics.automatic import choose, stiffnesses, suited_to
@@ -187,7 +187,8 @@ def test_a_fault_in_computing_together_is_counted_and_told(
     arguments = ["--vary", "rods.CA.stiffness=1e5,2e5", "--measure", "residual", "--at", "1e-4"]
     main(["sweep", "isostatic", *arguments, "--workers", "1", "--output", output])
     told = capsys.readouterr().err
-    assert "2 variants were computed one by one" in told and "RuntimeError: shapes differ" in told
+    assert "2 variants were computed one by one" in told
+    assert "RuntimeError: shapes differ" in told
 
 
 def beside(**chosen: Any) -> dict[str, Any]:

@@ -13,10 +13,10 @@ from game import Session
 from game.documents import models
 from systems.base import StopReason
 from systems.edit.pull import Hand
+from systems.entries import ACCOUNT
 from systems.islands import islands
 from systems.physics.kernels import judge
 from systems.physics.rest import RestMeasure
-from systems.program.program import ACCOUNT
 from systems.run import policy
 from tests.reference import bits
 from tests.reference.elements import Model
@@ -227,7 +227,8 @@ def test_an_island_is_at_rest_by_the_rule_by_which_a_run_ends() -> None:
         measure = RestMeasure.of(state, program.unbalanced)
         scales = state.clock.force_scale, state.clock.energy_scale
         assert measure.at_rest(of_particle, of_rod, *scales)[1:].tolist() == [judged[-1]]
-    assert judged[-1] and not judged[0]
+    assert judged[-1]
+    assert not judged[0]
 
 
 def test_switched_off_nobody_sleeps_any_more() -> None:
