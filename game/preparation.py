@@ -100,7 +100,7 @@ class Preparation(System):
 
     def _load_pulled(self, simulation: Simulation) -> None:
         """While nothing happens: what takes the steps while a hand pulls, for loading it takes two frames."""
-        if self._seen == self._looked or simulation.driver.exact:
+        if self._seen == self._looked or simulation.integrator.exact:
             return
         plan = simulation.plan
         pulled = (*_job(simulation, plan), Pull.name)
@@ -121,7 +121,7 @@ class Preparation(System):
 
     def waits_for(self, simulation: Simulation) -> float | None:
         """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
-        if simulation.driver.exact:  # it may be ready, but not for piles
+        if simulation.integrator.exact:  # it may be ready, but not for piles
             waits = [self._waits_for_units(units) for units in _units(simulation)]
             return max((waited for waited in waits if waited is not None), default=None)
         if simulation.ready:
@@ -176,7 +176,7 @@ class Preparation(System):
 def _may_meet(simulation: Simulation) -> bool:
     """True if particles that do not fly free may meet."""
     plan = simulation.plan
-    return not simulation.driver.exact and any(system.impulsive for system in plan)
+    return not simulation.integrator.exact and any(system.impulsive for system in plan)
 
 
 def _may_rest(model: Model) -> bool:
@@ -201,20 +201,20 @@ def _units(simulation: Simulation) -> tuple[Units, ...]:
 
 
 def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
-    form = form_of(simulation.model, simulation.driver)
+    form = form_of(simulation.model, simulation.integrator)
     warmth = (WARM,) if is_warm(simulation.model) else ()
-    return simulation.integrator, form, *warmth, *(system.name for system in plan)
+    return simulation.integrator.key, form, *warmth, *(system.name for system in plan)
 
 
 def _is_compiled(simulation: Simulation) -> bool:
     """True if its program need only be loaded."""
-    if simulation.driver.exact:
+    if simulation.integrator.exact:
         return all(_are_compiled(units) for units in _units(simulation))
     return _has_program(simulation, simulation.plan)
 
 
 def _has_program(simulation: Simulation, plan: Sequence[StepSystem]) -> bool:
-    return has_program(simulation.model, plan, simulation.driver)
+    return has_program(simulation.model, plan, simulation.integrator)
 
 
 def _load_libraries() -> None:

@@ -340,7 +340,7 @@ class Session:
             self.model.give("clock.time", np.array([time]))
             self.model.give("clock.origin", np.array([time]))
             self.model.give("clock.origin_steps", np.array([self.model.clock.steps]))
-            if len(found.final.contacts) and not self.simulation.driver.exact:
+            if len(found.final.contacts) and not self.simulation.integrator.exact:
                 self.model.clock.paths = resting(found.final.contacts, 1000.0 * found.final.contact_force)
         self.notice = found.account
         yielded = np.flatnonzero(found.final.plastic_strain != strain)

@@ -194,9 +194,8 @@ INTEGRATORS: dict[str, Integrator] = {}  # by the name that models use; componen
 
 def register_integrator(integrator: Integrator) -> None:
     """Make an integrator known to models, the command line and the properties."""
-    key = integrator.name.rpartition(".")[2]
-    INTEGRATORS[key] = integrator
-    settings.INTEGRATORS[key] = (integrator.__doc__ or "").strip().partition("\n")[0]
+    INTEGRATORS[integrator.key] = integrator
+    settings.INTEGRATORS[integrator.key] = (integrator.__doc__ or "").strip().partition("\n")[0]
 
 
 def remove_integrator(key: str) -> None:

@@ -111,14 +111,9 @@ class Simulation:
         self._programs.scene = scene
 
     @property
-    def driver(self) -> Integrator:
+    def integrator(self) -> Integrator:
         """What advances time: an integrator, or exact flight."""
-        return self._programs.driver
-
-    @property
-    def integrator(self) -> str:
-        """Its name."""
-        return self.driver.name.rpartition(".")[2]
+        return self._programs.integrator
 
     @property
     def program(self) -> Dynamics:

@@ -38,7 +38,7 @@ class StepSize:
     def _policy(self) -> StepPolicy:
         model = self._model
         return StepPolicy(
-            self._programs.driver, model.settings.time_step, model.rods.count, self._longest_shown
+            self._programs.integrator, model.settings.time_step, model.rods.count, self._longest_shown
         )
 
     def _longest_shown(self) -> float:
@@ -95,7 +95,7 @@ class StepSize:
 
     def remedy(self, size: float | None) -> str:
         """What to do about a run that is unstable with steps of this size (s), None: automatic."""
-        integrator = self._programs.driver
+        integrator = self._programs.integrator
         name = integrator.name.rpartition(".")[2]
         if self.stable == 0.0:
             return (

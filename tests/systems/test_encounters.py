@@ -82,7 +82,7 @@ def test_all_integrators_agree() -> None:
     for settings in ({}, {"integrator": "velocity_verlet", "time_step": 1e-4}, {"integrator": "rk4"}):
         session = Session.open(truss({}, **settings))
         session.run(time=0.19)
-        found[session.simulation.integrator] = session
+        found[session.simulation.integrator.key] = session
     exact = found.pop("dop853")
     assert len(exact.impacts) >= 4
     for session in found.values():

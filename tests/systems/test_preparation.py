@@ -78,7 +78,7 @@ def frames(app: App, count: int) -> None:
 def test_it_begins_with_the_model_that_is_open(app: App, compiler: Compiler) -> None:
     (job,) = compiler.jobs
     plan = app.session.simulation.plan
-    assert job == (app.session.simulation.integrator, FEW, *(system.name for system in plan))
+    assert job == (app.session.simulation.integrator.key, FEW, *(system.name for system in plan))
 
 
 def test_on_a_first_start_it_begins_before_the_compiler_is_loaded(
@@ -99,7 +99,7 @@ def test_where_particles_may_meet_that_is_waited_for_too(app: App, compiler: Com
     session.open_here("ball_on_truss")
     frames(app, 1)
     program, encounters, resting = compiler.jobs[1:]
-    assert program[0] == session.simulation.integrator
+    assert program[0] == session.simulation.integrator.key
     assert encounters == ("driven_collisions",)
     assert resting == (*program, "collision.support")  # from when on the ball lies on the truss
     session.press("space")
@@ -221,9 +221,9 @@ def test_what_another_process_compiles_is_what_the_model_needs(name: str, warmth
     session.model.assign(list(session.rods), "temperature_change", warmth)
     simulation = session.simulation
     plan = session.simulation.plan
-    example, same_plan, driver, form = _example(preparation._job(simulation, plan))
-    there = _writer(example.model, same_plan, driver, form)
-    here = _writer(session.model, plan, simulation.driver, form_of(session.model, simulation.driver))
+    example, same_plan, integrator, form = _example(preparation._job(simulation, plan))
+    there = _writer(example.model, same_plan, integrator, form)
+    here = _writer(session.model, plan, simulation.integrator, form_of(session.model, simulation.integrator))
     assert there.source() == here.source()
     assert there.names == here.names
 
@@ -330,7 +330,15 @@ def test_another_process_compiles_what_this_one_loads(tmp_path: Path) -> None:
     session = Session.open(json.loads(ALONE))
     names = [system.name for system in session.simulation.plan]
     folders = {"XDG_CACHE_HOME": str(tmp_path), "LOCALAPPDATA": str(tmp_path), "HOME": str(tmp_path)}
-    command = [sys.executable, "-m", "game.prepare", "--no-mods", session.simulation.integrator, FEW, *names]
+    command = [
+        sys.executable,
+        "-m",
+        "game.prepare",
+        "--no-mods",
+        session.simulation.integrator.key,
+        FEW,
+        *names,
+    ]
     subprocess.run(command, env=os.environ | folders, check=True, timeout=300)
     assert list(tmp_path.rglob("pinjoint_program_*.done"))
     done = subprocess.run(

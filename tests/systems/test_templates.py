@@ -59,7 +59,7 @@ def test_nothing_of_a_template_is_left_in_a_program(integrator: str, form: str) 
     session = Session.open("hyperstatic_yield")
     session.settings.integrator = integrator
     simulation = session.simulation
-    writer = _writer(session.model, simulation.program.systems, simulation.driver, form)
+    writer = _writer(session.model, simulation.program.systems, simulation.integrator, form)
     tree = ast.parse(writer.source())
     assert not any(isinstance(node, ast.Starred) for node in ast.walk(tree))
     assert not any(isinstance(node, ast.Name) and node.id == "insert" for node in ast.walk(tree))
