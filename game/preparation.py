@@ -201,7 +201,7 @@ def _units(simulation: Simulation) -> tuple[Units, ...]:
 
 
 def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
-    form = form_of(simulation.model, simulation.integrator)
+    form = form_of(simulation.model, simulation.integrator, plan)
     warmth = (WARM,) if is_warm(simulation.model) else ()
     return simulation.integrator.key, form, *warmth, *(system.name for system in plan)
 

@@ -19,7 +19,7 @@ from systems.program.program import OBSERVED, Program
 _STATE = ("particles.displacement", "particles.velocity")
 
 
-class ArrangedProgram(Program):
+class ReorderedProgram(Program):
     """A step program with copies of its model's rows in an order of its own; every call brings the model up to date.
 
     moving: which particles it moves, shape (n,); it holds them, their rods and the other ends of these. None: all.
@@ -43,7 +43,7 @@ class ArrangedProgram(Program):
 
     def bind(self) -> None:
         """Take hold of the model's columns: copy them in order."""
-        whole = self._arrange()
+        whole = self._find_layout()
         self.layout = whole if self.moving is None else whole.part(self.moving)
         self._places = {"particles": self.layout.particles, "rods": self.layout.rods}
         self._held: dict[str, tuple[Column, Numbers, Column]] = {}
@@ -51,10 +51,10 @@ class ArrangedProgram(Program):
         written = [path for b in self._writer.commits for path in b.system.writes]
         self._of_state = [self._held[path] for path in (*_STATE, *written)]
         self._derived = [self._held[f"{table}.{name}"] for table, names in OBSERVED.items() for name in names]
-        arranged = self.columns | self._of_layout()
-        arranged |= self._of_systems(arranged)
+        ordered = self.columns | self._of_layout()
+        ordered |= self._of_systems(ordered)
         to_write = {path.replace(".", "_", 1) for path in written}
-        self._columns = [array if name in to_write else read_only(array) for name, array in arranged.items()]
+        self._columns = [array if name in to_write else read_only(array) for name, array in ordered.items()]
         self._bind_arguments()
         self._held_revision = -1
 
@@ -65,7 +65,7 @@ class ArrangedProgram(Program):
         particles[self.layout.particles] = rods[self.layout.rods] = False
         return particles, rods
 
-    def _arrange(self) -> Layout:
+    def _find_layout(self) -> Layout:
         """The layout of the whole model."""
         return Layout.in_order(self.model)
 
@@ -87,28 +87,28 @@ class ArrangedProgram(Program):
 
     def _of_systems(self, columns: Mapping[str, Any]) -> dict[str, Any]:
         """The arrays of the systems, in order."""
-        arranged: dict[str, Any] = {}
+        ordered: dict[str, Any] = {}
         self._of_kernels: list[tuple[Column, Numbers, Column]] = []
         for system in self.systems:
             bound = bind(system, self.model)
             if bound.each == "loads":
-                arranged |= self._loads(bound.prefix, columns)
+                ordered |= self._loads(bound.prefix, columns)
                 continue
             rows = self._places[bound.each or "rods"]
             for name, array in bound.arrays.items():
                 if name in columns:
-                    arranged[name] = array[rows]
-                    self._of_kernels.append((array, rows, arranged[name]))
-        return arranged
+                    ordered[name] = array[rows]
+                    self._of_kernels.append((array, rows, ordered[name]))
+        return ordered
 
-    def _loads(self, prefix: str, arranged: Mapping[str, Any]) -> dict[str, Any]:
+    def _loads(self, prefix: str, ordered: Mapping[str, Any]) -> dict[str, Any]:
         """The arrays of a law of loads on particles that it holds, in the order of these."""
-        on = self.layout.row[arranged[f"{prefix}_on"]]
+        on = self.layout.row[ordered[f"{prefix}_on"]]
         order = np.argsort(on, kind="stable")[np.count_nonzero(on < 0) :]
         return {
             f"{prefix}_on": on[order].astype(np.uint32),
-            f"{prefix}_force": arranged[f"{prefix}_force"][order],
-            f"{prefix}_first": arranged[f"{prefix}_first"][order],
+            f"{prefix}_force": ordered[f"{prefix}_force"][order],
+            f"{prefix}_first": ordered[f"{prefix}_first"][order],
         }
 
     @property

@@ -183,7 +183,7 @@ class Programs:
     def _key(self, plan: list[StepSystem]) -> Key:
         warmth = ("rods.misfit",) if is_warm(self._model) else ()
         names = (system.name for system in plan)
-        return (*names, self.integrator.name, form_of(self._model, self.integrator), *warmth)
+        return (*names, self.integrator.name, form_of(self._model, self.integrator, plan), *warmth)
 
 
 def _collides(plan: list[StepSystem]) -> bool:

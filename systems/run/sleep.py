@@ -20,7 +20,7 @@ from systems.islands import HELD, Rows, islands
 from systems.physics.rest import Array, Mask, RestMeasure
 from systems.program.parallel import make_program
 from systems.program.program import Program
-from systems.program.reordered import ArrangedProgram
+from systems.program.reordered import ReorderedProgram
 from systems.program.stepper import Dynamics
 from systems.run.policy import steps_to_sleep_review
 
@@ -33,8 +33,8 @@ class Sleep:
         self._asked: tuple[Dynamics, int] | None = None
         self._versions: tuple[int, int] | None = None
         self._looked_at = -1  # the version of who is asleep that any_asleep is about
-        self._parts: dict[Program, ArrangedProgram] = {}
-        self._bound: ArrangedProgram | None = None  # to the model as it is
+        self._parts: dict[Program, ReorderedProgram] = {}
+        self._bound: ReorderedProgram | None = None  # to the model as it is
         self._left_out: Mask = np.zeros(0, dtype=bool)  # asleep when it was bound
 
     # --- who may sleep, and who does -------------------------------------------------------------------
@@ -43,7 +43,10 @@ class Sleep:
         """True if islands may sleep under this program, and there is more than one."""
         asked = program, self.model.newest(Role.DOCUMENT)
         if asked != self._asked:
-            self._asked, self._answer = asked, self.model.settings.sleeping and program.follows_state
+            self._asked, self._answer = (
+                asked,
+                (self.model.settings.sleeping and program.follows_state and not program.watches_events),
+            )
             if self._answer:
                 self._look_up()
                 self._answer = self._count > 1
@@ -141,13 +144,13 @@ class Sleep:
             self._left_out = asleep.copy()
         return part
 
-    def _part_without(self, asleep: Mask, program: Program) -> ArrangedProgram:
+    def _part_without(self, asleep: Mask, program: Program) -> ReorderedProgram:
         """The program of those that are awake, bound to the model as it is."""
         moving = ~asleep & (self._of_particle != HELD)
         part = self._parts.get(program)
         if part is None:
             made = make_program(self.model, program.systems, program.integrator, program.form, moving)
-            assert isinstance(made, ArrangedProgram)
+            assert isinstance(made, ReorderedProgram)
             part = self._parts[program] = made
         else:
             part.move(moving)

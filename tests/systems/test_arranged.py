@@ -11,7 +11,7 @@ from systems.program import blocks as layout
 from systems.program import parallel as in_blocks
 from systems.program import writer
 from systems.program.parallel import make_program
-from systems.program.reordered import ArrangedProgram
+from systems.program.reordered import ReorderedProgram
 from systems.schedule import Schedule
 from tests.reference.elements import Model
 from tests.systems.test_cores import net
@@ -47,7 +47,7 @@ def test_a_part_moves_with_the_bits_of_the_whole(form: str, monkeypatch: pytest.
         make_program(both, systems, integrator, form),
         make_program(one, systems, integrator, form, moving),
     )
-    assert isinstance(part, ArrangedProgram)
+    assert isinstance(part, ReorderedProgram)
     assert part.module is whole.module
     assert len(whole.module.advance.signatures) == 1
     for program in (whole, part):

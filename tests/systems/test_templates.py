@@ -9,7 +9,7 @@ import pytest
 
 from game import Session
 from systems.base import StopReason
-from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search
+from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
 from systems.program.binding import StepRole, bind, by_role
 from systems.program.compiler import _meaning_of
 from systems.program.pasting import expanded, fragment, pasted
@@ -101,7 +101,7 @@ def test_a_program_is_compiled_anew_when_an_entry_moves() -> None:
 
 
 def test_entries_are_numbered_without_gaps() -> None:
-    for entries in (Account, Control, Mark, Measure, Search, StopReason):
+    for entries in (Account, Control, Mark, Measure, Search, Side, StopReason):
         assert [int(entry) for entry in entries] == list(range(len(entries)))
     assert ACCOUNTS == ("work", "dissipated_damping", "dissipated_plastic", "dissipated_impact")
     for name in (
