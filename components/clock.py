@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from components.collision_state import CollisionState, check_collision_state
 from components.field import Field, Role
 from components.handle import Handle
-from components.paths import Paths, check_paths
 
 
 class Clock(Handle):
@@ -88,12 +88,12 @@ class Clock(Handle):
     collisions: Field[int] = Field(
         dtype=int, default=0, role=Role.STATE, title="collisions", doc="Impacts so far."
     )
-    paths: Field[Paths | None] = Field(
+    collision_state: Field[CollisionState | None] = Field(
         dtype=object,
         default=None,
         nullable=True,
         role=Role.STATE,
-        title="paths",
-        doc="What particles that fly free are on, and which rest on which, so that the run goes on bit for bit.",
-        checker=check_paths,
+        title="collision state",
+        doc="Paths of free particles, or persistent contacts of driven ones, so that the run goes on bit for bit.",
+        checker=check_collision_state,
     )

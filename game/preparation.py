@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, Any
 from components.obstacles import any_obstacles
 from components.rod import is_warm, nodes
 from game.mods import MODS
-from game.prepare import ENCOUNTERS, FLIGHT, RASTER, WARM, Job, is_prepared, load_program
+from game.prepare import DRIVEN, FLIGHT, RASTER, WARM, Job, is_prepared, load_program
 from systems.base import Phase, StepSystem, System
 from systems.catalogue import DRIVERS
-from systems.collision.driven.compiled import has_encounters
-from systems.collision.driven.stepper import load_encounters
-from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, has_parts
+from systems.collision.driven.compiled import has_driven_collisions
+from systems.collision.driven.stepper import load_driven_collisions
+from systems.collision.free.compiled import EVENTS, HORIZONS, PILES, has_parts
 from systems.collision.free.flight import may_pile
-from systems.collision.system import Collision, Support, contacts_of
+from systems.collision.system import Support, detects_impacts, persistent_contacts
 from systems.edit.pull import Pull
 from systems.program.compiler import is_blank, load_compiler
 from systems.program.program import has_program
@@ -33,11 +33,11 @@ if TYPE_CHECKING:
     from systems.render.raster import Raster
     from systems.run.simulation import Simulation
 
-FREE = (FLIGHT, EVENTS), (FLIGHT, WINDOWS)  # two processes compile the two halves of what free particles need
-PULLED = (FLIGHT, EVENTS), (FLIGHT, WINDOWS, PILES)  # and what they need where they may pile up
+FREE = (FLIGHT, EVENTS), (FLIGHT, HORIZONS)  # two processes compile the two halves of what free particles need
+PULLED = (FLIGHT, EVENTS), (FLIGHT, HORIZONS, PILES)  # and what they need where they may pile up
 AHEAD: dict[Job, Callable[[], bool]] = {
     (RASTER,): has_raster,
-    (ENCOUNTERS,): has_encounters,
+    (DRIVEN,): has_driven_collisions,
     **{half: partial(has_parts, *half[1:]) for half in PULLED},
 }
 
@@ -61,7 +61,7 @@ class Preparation(System):
         self._compiler = threading.Thread(target=_load_libraries, daemon=True)
         self._blank = is_blank()  # then it is known without the compiler that nothing is compiled
         self._loaded = False  # the program was, in the last frame
-        self._encounters = False  # they are loaded
+        self._driven_loaded = False  # they are loaded
         self._looked = -1  # the model's revision when it was seen to what a hand needs
         self._pulled: set[Job] = set()  # what a hand needs, as far as it was loaded
         self._running: dict[Job, subprocess.Popen[bytes]] = {}
@@ -80,18 +80,18 @@ class Preparation(System):
         seen, self._seen = self._seen, simulation.model.revision
         loaded, self._loaded = self._loaded, simulation.ready
         if loaded and simulation.ready and self._waits_for_meetings(simulation) is None:
-            self._load_encounters(simulation)
+            self._load_driven_collisions(simulation)
             if seen == self._seen and not frame.session.busy:
                 self._load_pulled(simulation)
         else:
             self._load(simulation, idle=seen == self._seen)
         self._compile_ahead()
 
-    def _load_encounters(self, simulation: Simulation) -> None:
+    def _load_driven_collisions(self, simulation: Simulation) -> None:
         """In a frame after the program was loaded, and before anything meets."""
-        if not self._encounters and _may_meet(simulation):
-            self._encounters = True
-            load_encounters()
+        if not self._driven_loaded and _may_meet(simulation):
+            self._driven_loaded = True
+            load_driven_collisions()
 
     def _compile_ahead(self) -> None:
         """What any model may need, one after the other, while nothing else is compiled."""
@@ -139,7 +139,7 @@ class Preparation(System):
         """The same for what happens where particles of structures meet; some come to rest on others."""
         if not _may_meet(simulation):
             return None
-        waited = self._waits((ENCOUNTERS,), has_encounters)
+        waited = self._waits((DRIVEN,), has_driven_collisions)
         if not _may_rest(simulation.model):
             return waited
         plan = _with_support(simulation)
@@ -175,12 +175,12 @@ class Preparation(System):
 def _may_meet(simulation: Simulation) -> bool:
     """True if particles that do not fly free may meet."""
     plan = simulation.schedule.step_plan(simulation.model)
-    return simulation.integrator != FLIGHT and any(isinstance(system, Collision) for system in plan)
+    return simulation.integrator != FLIGHT and detects_impacts(plan)
 
 
 def _may_rest(model: Model) -> bool:
     """True if something that is no structure may come to rest on one, or a structure on a wall, and none does yet."""
-    return contacts_of(model) is None and (any_obstacles(model) or not nodes(model).all())
+    return persistent_contacts(model) is None and (any_obstacles(model) or not nodes(model).all())
 
 
 def _with_support(simulation: Simulation) -> list[StepSystem]:

@@ -1,5 +1,5 @@
 """Compile ahead of need: `python -m game.prepare DRIVER FORM [warm] SYSTEM…` for a step program, `… free_flight PART…`
-for collisions of free particles, `… encounters` for those of others, or `… raster` for drawing.
+for collisions of free particles, `… driven` for those of driven particles, or `… raster` for drawing.
 
 The window runs this in another process, because a compiler in its own would hold it up, in a thread too.
 """
@@ -17,7 +17,7 @@ from game.mods.command import load_as_asked
 from game.session import Session
 from systems.base import Driver, StepSystem
 from systems.catalogue import DRIVERS
-from systems.collision.driven.stepper import load_encounters
+from systems.collision.driven.stepper import load_driven_collisions
 from systems.collision.free.compiled import load_part
 from systems.edit.pull import Hand
 from systems.program.compiler import forget_unused
@@ -25,7 +25,7 @@ from systems.program.parallel import make_program
 from systems.program.program import has_program
 from systems.render.raster_program import load_raster
 
-RASTER, FLIGHT, ENCOUNTERS = "raster", "free_flight", "encounters"
+RASTER, FLIGHT, DRIVEN = "raster", "free_flight", "driven"
 WARM = "warm"  # the program is for rods whose temperature may have changed
 
 Job = tuple[str, ...]  # what to compile, in these words
@@ -40,8 +40,8 @@ def main(words: Sequence[str]) -> None:
     elif name == FLIGHT:
         for part in job[1:]:
             load_part(part)
-    elif name == ENCOUNTERS:
-        load_encounters()
+    elif name == DRIVEN:
+        load_driven_collisions()
     else:
         load_program(job)
     forget_unused()

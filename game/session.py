@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from components.camera import Viewport
+from components.collision_state import PersistentContacts
 from components.environment import Environment
 from components.field import FieldError, Vector
 from components.handle import Handle
 from components.load import Load, loads_end
 from components.model import Model
 from components.particle import Particle
-from components.paths import resting
 from components.rod import Rod
 from components.settings import Settings
 from components.spelling import missing
@@ -346,7 +346,9 @@ class Session:
             self.model.give("clock.origin", np.array([time]))
             self.model.give("clock.origin_steps", np.array([self.model.clock.steps]))
             if len(found.final.contacts) and self.simulation.driver is not FREE_FLIGHT:
-                self.model.clock.paths = resting(found.final.contacts, 1000.0 * found.final.contact_force)
+                self.model.clock.collision_state = PersistentContacts(
+                    found.final.contacts, 1000.0 * found.final.contact_force
+                )
         self.notice = found.account
         yielded = np.flatnonzero(found.final.plastic_strain != strain)
         if len(yielded) and not found.events:  # at once: what it began from is beyond the strengths

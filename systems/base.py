@@ -103,11 +103,15 @@ class StepSystem(System):
     kernel: "module:function" of a numba-compiled function, or the function itself. Its parameters are
         bound by name: `<table>_<column>`, `time`, `dt`, an entry of `arrays`, or one of the quantities
         that the role provides. "": what it does is not part of the step program.
+    detects_impacts: a plan with the system finds the times of impacts and resolves them.
+    allows_free_flight: particles that only such systems act on move on exact paths between impacts.
     """
 
     phase: ClassVar[Phase] = Phase.STEP
     scenes: ClassVar[tuple[str, ...] | None] = ("simulation", "force method")
     kernel: ClassVar[str | Callable[..., Any]] = ""
+    detects_impacts: ClassVar[bool] = False
+    allows_free_flight: ClassVar[bool] = False
 
     def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
         """Further read-only arrays for the kernel, renewed whenever the document changes."""

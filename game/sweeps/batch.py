@@ -18,7 +18,7 @@ from components.load import load_breaks, loads_end
 from game.sweeps.batch_program import BatchProgram
 from game.sweeps.stack import Stack
 from systems.base import StopReason
-from systems.islands import HELD, islands
+from systems.islands import IMMOVABLE, islands
 from systems.physics.rest import Stillness
 from systems.physics.spectrum import spectra
 from systems.program.program import ACCOUNT, CONTROL
@@ -49,7 +49,7 @@ class Batch:
         self.measures = np.zeros((blocks, 16))
         self.unbalanced = np.zeros_like(stack["particles.displacement"])
         self._may_sleep = bool(stack.single("settings.sleeping").any()) and program.program.follows_state
-        self._may_sleep &= islands(stack.part(np.zeros(1, dtype=np.intp)).as_model()).max(initial=HELD) > 1
+        self._may_sleep &= islands(stack.part(np.zeros(1, dtype=np.intp)).as_model()).max(initial=IMMOVABLE) > 1
         self.fixed_step = stack.single("settings.time_step")
         self._columns = program.columns(stack)
         self._breaks = np.array([*load_breaks(stack.as_model()), math.inf])
@@ -99,12 +99,12 @@ class Batch:
         self.observe()
         model = self.stack.as_model()
         of_particle = islands(model)
-        of_rod = of_particle[model.rods.between].max(axis=1, initial=HELD)
-        block = np.zeros(of_particle.max(initial=HELD) + 1, dtype=np.intp)  # of each island
+        of_rod = of_particle[model.rods.between].max(axis=1, initial=IMMOVABLE)
+        block = np.zeros(of_particle.max(initial=IMMOVABLE) + 1, dtype=np.intp)  # of each island
         block[of_particle] = np.repeat(self._all, len(of_particle) // self.stack.blocks)
         scales = self.clock("force_scale")[block], self.clock("energy_scale")[block]
         rest = Stillness.of(model, self.unbalanced.reshape(-1, 2)).at_rest(of_particle, of_rod, *scales)
-        rest[HELD] = False
+        rest[IMMOVABLE] = False
         self.alone[np.intersect1d(block[rest], blocks)] = True
 
     @property

@@ -44,6 +44,7 @@ class Pull(Law):
     reads = ("particles.displacement", "particles.velocity")
     adds = ("particles.force",)
     account = "work"
+    allows_free_flight = True  # the force may be constant during a step
 
     def __init__(self) -> None:
         self.hand: Hand | None = None

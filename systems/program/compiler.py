@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Mapping
+from enum import Enum, EnumType
 from functools import cache
 from pathlib import Path
 from types import CodeType, ModuleType
@@ -64,6 +65,9 @@ def _described(code: CodeType) -> str:
 def _constant(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return repr((value.dtype.str, value.shape, value.tobytes()))
+    if isinstance(value, EnumType):  # named columns
+        members: Mapping[str, Enum] = value.__members__
+        return repr([(name, member.value) for name, member in members.items()])
     plain = isinstance(value, bool | int | float | complex | str | tuple | None | np.generic)
     return repr(value) if plain else type(value).__name__
 

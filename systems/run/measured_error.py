@@ -48,7 +48,7 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     """
     model, program = simulation.model, simulation.program
     clock, then = model.clock, beginning.columns
-    met = clock.collisions > then["clock.collisions"][0] or clock.paths is not None
+    met = clock.collisions > then["clock.collisions"][0] or clock.collision_state is not None
     if met or not isinstance(program, Program) or not clock.time > then["clock.time"][0]:
         return None
     reached, size, target = model.particles.displacement.copy(), clock.step_size, simulation.moved_until

@@ -18,10 +18,10 @@ from components.snapshot import Snapshot
 from components.world import Derivation
 from systems.base import Driver, StepSystem, StopReason
 from systems.catalogue import DRIVERS
-from systems.collision.driven.stepper import Encounters
+from systems.collision.driven.stepper import DrivenCollisions
 from systems.collision.free.flight import Flight, part_overlaps
 from systems.collision.impacts import Impacts
-from systems.collision.system import Collision, FreeFlight
+from systems.collision.system import FreeFlight, detects_impacts, flies_free
 from systems.edit.pull import Pull
 from systems.physics.automatic import choose
 from systems.program.binding import ProgramError
@@ -37,7 +37,6 @@ from systems.schedule import Schedule
 
 MOST_RETRIES = 6  # times that an automatic step is halved before a run is given up
 FREE_FLIGHT = FreeFlight()
-FEW = 8  # particles without rods, among which a hand's force is followed within a step, and not on exact paths
 
 # What the clock is given when a run begins.
 CHOSEN = ("step_size", "guard_energy", "initial_energy", "potential_reference")
@@ -77,7 +76,7 @@ class Simulation:
         self._sleep = Sleep(model)
         self._step_size = StepSize(model, self._sleep, lambda: self.driver)
         self._account = Account(model, self._measured)
-        self._encounters = Encounters(model, self.impacts, self._short_step, self._rebind)
+        self._encounters = DrivenCollisions(model, self.impacts, self._short_step, self._rebind)
         self.compute_seconds = 0.0
         self.compile_seconds = 0.0
         self.watch: Callable[[], int] | None = None
@@ -114,11 +113,8 @@ class Simulation:
     def driver(self) -> Driver:
         """The integrator that the settings ask for, or that suits the model; free particles need none."""
         if self._driver is None:
-            plan = {type(system) for system in self.schedule.step_plan(self.model)}
-            if plan == {Collision} or (plan == {Collision, Pull} and self.model.particles.count > FEW):
-                self._driver = FREE_FLIGHT
-            else:
-                self._driver = self._integrator
+            free = flies_free(self.schedule.step_plan(self.model), self.model)
+            self._driver = FREE_FLIGHT if free else self._integrator
         return self._driver
 
     @property
@@ -223,8 +219,8 @@ class Simulation:
         if self._armed:
             self._account.begin_edit()
             self._armed = False
-        if self.model.clock.paths is not None:
-            self.model.writable("clock.paths")[0] = None
+        if self.model.clock.collision_state is not None:
+            self.model.writable("clock.collision_state")[0] = None
         self._driver = self._program = None
         self._sleep.forget()
 
@@ -261,7 +257,7 @@ class Simulation:
         """Take hold of the model by the program of its plan, without mods whose systems cannot join it."""
         while self._program is None:
             systems = self.schedule.step_plan(self.model)
-            self._collides = any(isinstance(system, Collision) for system in systems)
+            self._collides = detects_impacts(systems)
             try:
                 self._program = self._bound(systems)
                 self._binding += 1
@@ -304,7 +300,7 @@ class Simulation:
     def _part_overlaps(self) -> None:
         """Particles that edits left in one another's place are moved apart; a note says so."""
         self.note = ""
-        if any(isinstance(system, Collision) for system in self.schedule.step_plan(self.model)):
+        if detects_impacts(self.schedule.step_plan(self.model)):
             self.note = part_overlaps(self.model)
 
     def _measured(self) -> Column:

@@ -10,7 +10,7 @@ import pytest
 from game import Session
 from game.commands.command_line import main
 from game.documents.models import document
-from systems.collision.driven.neighbours import Vicinity
+from systems.collision.driven.neighbours import NeighbourList
 from systems.edit.pull import hand_on
 from tests.systems.test_encounters import box, energy_of_discs
 
@@ -278,7 +278,7 @@ def pull(session: Session, name: str, anchors: list[tuple[float, float]], steps:
 
 def sinking(session: Session) -> float:
     """By how much of a radius discs are in one another at most."""
-    near = Vicinity(session.model)
+    near = NeighbourList(session.model)
     near.look_up()
     near._list(near._least, near.displacement)
     gap, _ = near.gaps(near.pairs, near.displacement)

@@ -24,7 +24,7 @@ from game.editor.view_model import COMPILING
 from game.preparation import Preparation
 from game.prepare import Job, _example
 from game.session import Session
-from systems.collision.driven import compiled as encounter_kernels
+from systems.collision.driven import compiled as driven_kernels
 from systems.input import pygame_input
 from systems.program import compiler as cache
 from systems.program.program import _writer
@@ -53,7 +53,7 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
     monkeypatch.setattr(preparation, "_started", found.start)
     monkeypatch.setattr(preparation, "has_program", lambda *plan: False)
     monkeypatch.setattr(preparation, "has_raster", lambda: False)
-    monkeypatch.setattr(preparation, "has_encounters", lambda: False)
+    monkeypatch.setattr(preparation, "has_driven_collisions", lambda: False)
     monkeypatch.setattr(preparation, "is_blank", lambda: False)
     monkeypatch.setattr(preparation, "AHEAD", {})
     return found
@@ -98,9 +98,9 @@ def test_where_particles_may_meet_that_is_waited_for_too(app: App, compiler: Com
     session = app.session
     session.open_here("ball_on_truss")
     frames(app, 1)
-    program, encounters, resting = compiler.jobs[1:]
+    program, driven, resting = compiler.jobs[1:]
     assert program[0] == session.simulation.integrator
-    assert encounters == ("encounters",)
+    assert driven == ("driven",)
     assert resting == (*program, "collision.support")  # from when on the ball lies on the truss
     session.press("space")
     frames(app, 3)
@@ -108,7 +108,7 @@ def test_where_particles_may_meet_that_is_waited_for_too(app: App, compiler: Com
     compiler.status = 0
     frames(app, 4)
     assert session.model.clock.steps > 0
-    loaded = encounter_kernels.kernels()  # though nothing has met yet
+    loaded = driven_kernels.kernels()  # though nothing has met yet
     for name in ("gaps", "kinds", "sway", "meeting", "compliance", "forces", "push"):
         assert getattr(loaded, name).signatures
 
@@ -118,7 +118,7 @@ def test_a_model_in_which_nothing_is_loose_does_not_wait_for_what_may_rest_on_it
 ) -> None:
     app.session.open_here("warren_bridge")
     frames(app, 1)
-    assert ("encounters",) in compiler.jobs
+    assert ("driven",) in compiler.jobs
     assert not any("collision.support" in job for job in compiler.jobs)
 
 

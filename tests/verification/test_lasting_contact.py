@@ -83,10 +83,10 @@ def test_contacts_of_a_resting_pile_push_as_statics_demands(count: int, columns:
     _, _, gaps = lasting.lines_of(scene, place, RADIUS)
     assert gaps.min() >= -1e-6 * scene["radius"].min()
     demanded = lasting.forces_at_rest(scene, place, DOWN)
-    paths = discs.paths()
+    state = discs.state()
     found = {
         (min(pair), max(pair)): force
-        for pair, force in zip(paths.contacts.tolist(), paths.forces.tolist(), strict=True)
+        for pair, force in zip(state.contacts.tolist(), state.forces.tolist(), strict=True)
     }
     heaviest = GRAVITY / scene["inverse_mass"][:count].min()
     assert max(demanded.values()) > 2.0 * heaviest

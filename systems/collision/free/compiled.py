@@ -1,6 +1,7 @@
 """The compiled parts of the engine of flight: each is a program of its own, so that two are compiled at once.
 
-`fly` lets events happen, `open_window` foresees them, `take_steps` moves piles; only what is pulled forms these.
+`fly` lets events happen, `open_horizon` finds the impacts to come, `take_steps` moves piles (formed only
+by particles under forces).
 """
 
 from __future__ import annotations
@@ -11,13 +12,13 @@ from functools import cache
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from systems.collision.columns import RENEW, STEPPING
+from systems.collision.columns import Count
 from systems.program.compiler import compile_module, is_compiled, note_compiled
 
 if TYPE_CHECKING:
     from systems.collision.free.discs import Discs
 
-EVENTS, WINDOWS, PILES = "fly", "open_window", "take_steps"
+EVENTS, HORIZONS, PILES = "fly", "open_horizon", "take_steps"
 
 _SOURCE = '''\
 """A part of the engine of collisions. Generated; safe to delete."""
@@ -36,9 +37,9 @@ def {part}({arguments}):
 def _program(part: str) -> tuple[str, dict[str, Callable[..., int]]]:
     """Source of a part, and what it calls."""
     from systems.collision.kernels.flight import fly, take_steps
-    from systems.collision.kernels.horizon import open_window
+    from systems.collision.kernels.horizon import open_horizon
 
-    kernel = {EVENTS: fly, WINDOWS: open_window, PILES: take_steps}[part]
+    kernel = {EVENTS: fly, HORIZONS: open_horizon, PILES: take_steps}[part]
     arguments = ", ".join(inspect.signature(kernel.py_func).parameters)
     return _SOURCE.format(part=part, arguments=arguments), {"kernel": kernel}
 
@@ -57,10 +58,10 @@ def has_parts(*parts: str) -> bool:
 def load_part(part: str) -> None:
     """Have a part called once: it is compiled then, or loaded from the cache."""
     discs = engine()([[0.0, 0.0]], [[0.0, 0.0]], [1.0], [[1.0, 1.0]])
-    if part == WINDOWS:
-        discs.open_window(discs.rows, discs.grid, discs.ties, discs.queue, discs.numbers, discs.counts)
+    if part == HORIZONS:
+        discs.open_horizon(discs.rows, discs.grid, discs.constraints, discs.queue, discs.numbers, discs.counts)
     else:
-        discs.counts[RENEW], discs.counts[STEPPING] = 0, part == PILES
+        discs.counts[Count.RENEW], discs.counts[Count.STEPPING] = 0, part == PILES
         discs.advance(discs.now - float(part == PILES))  # before the first step of a pile
     note_compiled(_module(part))
 
@@ -70,5 +71,5 @@ def engine() -> type[Discs]:
     """Discs whose parts are compiled once and for all; each by its first call, unless it is loaded before."""
     from systems.collision.free.discs import Discs
 
-    kernels: dict[str, Any] = {part: _module(part) for part in (EVENTS, WINDOWS, PILES)}
+    kernels: dict[str, Any] = {part: _module(part) for part in (EVENTS, HORIZONS, PILES)}
     return type("Compiled", (Discs,), {part: staticmethod(getattr(kernels[part], part)) for part in kernels})

@@ -11,21 +11,7 @@ left top, right bottom, right top. Those of a bucket are chained; which cell one
 
 import math
 
-from systems.collision.columns import (
-    AX,
-    AY,
-    EPOCH,
-    NONE,
-    OX,
-    OY,
-    RADIUS,
-    TX,
-    TY,
-    UX,
-    UY,
-    VX,
-    VY,
-)
+from systems.collision.columns import NONE, Disc
 from systems.collision.kernels import compiled
 from systems.collision.kernels.time_of_impact import extent
 
@@ -49,26 +35,26 @@ def _range(u, v, a, start, end):
 @compiled
 def enclose(i, discs, grid, now, end):
     """Set the box of a disc to what its path covers from now to end."""
-    start, stop = now - discs[i, EPOCH], end - discs[i, EPOCH]
-    low_x, high_x = _range(discs[i, UX], discs[i, VX], discs[i, AX], start, stop)
-    low_y, high_y = _range(discs[i, UY], discs[i, VY], discs[i, AY], start, stop)
-    low_x, high_x = low_x + min(discs[i, TX], 0.0), high_x + max(discs[i, TX], 0.0)
-    low_y, high_y = low_y + min(discs[i, TY], 0.0), high_y + max(discs[i, TY], 0.0)
+    start, stop = now - discs[i, Disc.EPOCH], end - discs[i, Disc.EPOCH]
+    low_x, high_x = _range(discs[i, Disc.UX], discs[i, Disc.VX], discs[i, Disc.AX], start, stop)
+    low_y, high_y = _range(discs[i, Disc.UY], discs[i, Disc.VY], discs[i, Disc.AY], start, stop)
+    low_x, high_x = low_x + min(discs[i, Disc.TX], 0.0), high_x + max(discs[i, Disc.TX], 0.0)
+    low_y, high_y = low_y + min(discs[i, Disc.TY], 0.0), high_y + max(discs[i, Disc.TY], 0.0)
     margin = MARGIN * max(extent(discs, i, now), extent(discs, i, end))
-    around = discs[i, RADIUS] + margin
-    grid.boxes[i, 0] = discs[i, OX] + low_x - around
-    grid.boxes[i, 1] = discs[i, OY] + low_y - around
-    grid.boxes[i, 2] = discs[i, OX] + high_x + around
-    grid.boxes[i, 3] = discs[i, OY] + high_y + around
+    around = discs[i, Disc.RADIUS] + margin
+    grid.boxes[i, 0] = discs[i, Disc.OX] + low_x - around
+    grid.boxes[i, 1] = discs[i, Disc.OY] + low_y - around
+    grid.boxes[i, 2] = discs[i, Disc.OX] + high_x + around
+    grid.boxes[i, 3] = discs[i, Disc.OY] + high_y + around
 
 
 @compiled
 def place_box(i, discs, now):
     """Box around what a disc covers now."""
-    s = now - discs[i, EPOCH]
-    x = discs[i, OX] + (discs[i, UX] + s * (discs[i, VX] + 0.5 * s * discs[i, AX]))
-    y = discs[i, OY] + (discs[i, UY] + s * (discs[i, VY] + 0.5 * s * discs[i, AY]))
-    around = discs[i, RADIUS] + MARGIN * extent(discs, i, now)
+    s = now - discs[i, Disc.EPOCH]
+    x = discs[i, Disc.OX] + (discs[i, Disc.UX] + s * (discs[i, Disc.VX] + 0.5 * s * discs[i, Disc.AX]))
+    y = discs[i, Disc.OY] + (discs[i, Disc.UY] + s * (discs[i, Disc.VY] + 0.5 * s * discs[i, Disc.AY]))
+    around = discs[i, Disc.RADIUS] + MARGIN * extent(discs, i, now)
     return x - around, y - around, x + around, y + around
 
 

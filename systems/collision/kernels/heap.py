@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from systems.collision.columns import CHANGES, MOST_CHANGES
+from systems.collision.columns import MOST_CHANGES, Disc
 from systems.collision.kernels import compiled
 
 
@@ -12,32 +12,32 @@ def _before(time, i, j, k, queue):
     other = queue.times[k]
     if time != other:
         return time < other
-    if i != queue.meetings[k, 0]:
-        return i < queue.meetings[k, 0]
-    return j < queue.meetings[k, 1]
+    if i != queue.impacts[k, 0]:
+        return i < queue.impacts[k, 0]
+    return j < queue.impacts[k, 1]
 
 
 @compiled
 def _place(queue, k, time, i, j, changes_i, changes_j):
     queue.times[k] = time
-    queue.meetings[k, 0] = i
-    queue.meetings[k, 1] = j
-    queue.meetings[k, 2] = changes_i
-    queue.meetings[k, 3] = changes_j
+    queue.impacts[k, 0] = i
+    queue.impacts[k, 1] = j
+    queue.impacts[k, 2] = changes_i
+    queue.impacts[k, 3] = changes_j
 
 
 @compiled
-def _meeting(queue, k):
+def _impact_at(queue, k):
     """What is at k, in numbers that need no code of their own for being short in the queue."""
-    i, j = np.int64(queue.meetings[k, 0]), np.int64(queue.meetings[k, 1])
-    return queue.times[k], i, j, np.int64(queue.meetings[k, 2]), np.int64(queue.meetings[k, 3])
+    i, j = np.int64(queue.impacts[k, 0]), np.int64(queue.impacts[k, 1])
+    return queue.times[k], i, j, np.int64(queue.impacts[k, 2]), np.int64(queue.impacts[k, 3])
 
 
 @compiled
 def _move(queue, source, target):
     queue.times[target] = queue.times[source]
     for c in range(4):
-        queue.meetings[target, c] = queue.meetings[source, c]
+        queue.impacts[target, c] = queue.impacts[source, c]
 
 
 @compiled
@@ -56,12 +56,12 @@ def push(queue, size, time, i, j, changes_i, changes_j):
 @compiled
 def _sink(queue, size, k):
     """Let the meeting at k sink to where it belongs."""
-    time, i, j, changes_i, changes_j = _meeting(queue, k)
+    time, i, j, changes_i, changes_j = _impact_at(queue, k)
     while 2 * k + 1 < size:
         child = 2 * k + 1
         right = child + 1
         if right < size:
-            other, a, b, _, _ = _meeting(queue, right)
+            other, a, b, _, _ = _impact_at(queue, right)
             if _before(other, a, b, child, queue):
                 child = right
         if _before(time, i, j, child, queue):
@@ -82,13 +82,13 @@ def drop_first(queue, size):
 @compiled
 def changes(i, discs):
     """How often the path of a disc has changed, as a meeting notes it."""
-    return int(discs[i, CHANGES]) & MOST_CHANGES
+    return int(discs[i, Disc.CHANGES]) & MOST_CHANGES
 
 
 @compiled
 def is_void(queue, k, discs):
     """True if a disc of the meeting has changed its path since."""
-    _, i, j, changes_i, changes_j = _meeting(queue, k)
+    _, i, j, changes_i, changes_j = _impact_at(queue, k)
     return changes_i != changes(i, discs) or changes_j != changes(j, discs)
 
 

@@ -5,8 +5,8 @@ import math
 from systems.collision.kernels import compiled
 from systems.collision.kernels.time_of_impact import nearest_of_piece
 
-MORE = 0.05  # of an overlap, by which discs are moved farther than apart: sweeps then come to an end
-MOST_SWEEPS = 400  # over the same pairs
+OVERCORRECTION = 0.05  # of an overlap, by which discs are moved farther than apart: sweeps then come to an end
+MOST_OVERLAP_SWEEPS = 400  # over the same pairs
 GOLDEN_ANGLE = 2.399963229728653  # between the directions of discs with one centre, so that all differ
 
 
@@ -16,7 +16,7 @@ def separate(first, second, position, displacement, radius, inverse_mass, span, 
 
     Held directions do not move, nor do obstacles, which have a span. What is left after MOST_SWEEPS stays.
     """
-    for sweep in range(MOST_SWEEPS):
+    for sweep in range(MOST_OVERLAP_SWEEPS):
         apart = True
         for k in range(first.shape[0]):
             i, j = first[k], second[k]
@@ -39,7 +39,7 @@ def separate(first, second, position, displacement, radius, inverse_mass, span, 
             along += (inverse_mass[i, 1] + inverse_mass[j, 1]) * y * y
             if along == 0.0:
                 continue
-            share = (1.0 + MORE * (sweep > 0)) * overlap / along
+            share = (1.0 + OVERCORRECTION * (sweep > 0)) * overlap / along
             displacement[i, 0] -= share * inverse_mass[i, 0] * x
             displacement[i, 1] -= share * inverse_mass[i, 1] * y
             displacement[j, 0] += share * inverse_mass[j, 0] * x
@@ -47,4 +47,4 @@ def separate(first, second, position, displacement, radius, inverse_mass, span, 
             apart = False
         if apart:
             return sweep
-    return MOST_SWEEPS
+    return MOST_OVERLAP_SWEEPS

@@ -11,34 +11,11 @@ parabolas like all others, so that impacts with them are found as exactly.
 
 import math
 
-from systems.collision.columns import (
-    ACTIVE,
-    BIAS,
-    DISTANCE,
-    FORCE,
-    GIVEN,
-    GX,
-    GY,
-    NEXT,
-    NONE,
-    NOW,
-    NX,
-    NY,
-    OPENING,
-    OTHER,
-    RADIUS,
-    ROUND,
-    SPARE,
-    SPARES,
-    TX,
-    TY,
-    WX,
-    WY,
-)
+from systems.collision.columns import NONE, Contact, Count, Disc, Entry, Mark, Number
 from systems.collision.kernels import compiled
 from systems.collision.kernels.projection import MOST_SWEEPS, begin, copy_motion, opening_rate, project
 from systems.collision.kernels.time_of_impact import (
-    NEVER,
+    INFINITY,
     is_straight,
     passing,
     place_noise,
@@ -57,48 +34,48 @@ MOST_IN_VAIN = 5  # of them, one after the other, that do not halve the largest 
 @compiled
 def is_held(i, discs):
     """True if a disc cannot move at all."""
-    return discs[i, WX] == 0.0 and discs[i, WY] == 0.0
+    return discs[i, Disc.WX] == 0.0 and discs[i, Disc.WY] == 0.0
 
 
 # --- the table ----------------------------------------------------------------------------------------------
 
 
 @compiled
-def find_lasting(i, j, ties):
+def find_persistent(i, j, constraints):
     """Entry of the lasting contact of two discs, in the list of either; −1 if they have none."""
     for a, b in ((i, j), (j, i)):
-        entry = ties.first_lasting[a]
+        entry = constraints.first_persistent[a]
         while entry != NONE:
-            if ties.lasting[entry, OTHER] == b:
+            if constraints.persistent[entry, Entry.OTHER] == b:
                 return entry
-            entry = ties.lasting[entry, NEXT]
+            entry = constraints.persistent[entry, Entry.NEXT]
     return NONE
 
 
 @compiled
-def forget_lasting(i, ties, counts):
+def forget_persistent(i, constraints, counts):
     """Strike out all entries of a disc."""
-    entry = ties.first_lasting[i]
+    entry = constraints.first_persistent[i]
     while entry != NONE:
-        following = ties.lasting[entry, NEXT]
-        ties.lasting[entry, NEXT] = counts[SPARE]
-        counts[SPARE] = entry
-        counts[SPARES] += 1
+        following = constraints.persistent[entry, Entry.NEXT]
+        constraints.persistent[entry, Entry.NEXT] = counts[Count.SPARE]
+        counts[Count.SPARE] = entry
+        counts[Count.SPARES] += 1
         entry = following
-    ties.first_lasting[i] = NONE
+    constraints.first_persistent[i] = NONE
 
 
 @compiled
-def note_lasting(i, j, force, discs, ties, counts):
+def enter_persistent(i, j, force, discs, constraints, counts):
     """Enter a lasting contact with j for disc i, unless that is held."""
     if not is_held(i, discs):
-        entry = counts[SPARE]
-        counts[SPARE] = ties.lasting[entry, NEXT]
-        counts[SPARES] -= 1
-        ties.lasting[entry, OTHER] = j
-        ties.lasting[entry, NEXT] = ties.first_lasting[i]
-        ties.forces[entry] = force
-        ties.first_lasting[i] = entry
+        entry = counts[Count.SPARE]
+        counts[Count.SPARE] = constraints.persistent[entry, Entry.NEXT]
+        counts[Count.SPARES] -= 1
+        constraints.persistent[entry, Entry.OTHER] = j
+        constraints.persistent[entry, Entry.NEXT] = constraints.first_persistent[i]
+        constraints.forces[entry] = force
+        constraints.first_persistent[i] = entry
 
 
 # --- the end of a step --------------------------------------------------------------------------------------
@@ -109,9 +86,9 @@ def stop_sinking(count, touching, group):
     """Project the velocities in `motion` for the contacts that have lasted until now."""
     active = 0
     for c in range(touching):
-        group.contacts[c, GIVEN] = 0.0
-        if group.contacts[c, FORCE] > 0.0 and group.contacts[c, OPENING] > 0.0:
-            group.marks[ACTIVE, active] = c
+        group.contacts[c, Contact.IMPULSE] = 0.0
+        if group.contacts[c, Contact.FORCE] > 0.0 and group.contacts[c, Contact.COMPLIANCE] > 0.0:
+            group.marks[Mark.ACTIVE, active] = c
             active += 1
     if active > 0:
         begin(count, group)
@@ -125,15 +102,15 @@ def stop_sinking(count, touching, group):
 def support(count, touching, discs, group, numbers):
     """Forces in the contacts of a group whose velocities are in `motion`.
 
-    Returns for how long they hold: NEVER if nothing slides. `motion` becomes the accelerations, `other` the
+    Returns for how long they hold: INFINITY if nothing slides. `motion` becomes the accelerations, `other` the
     velocities; sets the column FORCE.
     """
     copy_motion(group.motion, group.other, count)
     closed = _push_now(count, touching, discs, group, numbers)
-    duration = NEVER
+    duration = INFINITY
     if not _stop_where_still(count, closed, discs, group):
         duration = _duration(closed, discs, group, numbers)
-        if duration < NEVER:
+        if duration < INFINITY:
             least = LEAST_SHARE * duration
             met = _meet_at_end(duration, count, closed, discs, group, numbers)
             while duration > least and (not met or _one_lets_go(closed, group)):  # or they meet again at once
@@ -143,8 +120,8 @@ def support(count, touching, discs, group, numbers):
             if not met:
                 closed = _push_now(count, touching, discs, group, numbers)
     for k in range(closed):
-        c = group.marks[ACTIVE, k]
-        group.contacts[c, FORCE] = group.contacts[c, GIVEN]
+        c = group.marks[Mark.ACTIVE, k]
+        group.contacts[c, Contact.FORCE] = group.contacts[c, Contact.IMPULSE]
     return duration
 
 
@@ -153,13 +130,13 @@ def _push_now(count, touching, discs, group, numbers):
     """The forces at this instant, in the columns FORCE and GIVEN of the closed contacts; returns how many these are."""
     closed = _list_closed(touching, discs, group, numbers)
     for c in range(touching):
-        group.contacts[c, FORCE] = 0.0
+        group.contacts[c, Contact.FORCE] = 0.0
     _pull(count, discs, group)
     begin(count, group)
     project(count, closed, 0.0, MOST_SWEEPS, group)
     for k in range(closed):
-        c = group.marks[ACTIVE, k]
-        group.contacts[c, FORCE] = group.contacts[c, GIVEN]
+        c = group.marks[Mark.ACTIVE, k]
+        group.contacts[c, Contact.FORCE] = group.contacts[c, Contact.IMPULSE]
     return closed
 
 
@@ -167,8 +144,8 @@ def _push_now(count, touching, discs, group, numbers):
 def _one_lets_go(closed, group):
     """True if a contact that pushes at the start of a step has opened at its end."""
     for k in range(closed):
-        c = group.marks[ACTIVE, k]
-        if group.contacts[c, FORCE] > 0.0 and group.contacts[c, GIVEN] == 0.0:
+        c = group.marks[Mark.ACTIVE, k]
+        if group.contacts[c, Contact.FORCE] > 0.0 and group.contacts[c, Contact.IMPULSE] == 0.0:
             return True
     return False
 
@@ -178,7 +155,7 @@ def _pull(count, discs, group):
     """The accelerations without contact forces, in `motion`."""
     for m in range(count):
         i = group.members[m]
-        group.motion[m, 0], group.motion[m, 1] = discs[i, GX], discs[i, GY]
+        group.motion[m, 0], group.motion[m, 1] = discs[i, Disc.GX], discs[i, Disc.GY]
 
 
 @compiled
@@ -194,14 +171,16 @@ def _list_closed(touching, discs, group, numbers):
     contacts = group.contacts
     closed = 0
     for c in range(touching):
-        contacts[c, BIAS] = 0.0
+        contacts[c, Contact.BIAS] = 0.0
         i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
-        slow = max(4.0 * group.noise[0], touch_speed(discs, i, j, numbers[NOW]))
-        if contacts[c, OPENING] > 0.0 and opening_rate(c, group.other, group) <= slow:
+        slow = max(4.0 * group.noise[0], touch_speed(discs, i, j, numbers[Number.NOW]))
+        if contacts[c, Contact.COMPLIANCE] > 0.0 and opening_rate(c, group.other, group) <= slow:
             x, y = _relative(c, group.other, group)
-            contacts[c, BIAS] = contacts[c, ROUND] * (x * x + y * y) / contacts[c, DISTANCE]
-            contacts[c, GIVEN] = contacts[c, FORCE]
-            group.marks[ACTIVE, closed] = c
+            contacts[c, Contact.BIAS] = (
+                contacts[c, Contact.ROUND] * (x * x + y * y) / contacts[c, Contact.DISTANCE]
+            )
+            contacts[c, Contact.IMPULSE] = contacts[c, Contact.FORCE]
+            group.marks[Mark.ACTIVE, closed] = c
             closed += 1
     return closed
 
@@ -212,18 +191,18 @@ def _stop_where_still(count, closed, discs, group):
     pull = 0.0
     for m in range(count):
         i = group.members[m]
-        pull = max(pull, abs(discs[i, GX]) + abs(discs[i, GY]))
+        pull = max(pull, abs(discs[i, Disc.GX]) + abs(discs[i, Disc.GY]))
     for k in range(closed):
-        c = group.marks[ACTIVE, k]
-        if group.contacts[c, GIVEN] > 0.0:
+        c = group.marks[Mark.ACTIVE, k]
+        if group.contacts[c, Contact.IMPULSE] > 0.0:
             for p in range(2):
                 m = group.links[c, p]
-                speed = STILL * math.sqrt(pull * discs[group.members[m], RADIUS])
+                speed = STILL * math.sqrt(pull * discs[group.members[m], Disc.RADIUS])
                 if _size(group.motion, m) > STILL * pull or _size(group.other, m) > speed:
                     return False
     for k in range(closed):
-        c = group.marks[ACTIVE, k]
-        if group.contacts[c, GIVEN] > 0.0:
+        c = group.marks[Mark.ACTIVE, k]
+        if group.contacts[c, Contact.IMPULSE] > 0.0:
             for p in range(2):
                 m = group.links[c, p]
                 group.motion[m, 0], group.motion[m, 1] = 0.0, 0.0
@@ -243,16 +222,16 @@ def _duration(closed, discs, group, numbers):
     At rest they would turn by it under the pull of their weight across the line of centres. Along the flat side
     of an obstacle nothing turns: its end matters.
     """
-    duration = NEVER
+    duration = INFINITY
     for k in range(closed):
-        c = group.marks[ACTIVE, k]
-        if group.contacts[c, GIVEN] > 0.0:
-            distance = group.contacts[c, DISTANCE]
+        c = group.marks[Mark.ACTIVE, k]
+        if group.contacts[c, Contact.IMPULSE] > 0.0:
+            distance = group.contacts[c, Contact.DISTANCE]
             speed = math.hypot(*_relative(c, group.other, group))
             turn = STEP_ANGLE * distance / speed
             for p in range(2):
                 i = group.members[group.links[c, p]]
-                pull = math.hypot(discs[i, GX], discs[i, GY])
+                pull = math.hypot(discs[i, Disc.GX], discs[i, Disc.GY])
                 turn = min(turn, STEP_ANGLE * math.sqrt(distance / pull))
             if is_straight(group.members[group.links[c, 1]], discs):
                 stay = max(_stay(c, discs, group, numbers), LEAST_SHARE * turn)
@@ -266,17 +245,19 @@ def _slides(c, discs, group, numbers):
     """True if a disc moves along a flat side, not from it by so little that it will be back at once."""
     i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
     x, y = _relative(c, group.other, group)
-    rate = group.contacts[c, NX] * x + group.contacts[c, NY] * y
-    return group.contacts[c, ROUND] == 0.0 and abs(rate) <= speed_noise(discs, i, j, numbers[NOW])
+    rate = group.contacts[c, Contact.NX] * x + group.contacts[c, Contact.NY] * y
+    return group.contacts[c, Contact.ROUND] == 0.0 and abs(rate) <= speed_noise(
+        discs, i, j, numbers[Number.NOW]
+    )
 
 
 @compiled
 def _stay(c, discs, group, numbers):
     """For how long the foot of a disc on an obstacle passes none of its ends."""
     i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
-    length = math.hypot(discs[j, TX], discs[j, TY])
-    tx, ty = discs[j, TX] / length, discs[j, TY] / length
-    x, y, _, _, _, _ = relative_motion(discs, i, j, numbers[NOW])
+    length = math.hypot(discs[j, Disc.TX], discs[j, Disc.TY])
+    tx, ty = discs[j, Disc.TX] / length, discs[j, Disc.TY] / length
+    x, y, _, _, _, _ = relative_motion(discs, i, j, numbers[Number.NOW])
     vx, vy = _relative(c, group.other, group)
     ax, ay = _relative(c, group.motion, group)
     return passing(-(x * tx + y * ty), -(vx * tx + vy * ty), -(ax * tx + ay * ty), length, 0.0)
@@ -290,12 +271,13 @@ def _end_gap(c, h, discs, group):
     """
     vx, vy = _relative(c, group.other, group)
     ax, ay = _relative(c, group.motion, group)
-    x = group.contacts[c, NX] * group.contacts[c, DISTANCE] + h * (vx + 0.5 * h * ax)
-    y = group.contacts[c, NY] * group.contacts[c, DISTANCE] + h * (vy + 0.5 * h * ay)
+    x = group.contacts[c, Contact.NX] * group.contacts[c, Contact.DISTANCE] + h * (vx + 0.5 * h * ax)
+    y = group.contacts[c, Contact.NY] * group.contacts[c, Contact.DISTANCE] + h * (vy + 0.5 * h * ay)
     i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
-    if group.contacts[c, ROUND] == 0.0:
-        return group.contacts[c, NX] * x + group.contacts[c, NY] * y - (discs[i, RADIUS] + discs[j, RADIUS])
-    return math.sqrt(x * x + y * y) - (discs[i, RADIUS] + discs[j, RADIUS])
+    reach = discs[i, Disc.RADIUS] + discs[j, Disc.RADIUS]
+    if group.contacts[c, Contact.ROUND] == 0.0:
+        return group.contacts[c, Contact.NX] * x + group.contacts[c, Contact.NY] * y - reach
+    return math.sqrt(x * x + y * y) - reach
 
 
 @compiled
@@ -306,17 +288,17 @@ def _meet_at_end(h, count, closed, discs, group, numbers):
     would be pushed the harder the longer one tries.
     """
     contacts = group.contacts
-    before, in_vain = NEVER, 0
+    before, in_vain = INFINITY, 0
     for _ in range(MOST_CORRECTIONS):
         met, worst = True, 0.0
         for k in range(closed):
-            c = group.marks[ACTIVE, k]
+            c = group.marks[Mark.ACTIVE, k]
             gap = _end_gap(c, h, discs, group) - min(_end_gap(c, 0.0, discs, group), 0.0)
             i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
-            noise = place_noise(discs, i, j, numbers[NOW])
-            if gap < -noise or (gap > noise and contacts[c, GIVEN] > 0.0):
+            noise = place_noise(discs, i, j, numbers[Number.NOW])
+            if gap < -noise or (gap > noise and contacts[c, Contact.IMPULSE] > 0.0):
                 met, worst = False, max(worst, abs(gap))
-            contacts[c, BIAS] += 2.0 * gap / (h * h) - opening_rate(c, group.motion, group)
+            contacts[c, Contact.BIAS] += 2.0 * gap / (h * h) - opening_rate(c, group.motion, group)
         in_vain = in_vain + 1 if worst > 0.5 * before else 0
         if met or in_vain == MOST_IN_VAIN:
             return met
