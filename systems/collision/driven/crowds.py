@@ -193,7 +193,7 @@ class ContactProblem:
         moves = members < len(motion)
         group.motion[moves] = motion[members[moves]]
         group.contacts[:, Contact.BIAS], group.contacts[:, Contact.IMPULSE] = bias, first
-        kernels().apply_contact_forces(len(members), len(bias), NO_IMPACT, tolerance, group)
+        kernels().resolve(len(members), len(bias), NO_IMPACT, tolerance, group)
         changed = motion.copy()
         changed[members[moves]] = group.motion[moves]
         return changed, group.contacts[:, Contact.IMPULSE].copy()
