@@ -102,7 +102,7 @@ class Support(Law):
 def persistent_contacts(model: Model) -> PersistentContacts | None:
     """The persistent contacts of driven particles, if there are any."""
     contacts = model.clock.collision_state
-    if not isinstance(contacts, PersistentContacts) or not len(contacts.pairs):
+    if type(contacts) is not PersistentContacts or not len(contacts.pairs):  # isinstance of a Mapping is slow
         return None
     return contacts if contacts.pairs.max() < model.particles.count + len(obstacles(model)) else None
 

@@ -19,8 +19,9 @@ from components.world import Derivation
 from systems.base import Driver, StepSystem, StopReason
 from systems.catalogue import DRIVERS
 from systems.collision.driven.stepper import DrivenCollisions
-from systems.collision.free.flight import Flight, part_overlaps
+from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
+from systems.collision.overlaps import part_overlaps
 from systems.collision.system import FreeFlight, detects_impacts, flies_free
 from systems.edit.pull import Pull
 from systems.physics.automatic import choose

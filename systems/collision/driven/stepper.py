@@ -25,8 +25,8 @@ from systems.collision.driven.crowds import ContactProblem, CrowdStepper
 from systems.collision.driven.impact import TOUCHING_GAP, ImpactResolver
 from systems.collision.driven.neighbours import NeighbourList
 from systems.collision.driven.trial import Land, TrialStep
-from systems.collision.free.flight import part_overlaps
 from systems.collision.impacts import Impacts
+from systems.collision.overlaps import part_overlaps
 from systems.collision.system import persistent_contacts
 from systems.program.program import Program
 

@@ -10,13 +10,11 @@ import inspect
 from collections.abc import Callable
 from functools import cache
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from systems.collision.columns import Count
+from systems.collision.free.discs import Discs
 from systems.program.compiler import compile_module, is_compiled, note_compiled
-
-if TYPE_CHECKING:
-    from systems.collision.free.discs import Discs
 
 EVENTS, HORIZONS, PILES = "fly", "open_horizon", "take_steps"
 
@@ -69,7 +67,5 @@ def load_part(part: str) -> None:
 @cache
 def engine() -> type[Discs]:
     """Discs whose parts are compiled once and for all; each by its first call, unless it is loaded before."""
-    from systems.collision.free.discs import Discs
-
     kernels: dict[str, Any] = {part: _module(part) for part in (EVENTS, HORIZONS, PILES)}
     return type("Compiled", (Discs,), {part: staticmethod(getattr(kernels[part], part)) for part in kernels})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,67 +13,18 @@ from components.collision_state import FreeFlightState
 from components.field import Role
 from components.model import Model
 from components.obstacles import obstacles
-from components.rod import nodes
 from systems.base import StopReason
 from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc
-from systems.collision.driven.compiled import kernels
 from systems.collision.free.compiled import EVENTS, HORIZONS, PILES, engine, has_parts, load_part
+from systems.collision.free.discs import Discs
 from systems.collision.impacts import Impacts
 
-if TYPE_CHECKING:
-    from systems.collision.free.discs import Discs
-
-UNSEEN_OVERLAP = (
-    1e-3  # of a radius: overlaps that steps of piles leave, too small to see and not worth a message
-)
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
 
 
 def may_pile(model: Model, pulled: bool) -> bool:
     """True if a hand that pulls, or forces, press particles together for long."""
     return pulled or bool(model.particles.constant_force.any())
-
-
-def part_overlaps(model: Model) -> str:
-    """Move overlapping particles apart, except nodes of structures from each other; returns a message, or "".
-
-    There is no message about overlaps that are too small to see.
-    """
-    from systems.broad_phase import near_pairs
-
-    particles, others = model.particles, obstacles(model)
-    node: NDArray[np.bool_] = np.ones(particles.count + len(others), dtype=bool)  # obstacles count as nodes
-    held = node.copy()
-    held[: particles.count] = (particles.mobility == 0.0).all(axis=1)
-    node[: particles.count] = nodes(model)
-
-    def among(pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
-        left_alone: NDArray[np.bool_] = np.logical_or(node[pairs].all(axis=1), held[pairs].all(axis=1))
-        return np.logical_not(left_alone)
-
-    displacement = particles.displacement.copy()
-    touching = near_pairs(particles.position + displacement, particles.radius, others)
-    if not among(touching).any():
-        return ""
-    from systems.collision.overlaps import overlaps, part
-
-    overlapping = overlaps(particles.position + displacement, particles.radius, others)
-    overlapping = overlapping[among(overlapping)]
-    count = len(overlapping)
-    if count == 0:
-        return ""
-    columns = particles.position, displacement, particles.radius, particles.mobility
-    left = part(*columns, among, kernels().part, others)
-    farthest = float(np.abs(displacement - particles.displacement).max())
-    model.writable("particles.displacement")[...] = displacement
-    if farthest <= UNSEEN_OVERLAP * float(particles.radius.min()) and not left:
-        return ""
-    pairs = "1 pair of particles" if count == 1 else f"{count} pairs of particles"
-    note = f"{pairs} overlapped and were moved apart along their lines of centres."
-    if (overlapping[:, 1] >= particles.count).any():
-        pairs = "1 overlap" if count == 1 else f"{count} overlaps"
-        note = f"{pairs} of particles with others or with obstacles: they were moved apart."
-    return note if left == 0 else f"{note} {left} still overlap: move them, or free a direction."
 
 
 class PullingHand(Protocol):

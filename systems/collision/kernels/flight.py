@@ -1,15 +1,15 @@
-"""Flight of discs from event to event: the earliest meeting happens, then what it changed is foreseen anew.
+"""Flight of discs from event to event: the earliest impact happens, then the impacts of discs on new paths are computed.
 
-Every disc keeps the epoch of its own last change; nothing else is touched. Discs that touch at the instant of
-an event, directly or through others, take part in it together. Where contacts last, events are also the steps
-in which their forces are renewed.
+Every disc keeps the epoch of its own last change; other discs are not touched. Discs that touch at the instant of an
+event, directly or through others, take part in it together. Where contacts persist, events are also the ends of steps,
+when their forces are renewed.
 """
 
 import math
 
 import numpy as np
 
-from systems.collision.columns import NONE, SPEED_NOISE, Contact, Count, Disc, Entry, Number, Reason
+from systems.collision.columns import NONE, SPEED_NOISE, Contact, Count, Detail, Disc, Entry, Number, Reason
 from systems.collision.kernels import compiled
 from systems.collision.kernels.grid import (
     enclose,
@@ -45,17 +45,14 @@ from systems.collision.kernels.time_of_impact import (
     touch_speed,
 )
 
-DONE, BUSY, REPORT_FULL = int(Reason.DONE), int(Reason.BUSY), int(Reason.REPORT_FULL)
-GO_ON = int(Reason.GO_ON)
-QUEUE_FULL, GROUP_FULL = int(Reason.QUEUE_FULL), int(Reason.GROUP_FULL)
-TINY = 1e-300  # m; distance of centres that coincide
+COINCIDENT = 1e-300  # m; in place of the distance of centres that coincide
 
 
 @compiled
 def fly(until, most_events, discs, grid, constraints, queue, group, report, numbers, counts):
-    """Let the events of the present window happen up to a time (s), at most `most_events` of them. Returns a Reason.
+    """Let the events of the present horizon happen up to a time (s), at most `most_events` of them. Returns a Reason.
 
-    After DONE, every disc is on its path at `until`; after any other reason, call again when it is dealt with.
+    After DONE, every disc is on its path at `until`; after any other reason, remove the reason and call again.
     """
     last = counts[Count.EVENTS] + most_events
     while counts[Count.RENEW] == 0 and counts[Count.STEPPING] == 0:
@@ -66,47 +63,47 @@ def fly(until, most_events, discs, grid, constraints, queue, group, report, numb
         if counts[Count.QUEUED] == 0 or queue.times[0] > stop:
             numbers[Number.NOW] = max(numbers[Number.NOW], stop)
             if until <= numbers[Number.HORIZON_END]:
-                return DONE
+                return Reason.DONE
             counts[Count.RENEW] = 1
         elif counts[Count.EVENTS] >= last:
-            return BUSY
+            return Reason.BUSY
         else:
             numbers[Number.NOW] = max(numbers[Number.NOW], queue.times[0])
             reason = _next_event(discs, grid, constraints, queue, group, report, numbers, counts)
-            if reason != DONE:
+            if reason != Reason.DONE:
                 return reason
-    return GO_ON
+    return Reason.GO_ON
 
 
 @compiled
 def _next_event(discs, grid, constraints, queue, group, report, numbers, counts):
-    """The first event of the queue happens. Returns a Reason."""
+    """Let the first event of the queue happen. Returns a Reason."""
     i, j = np.int64(queue.impacts[0, 0]), np.int64(queue.impacts[0, 1])
     count, touching = _gather(i, j, discs, grid, constraints, group, numbers, counts)
     full = touching > group.links.shape[0] or 2 * touching > counts[Count.SPARES]
     if full or counts[Count.REPORTED] + touching > report.pairs.shape[0]:
         _dismiss(count, group)
-        return GROUP_FULL if full else REPORT_FULL
+        return Reason.GROUP_FULL if full else Reason.REPORT_FULL
     if crowded(touching, numbers, counts):
         _dismiss(count, group)
         begin_steps(numbers, counts)
-        return DONE
+        return Reason.DONE
     drop_first(queue, counts[Count.QUEUED])
     counts[Count.QUEUED] -= 1
     counts[Count.EVENTS] += 1
     stop_sinking(count, touching, group)
     respond(count, touching, _restitution(touching, discs, group, numbers), group)
     _report(touching, discs, group, report, numbers, counts)
-    _note_noise(count, touching, discs, group)
+    _set_noise(count, touching, discs, group)
     duration = support(count, touching, discs, group, numbers)
-    _make_contacts_last(count, touching, discs, constraints, group, counts)
+    _keep_contacts(count, touching, discs, constraints, group, counts)
     struck = 0 if i == j else 2
     _redirect(count, struck, duration, discs, group, numbers)
     _enclose_anew(count, discs, grid, group, numbers, counts)
-    reason = DONE
+    reason = Reason.DONE
     if not _schedule_anew(count, discs, grid, constraints, queue, group, numbers, counts):
         counts[Count.RENEW] = 1
-        reason = QUEUE_FULL
+        reason = Reason.QUEUE_FULL
     _dismiss(count, group)
     return reason
 
@@ -114,19 +111,19 @@ def _next_event(discs, grid, constraints, queue, group, report, numbers, counts)
 @compiled
 def take_steps(until, most_steps, discs, grid, constraints, pile, report, numbers, counts):
     """Let a pile take its steps, at most `most_steps`, until it is at rest or dissolved. Returns a Reason."""
-    last, reason = counts[Count.EVENTS] + most_steps, GO_ON
-    while counts[Count.STEPPING] and reason == GO_ON:
+    last, reason = counts[Count.EVENTS] + most_steps, Reason.GO_ON
+    while counts[Count.STEPPING] and reason == Reason.GO_ON:
         if numbers[Number.STEP_END] > until:
             numbers[Number.NOW] = max(numbers[Number.NOW], until)
-            reason = DONE
+            reason = Reason.DONE
         elif counts[Count.EVENTS] >= last:
-            reason = BUSY
+            reason = Reason.BUSY
         else:
             numbers[Number.NOW] = numbers[Number.STEP_END]
             reason = step(discs, grid, constraints, pile, report, numbers, counts)
-            if reason == DONE:
+            if reason == Reason.DONE:
                 counts[Count.EVENTS] += 1
-                reason = GO_ON
+                reason = Reason.GO_ON
     if counts[Count.STEPPING]:
         enter_pushing_pairs(discs, constraints, pile, counts)
     return reason
@@ -146,7 +143,7 @@ def _admit(i, count, discs, group, time):
 
 @compiled
 def _velocity(i, discs, time):
-    """Velocity of a disc; at the end of a step in lasting contact that of RATTLE before its projection."""
+    """Velocity of a disc; at the end of a step in persistent contact, the velocity of RATTLE before its projection."""
     s = time - discs[i, Disc.EPOCH]
     vx, vy, ax, ay = discs[i, Disc.VX], discs[i, Disc.VY], discs[i, Disc.AX], discs[i, Disc.AY]
     if (ax != discs[i, Disc.GX] or ay != discs[i, Disc.GY]) and (
@@ -164,7 +161,7 @@ def _dismiss(count, group):
 
 @compiled
 def _link(i, j, force, touching, discs, group, time):
-    """Note a contact of the group; those for which there is no room are only counted."""
+    """Add a contact to the group; a contact for which there is no room is only counted."""
     if touching < group.links.shape[0]:
         dx, dy, _, _, _, _ = relative_motion(discs, i, j, time)
         dx, dy, rounded = nearest(dx, dy, j, discs)
@@ -173,7 +170,7 @@ def _link(i, j, force, touching, discs, group, time):
         contact = group.contacts[touching]
         contact[Contact.ROUND] = rounded
         if distance == 0.0:  # no direction is better than another
-            dx = distance = TINY
+            dx = distance = COINCIDENT
         contact[Contact.NX], contact[Contact.NY], contact[Contact.DISTANCE] = (
             dx / distance,
             dy / distance,
@@ -186,9 +183,9 @@ def _link(i, j, force, touching, discs, group, time):
 
 @compiled
 def _gather(i, j, discs, grid, constraints, group, numbers, counts):
-    """The group of i and j: all that touches them now, directly or through others that can move.
+    """Gather the group of i and j: all discs that touch them now, directly or through discs that can move.
 
-    Returns how many members and contacts it has. The contact of i and j, if they are two, is the first.
+    Returns the numbers of members and contacts. The contact of i and j, if they are two, is the first.
     """
     now = numbers[Number.NOW]
     _admit(i, 0, discs, group, now)
@@ -218,13 +215,13 @@ def _gather(i, j, discs, grid, constraints, group, numbers, counts):
 
 @compiled
 def _is_new(m, b, discs, group):
-    """False if the contacts of disc b, and so that with member m, are noted already."""
+    """False if the contacts of disc b, and so its contact with member m, are in the group already."""
     return group.place[b] == NONE or group.place[b] > m or is_held(b, discs)
 
 
 @compiled
 def _touch(a, b, discs, constraints, now):
-    """True if two discs touch that may collide and have no lasting contact."""
+    """True if two discs touch, may collide and have no persistent contact."""
     dx, dy, _, _, _, _ = relative_motion(discs, a, b, now)
     if is_shared_end(dx, dy, b, discs):
         return False
@@ -237,7 +234,7 @@ def _touch(a, b, discs, constraints, now):
 
 @compiled
 def _gather_persistent(m, count, touching, discs, constraints, group, now):
-    """Add the lasting contacts of member m."""
+    """Add the persistent contacts of member m."""
     a = group.members[m]
     entry = constraints.first_persistent[a]
     while entry != NONE:
@@ -252,12 +249,12 @@ def _gather_persistent(m, count, touching, discs, constraints, group, now):
     return count, touching
 
 
-# --- what it does -------------------------------------------------------------------------------------------
+# --- the event -------------------------------------------------------------------------------------------
 
 
 @compiled
 def _restitution(touching, discs, group, numbers):
-    """The least restitution of what approaches faster than rest; 0 if nothing in the group does."""
+    """The least restitution of the contacts that approach faster than the speed of rest; 0 if there are none."""
     least = INFINITY
     for c in range(touching):
         i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
@@ -270,7 +267,7 @@ def _restitution(touching, discs, group, numbers):
 
 @compiled
 def _report(touching, discs, group, report, numbers, counts):
-    """Report the contacts that had an impulse, other than to bring to rest what moves by round-off only.
+    """Report the contacts with an impulse larger than one that stops a motion of round-off only.
 
     The energy lost is −Σ p (s + s')/2, with s, s' the speeds of separation before and after; in a joint
     impact, where contacts pass energy on, each has a share of the sum in proportion to its impulse.
@@ -288,12 +285,11 @@ def _report(touching, discs, group, report, numbers, counts):
         if impulse * group.contacts[c, Contact.COMPLIANCE] > slow:
             k = counts[Count.REPORTED]
             report.pairs[k, 0], report.pairs[k, 1] = min(i, j), max(i, j)
-            report.details[k, 0] = numbers[Number.NOW]
-            report.details[k, 1] = impulse
-            report.details[k, 2] = loss * (impulse / impulses)
-            report.details[k, 3], report.details[k, 4] = _place(
-                i, group.contacts[c], discs, numbers[Number.NOW]
-            )
+            report.details[k, Detail.TIME] = numbers[Number.NOW]
+            report.details[k, Detail.IMPULSE] = impulse
+            report.details[k, Detail.LOSS] = loss * (impulse / impulses)
+            x, y = _place(i, group.contacts[c], discs, numbers[Number.NOW])
+            report.details[k, Detail.X], report.details[k, Detail.Y] = x, y
             counts[Count.REPORTED] += 1
             counts[Count.IMPACTS] += 1
 
@@ -308,8 +304,8 @@ def _place(i, contact, discs, time):
 
 
 @compiled
-def _make_contacts_last(count, touching, discs, constraints, group, counts):
-    """Enter the contacts with a force into the table, instead of all that the members had."""
+def _keep_contacts(count, touching, discs, constraints, group, counts):
+    """Enter the contacts with a force into the table of persistent contacts, in place of all entries of the members."""
     for m in range(count):
         forget_persistent(group.members[m], constraints, counts)
     for c in range(touching):
@@ -324,10 +320,10 @@ def _make_contacts_last(count, touching, discs, constraints, group, counts):
 
 
 @compiled
-def _note_noise(count, touching, discs, group):
-    """Round-off in the members' velocities: of what they are and of the impulses that made them so.
+def _set_noise(count, touching, discs, group):
+    """Set the round-off in the members' velocities: of the velocities and of the impulses that caused them.
 
-    Where impulses at several contacts were sought together, it is what was not worth seeking further.
+    Of impulses of several contacts, it is the tolerance of their projection.
     """
     for m in range(count):
         speed = abs(group.motion[m, 0]) + abs(group.motion[m, 1])
@@ -340,9 +336,9 @@ def _note_noise(count, touching, discs, group):
 
 @compiled
 def _redirect(count, struck, duration, discs, group, numbers):
-    """Start new paths now: of the first `struck` members and of those whose velocity or acceleration changed.
+    """Start new paths now: of the first `struck` members and of all whose velocity or acceleration changed.
 
-    Those that contacts push as they move get the group's next step: it may fall apart before.
+    The end of the group's step is due for members that contacts push as they move.
     """
     now = numbers[Number.NOW]
     for m in range(count):
@@ -367,7 +363,7 @@ def _redirect(count, struck, duration, discs, group, numbers):
 
 @compiled
 def _enclose_anew(count, discs, grid, group, numbers, counts):
-    """Give the discs with new paths new boxes; the window is opened anew if one is too large for the grid."""
+    """Set the boxes of the discs with new paths; a new horizon is opened if a box is too large for the grid."""
     layers, cell = counts[Count.LAYERS], numbers[Number.CELL]
     for m in range(count):
         i = group.members[m]
@@ -384,7 +380,7 @@ def _enclose_anew(count, discs, grid, group, numbers, counts):
 
 @compiled
 def _schedule_anew(count, discs, grid, constraints, queue, group, numbers, counts):
-    """Foresee the meetings of the discs with new paths. False if the queue is full."""
+    """Schedule the impacts of the discs with new paths. False if the queue is full."""
     if counts[Count.RENEW]:
         return True
     for m in range(count):
@@ -393,7 +389,7 @@ def _schedule_anew(count, discs, grid, constraints, queue, group, numbers, count
             continue
         left, bottom, right, top = grid.boxes[i]
         near = neighbours(i, left, bottom, right, top, grid, counts[Count.LAYERS], numbers[Number.CELL])
-        grid.found[near] = i  # and the step of its lasting contacts
+        grid.found[near] = i  # and the end of the step of its persistent contacts
         for k in range(near + 1):
             j = grid.found[k]
             again = (

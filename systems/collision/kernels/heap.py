@@ -1,4 +1,4 @@
-"""A binary heap of meetings, earliest first; equal times in the order of the discs' numbers."""
+"""A binary heap of impacts, earliest first; equal times in the order of the discs' numbers."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from systems.collision.kernels import compiled
 
 @compiled
 def _before(time, i, j, k, queue):
-    """True if a meeting comes before the one at k."""
+    """True if an impact comes before the one at k."""
     other = queue.times[k]
     if time != other:
         return time < other
@@ -28,7 +28,7 @@ def _place(queue, k, time, i, j, changes_i, changes_j):
 
 @compiled
 def _impact_at(queue, k):
-    """What is at k, in numbers that need no code of their own for being short in the queue."""
+    """The impact at k, as int64: 32-bit numbers would be compiled separately wherever they are used."""
     i, j = np.int64(queue.impacts[k, 0]), np.int64(queue.impacts[k, 1])
     return queue.times[k], i, j, np.int64(queue.impacts[k, 2]), np.int64(queue.impacts[k, 3])
 
@@ -42,7 +42,7 @@ def _move(queue, source, target):
 
 @compiled
 def push(queue, size, time, i, j, changes_i, changes_j):
-    """Add a meeting to a heap of `size` that has room for it."""
+    """Add an impact to a heap of `size` that has room for it."""
     k = size
     while k > 0:
         parent = (k - 1) // 2
@@ -55,7 +55,7 @@ def push(queue, size, time, i, j, changes_i, changes_j):
 
 @compiled
 def _sink(queue, size, k):
-    """Let the meeting at k sink to where it belongs."""
+    """Let the impact at k sink to its place."""
     time, i, j, changes_i, changes_j = _impact_at(queue, k)
     while 2 * k + 1 < size:
         child = 2 * k + 1
@@ -73,7 +73,7 @@ def _sink(queue, size, k):
 
 @compiled
 def drop_first(queue, size):
-    """Remove the earliest meeting; the heap then has size − 1."""
+    """Remove the earliest impact; the heap then has size − 1."""
     if size > 1:
         _move(queue, size - 1, 0)
         _sink(queue, size - 1, 0)
@@ -81,20 +81,20 @@ def drop_first(queue, size):
 
 @compiled
 def changes(i, discs):
-    """How often the path of a disc has changed, as a meeting notes it."""
+    """Number of changes of the path of a disc, as the queue keeps it."""
     return int(discs[i, Disc.CHANGES]) & MOST_CHANGES
 
 
 @compiled
 def is_void(queue, k, discs):
-    """True if a disc of the meeting has changed its path since."""
+    """True if a disc of the impact at k has changed its path since."""
     _, i, j, changes_i, changes_j = _impact_at(queue, k)
     return changes_i != changes(i, discs) or changes_j != changes(j, discs)
 
 
 @compiled
 def purge(queue, size, discs):
-    """Remove the void meetings; returns how many are left."""
+    """Remove the void impacts; returns the number of impacts that are left."""
     kept = 0
     for k in range(size):
         if not is_void(queue, k, discs):

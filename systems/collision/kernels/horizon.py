@@ -1,9 +1,8 @@
-"""Windows of time: for how long meetings are foreseen, and between which discs.
+"""The horizon: up to which time impacts are computed in advance, and of which pairs of discs.
 
-When a window opens, every disc gets a box around its path until the window's end, and the meetings of discs
-whose boxes overlap are foreseen and queued. What is foreseen for two discs follows from their paths alone, so
-that windows, boxes, grid and queue can be thrown away and made anew at any time without changing a bit of what
-comes out.
+When a horizon opens, every disc gets a box around its path until the horizon's end, and the impacts of discs whose
+boxes overlap are computed and queued. The impact of two discs follows from their paths alone, so that horizon, boxes,
+grid and queue can be discarded and made anew at any time without changing a bit of the results.
 """
 
 from systems.collision.columns import NONE, Count, Disc, Number, Reason
@@ -29,11 +28,9 @@ from systems.collision.kernels.time_of_impact import (
     speed_noise,
 )
 
-DONE, QUEUE_FULL, GRID_FULL = int(Reason.DONE), int(Reason.QUEUE_FULL), int(Reason.GRID_FULL)
-
 LONGEST_HORIZON, SHORTEST_HORIZON = 2.0**20, 2.0**-200  # s
 BOX_COST = 2.5  # of renewing a disc's box, relative to that of looking at one neighbour (measured)
-MOST_NEIGHBOURS = 64  # neighbours per disc; a window with more is opened anew with a shorter one
+MOST_NEIGHBOURS = 64  # per disc; with more, a shorter horizon is opened
 SAMPLED_DISCS = 128  # discs that decide the size of the grid's cells
 
 
@@ -50,7 +47,7 @@ def is_joined(i, j, constraints):
 def next_impact(i, j, discs, constraints, end):
     """Time at which two discs next touch while they approach, up to `end`; INFINITY if they do not.
 
-    For i = j: when the forces in the disc's lasting contacts are due again.
+    For i = j: when the forces in the disc's persistent contacts are due again.
     """
     if i == j:
         return discs[i, Disc.STEP]
@@ -78,7 +75,7 @@ def next_impact(i, j, discs, constraints, end):
 
 @compiled
 def schedule_impact(i, j, discs, constraints, queue, numbers, counts):
-    """Foresee a meeting and queue it if it falls into the window. False if the queue is full."""
+    """Compute the next impact of two discs and queue it if it is within the horizon. False if the queue is full."""
     time = next_impact(i, j, discs, constraints, numbers[Number.HORIZON_END])
     if time > numbers[Number.HORIZON_END]:
         return True
@@ -95,7 +92,7 @@ def schedule_impact(i, j, discs, constraints, queue, numbers, counts):
 
 @compiled
 def open_horizon(discs, grid, constraints, queue, numbers, counts):
-    """Choose a window that begins now, box all discs and queue all meetings in it. Returns a Reason."""
+    """Choose a horizon from now on, box all discs and queue all impacts within it. Returns a Reason."""
     counts[Count.RENEW] = 1
     _choose_length(discs, numbers)
     while True:
@@ -103,49 +100,49 @@ def open_horizon(discs, grid, constraints, queue, numbers, counts):
         resting, _ = _survey(discs, numbers, 0.0)
         most = INFINITY if area <= 2.0 * resting else MOST_NEIGHBOURS * discs.shape[0]
         reason, pairs = _fill(most, discs, grid, constraints, queue, numbers, counts)
-        if reason != DONE:
+        if reason != Reason.DONE:
             return reason
         if pairs <= most:
             break
         numbers[Number.HORIZON] = max(0.25 * numbers[Number.HORIZON], SHORTEST_HORIZON)
     numbers[Number.CROWDING] = max(pairs, 0.05 * discs.shape[0]) / area
     counts[Count.RENEW] = 0
-    return DONE
+    return Reason.DONE
 
 
 @compiled
 def _fill(most, discs, grid, constraints, queue, numbers, counts):
-    """Boxes, grid and queue of a window. Returns a Reason and how many boxes overlap; gives up above `crowd`."""
+    """Fill boxes, grid and queue. Returns a Reason and the number of boxes that overlap; stops above `most`."""
     numbers[Number.HORIZON_END] = numbers[Number.NOW] + numbers[Number.HORIZON]
     for i in range(discs.shape[0]):
         enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.HORIZON_END])
     set_layers(grid, numbers, counts)
     layers, cell = counts[Count.LAYERS], numbers[Number.CELL]
     if 8 * discs.shape[0] * layers > grid.after.shape[0]:
-        return GRID_FULL, 0
+        return Reason.GRID_FULL, 0
     grid.heads[:] = NONE
     counts[Count.QUEUED] = 0
     pairs = 0
     for i in range(discs.shape[0]):
         left, bottom, right, top = grid.boxes[i]
         near = neighbours(i, left, bottom, right, top, grid, layers, cell)
-        grid.found[near] = i  # and the step of its lasting contacts
+        grid.found[near] = i  # and the step of its persistent contacts
         for k in range(near + 1):
             if not schedule_impact(i, grid.found[k], discs, constraints, queue, numbers, counts):
-                return QUEUE_FULL, 0
+                return Reason.QUEUE_FULL, 0
         enter(i, grid, layers, cell)
         pairs += near
         if pairs > most:
             break
-    return DONE, pairs
+    return Reason.DONE, pairs
 
 
-# --- length of the window: what costs least -------------------------------------------------------------
+# --- length of the horizon: the cheapest -------------------------------------------------------------
 
 
 @compiled
 def _survey(discs, numbers, horizon):
-    """Sums over all discs: the areas of their boxes (m²) for a length of the window, and radius × speed (m²/s).
+    """Sums over all discs: the areas of their boxes (m²) for a length of the horizon (s), and radius × speed (m²/s).
 
     No box counts for more than would hold half of all discs.
     """
@@ -165,7 +162,7 @@ def _survey(discs, numbers, horizon):
 
 @compiled
 def _cost(discs, numbers, horizon):
-    """Cost per second: all boxes and pairs once a window, and those of two discs for every impact.
+    """Cost per second: all boxes and pairs once a horizon, and those of two discs for every impact.
 
     With 2 × crowding discs per area, crowding × area pairs of boxes overlap and about crowding × sweep pairs
     of discs meet per second.
@@ -180,7 +177,7 @@ def _cost(discs, numbers, horizon):
 
 @compiled
 def _choose_length(discs, numbers):
-    """Adapt the length of the window to speeds and crowding; seek it the first time."""
+    """Adapt the length of the horizon to speeds and crowding; search for it the first time."""
     if discs.shape[0] == 0:
         numbers[Number.HORIZON] = LONGEST_HORIZON
         return

@@ -18,15 +18,15 @@ from systems.collision.kernels.projection import (
     push_apart,
 )
 
-REFLECTIONS_BEFORE_JAM_TEST = 256  # in one impact, after which to look whether there ever is an end to them
-MOST_REFLECTIONS = 1000000  # after these, or where there is none, the rest of it is taken as plastic
+REFLECTIONS_BEFORE_JAM_TEST = 256  # in one impact, after which a test shows whether they can ever end
+MOST_REFLECTIONS = 1000000  # after these, or where they never end, the rest of the impact is plastic
 
 
 @compiled
 def respond(members, count, restitution, group):
     """Carry out the impact of a group of `count` contacts whose normals, openings and biases are set.
 
-    `motion` goes from the velocities before to those after, `initial` keeps those before; sets IMPULSE.
+    `motion` goes from the velocities before the impact to those after it; `initial` keeps the former. Sets TOTAL_IMPULSE.
     """
     begin(members, group)
     for c in range(count):
@@ -85,7 +85,7 @@ def _reflect(members, count, group):
 def _is_jammed(members, count, group):
     """True if no motion opens all contacts that pushed so far: some of them will approach for ever.
 
-    Such are those of a row of discs between two walls. (Gordan's alternative: impulses that cancel each other
+    An example is a row of discs between two walls. (Gordan's alternative: impulses that cancel each other
     everywhere.) The least motion that opens all at the same speed is sought as a projection.
     """
     speed, active = 0.0, 0
@@ -111,7 +111,7 @@ def _is_jammed(members, count, group):
 
 @compiled
 def _make_plastic(members, count, group):
-    """The plastic impact of all contacts; impulses in column GIVEN."""
+    """The plastic impact of all contacts; impulses in column IMPULSE."""
     active = 0
     for c in range(count):
         group.contacts[c, Contact.IMPULSE] = 0.0

@@ -1,20 +1,22 @@
-"""Discs that overlap are moved apart along their lines of centres, shares by inverse mass; out of obstacles as well."""
+"""Overlap removal: discs are moved apart along their lines of centres, in shares by inverse mass, and out of obstacles."""
 
 import math
 
 from systems.collision.kernels import compiled
 from systems.collision.kernels.time_of_impact import nearest_of_piece
 
-OVERCORRECTION = 0.05  # of an overlap, by which discs are moved farther than apart: sweeps then come to an end
+OVERCORRECTION = 0.05  # of an overlap, by which discs are moved farther than necessary, so that sweeps end
 MOST_OVERLAP_SWEEPS = 400  # over the same pairs
-GOLDEN_ANGLE = 2.399963229728653  # between the directions of discs with one centre, so that all differ
+GOLDEN_ANGLE = (
+    2.399963229728653  # between the directions in which discs with one centre move, so that all differ
+)
 
 
 @compiled
 def separate(first, second, position, displacement, radius, inverse_mass, span, slack):
-    """Move the discs of pairs that overlap by more than slack × reach apart; returns how many sweeps it took.
+    """Move the discs of pairs that overlap by more than slack × reach apart; returns the number of sweeps.
 
-    Held directions do not move, nor do obstacles, which have a span. What is left after MOST_SWEEPS stays.
+    Held directions do not move, nor do obstacles, which have a span. Overlaps that MOST_OVERLAP_SWEEPS leave stay.
     """
     for sweep in range(MOST_OVERLAP_SWEEPS):
         apart = True

@@ -1,8 +1,8 @@
-"""Lasting contacts: discs that rest on one another or slide along one another.
+"""Persistent contacts: discs that rest on one another or slide along one another.
 
-A contact lasts while its force pushes: forces F ≥ 0 and accelerations satisfy, at the contacts whose discs do not
-separate, n·Δa + |Δv|²/d ≥ 0, and F = 0 where it is > 0. Discs that are thereby at rest stay where they are, at
-no cost. Discs that slide take steps h of RATTLE (Andersen, J. Comput. Phys. 52, 1983) with one-sided constraints:
+A contact persists while its force pushes: forces F ≥ 0 and accelerations satisfy, at the contacts whose discs do not
+separate, n·Δa + |Δv|²/d ≥ 0, and F = 0 where it is > 0. Discs that are at rest under these forces stay where they are,
+at no cost. Discs that slide take steps h of RATTLE (Andersen, J. Comput. Phys. 52, 1983) with one-sided constraints:
 constant forces along the normals at the start such that the discs touch at the end of the step,
     u₁ = u₀ + h v₀ + h²/2 (g + W N F),   gap(u₁) ≥ 0 ⟂ F ≥ 0,
 and velocities v₁ = v₀ + h/2 (g + W N F) + h/2 g + W N₁ p with n₁·Δv₁ ≥ 0 ⟂ p ≥ 0. In between they are on
@@ -24,11 +24,11 @@ from systems.collision.kernels.time_of_impact import (
     touch_speed,
 )
 
-STILL = 1e-10  # of the speed and acceleration that gravity gives; what moves less is at rest
+STILL = 1e-10  # of the speed and acceleration that gravity gives: a slower disc is at rest
 STEP_ANGLE = 0.0156  # by which discs turn around one another in a step; discs sink by its cube / 8 of a radius
-LEAST_SHARE = 1e-4  # of such a step, by which the end of a flat side, or of a contact, may be missed
+LEAST_SHARE = 1e-4  # of such a step: error of the time at which a flat side or a contact ends
 MOST_CORRECTIONS = 40  # of the forces in a step; 3 are usual
-MOST_IN_VAIN = 5  # of them, one after the other, that do not halve the largest gap
+MOST_VAIN_CORRECTIONS = 5  # consecutive corrections that do not halve the largest gap
 
 
 @compiled
@@ -42,7 +42,7 @@ def is_held(i, discs):
 
 @compiled
 def find_persistent(i, j, constraints):
-    """Entry of the lasting contact of two discs, in the list of either; −1 if they have none."""
+    """Entry of the persistent contact of two discs, in the chain of either; NONE if they have none."""
     for a, b in ((i, j), (j, i)):
         entry = constraints.first_persistent[a]
         while entry != NONE:
@@ -54,7 +54,7 @@ def find_persistent(i, j, constraints):
 
 @compiled
 def forget_persistent(i, constraints, counts):
-    """Strike out all entries of a disc."""
+    """Remove all entries of a disc."""
     entry = constraints.first_persistent[i]
     while entry != NONE:
         following = constraints.persistent[entry, Entry.NEXT]
@@ -67,7 +67,7 @@ def forget_persistent(i, constraints, counts):
 
 @compiled
 def enter_persistent(i, j, force, discs, constraints, counts):
-    """Enter a lasting contact with j for disc i, unless that is held."""
+    """Enter a persistent contact with j for disc i, unless i is held."""
     if not is_held(i, discs):
         entry = counts[Count.SPARE]
         counts[Count.SPARE] = constraints.persistent[entry, Entry.NEXT]
@@ -83,7 +83,7 @@ def enter_persistent(i, j, force, discs, constraints, counts):
 
 @compiled
 def stop_sinking(count, touching, group):
-    """Project the velocities in `motion` for the contacts that have lasted until now."""
+    """Project the velocities in `motion` for the contacts that have persisted until now."""
     active = 0
     for c in range(touching):
         group.contacts[c, Contact.IMPULSE] = 0.0
@@ -100,10 +100,10 @@ def stop_sinking(count, touching, group):
 
 @compiled
 def support(count, touching, discs, group, numbers):
-    """Forces in the contacts of a group whose velocities are in `motion`.
+    """Find the forces in the contacts of a group whose velocities are in `motion`.
 
-    Returns for how long they hold: INFINITY if nothing slides. `motion` becomes the accelerations, `other` the
-    velocities; sets the column FORCE.
+    Returns the time for which the forces are valid (s): INFINITY if no disc slides. `motion` becomes the
+    accelerations, `other` the velocities; sets the column FORCE.
     """
     copy_motion(group.motion, group.other, count)
     closed = _push_now(count, touching, discs, group, numbers)
@@ -113,7 +113,9 @@ def support(count, touching, discs, group, numbers):
         if duration < INFINITY:
             least = LEAST_SHARE * duration
             met = _meet_at_end(duration, count, closed, discs, group, numbers)
-            while duration > least and (not met or _one_lets_go(closed, group)):  # or they meet again at once
+            while duration > least and (
+                not met or _one_lets_go(closed, group)
+            ):  # or they would touch again at once
                 duration = max(0.25 * duration, least)
                 closed = _push_now(count, touching, discs, group, numbers)
                 met = _meet_at_end(duration, count, closed, discs, group, numbers)
@@ -127,7 +129,7 @@ def support(count, touching, discs, group, numbers):
 
 @compiled
 def _push_now(count, touching, discs, group, numbers):
-    """The forces at this instant, in the columns FORCE and GIVEN of the closed contacts; returns how many these are."""
+    """The forces at this instant, in the columns FORCE and IMPULSE of the closed contacts; returns how many these are."""
     closed = _list_closed(touching, discs, group, numbers)
     for c in range(touching):
         group.contacts[c, Contact.FORCE] = 0.0
@@ -152,7 +154,7 @@ def _one_lets_go(closed, group):
 
 @compiled
 def _pull(count, discs, group):
-    """The accelerations without contact forces, in `motion`."""
+    """Set `motion` to the accelerations without contact forces."""
     for m in range(count):
         i = group.members[m]
         group.motion[m, 0], group.motion[m, 1] = discs[i, Disc.GX], discs[i, Disc.GY]
@@ -167,7 +169,7 @@ def _relative(c, motion, group):
 
 @compiled
 def _list_closed(touching, discs, group, numbers):
-    """List the contacts that do not separate; their bias becomes |Δv|²/d. Returns how many there are."""
+    """List the contacts that do not separate, and set their bias to |Δv|²/d. Returns their number."""
     contacts = group.contacts
     closed = 0
     for c in range(touching):
@@ -187,7 +189,7 @@ def _list_closed(touching, discs, group, numbers):
 
 @compiled
 def _stop_where_still(count, closed, discs, group):
-    """If all discs that contacts push neither move nor accelerate, bring them to rest. False if one does."""
+    """Bring to rest the discs that contacts push if none of them moves or accelerates; else return False."""
     pull = 0.0
     for m in range(count):
         i = group.members[m]
@@ -217,10 +219,10 @@ def _size(motion, m):
 
 @compiled
 def _duration(closed, discs, group, numbers):
-    """For how long the discs that push one another turn around one another by about STEP_ANGLE.
+    """Time (s) in which discs that push one another turn around one another by about STEP_ANGLE.
 
-    At rest they would turn by it under the pull of their weight across the line of centres. Along the flat side
-    of an obstacle nothing turns: its end matters.
+    From rest, their weight across the line of centres turns them. Along the flat side of an obstacle no normal turns;
+    the time is that to the end of the side.
     """
     duration = INFINITY
     for k in range(closed):
@@ -242,7 +244,7 @@ def _duration(closed, discs, group, numbers):
 
 @compiled
 def _slides(c, discs, group, numbers):
-    """True if a disc moves along a flat side, not from it by so little that it will be back at once."""
+    """True if a disc moves along a flat side, rather than away from it so slowly that it returns at once."""
     i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
     x, y = _relative(c, group.other, group)
     rate = group.contacts[c, Contact.NX] * x + group.contacts[c, Contact.NY] * y
@@ -253,7 +255,7 @@ def _slides(c, discs, group, numbers):
 
 @compiled
 def _stay(c, discs, group, numbers):
-    """For how long the foot of a disc on an obstacle passes none of its ends."""
+    """Time (s) until the foot of a disc on an obstacle passes an end of the obstacle."""
     i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
     length = math.hypot(discs[j, Disc.TX], discs[j, Disc.TY])
     tx, ty = discs[j, Disc.TX] / length, discs[j, Disc.TY] / length
@@ -267,7 +269,7 @@ def _stay(c, discs, group, numbers):
 def _end_gap(c, h, discs, group):
     """Gap of a contact after a time h with the accelerations in `motion` and the velocities in `other`.
 
-    What is nearest of an obstacle is taken to be the same end or flat side as at the start.
+    The nearest point of an obstacle is taken to be on the same end or flat side as at the start.
     """
     vx, vy = _relative(c, group.other, group)
     ax, ay = _relative(c, group.motion, group)
@@ -282,10 +284,10 @@ def _end_gap(c, h, discs, group):
 
 @compiled
 def _meet_at_end(h, count, closed, discs, group, numbers):
-    """Correct the forces until the closed contacts are after a time h as near as now, or open. False if none do that.
+    """Correct the forces until the closed contacts have, after a time h, the same gap as now, or are open; False if none do.
 
-    What now is too near by round-off stays so: discs that are jammed between others cannot all be put right, and
-    would be pushed the harder the longer one tries.
+    A gap that now is negative by round-off stays so: of discs jammed between others not all can be corrected, and
+    every attempt would push harder.
     """
     contacts = group.contacts
     before, in_vain = INFINITY, 0
@@ -300,7 +302,7 @@ def _meet_at_end(h, count, closed, discs, group, numbers):
                 met, worst = False, max(worst, abs(gap))
             contacts[c, Contact.BIAS] += 2.0 * gap / (h * h) - opening_rate(c, group.motion, group)
         in_vain = in_vain + 1 if worst > 0.5 * before else 0
-        if met or in_vain == MOST_IN_VAIN:
+        if met or in_vain == MOST_VAIN_CORRECTIONS:
             return met
         before = worst
         _pull(count, discs, group)

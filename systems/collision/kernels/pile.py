@@ -59,7 +59,7 @@ WORK_STEPS = 10.0
 
 @compiled
 def crowded(touching, numbers, counts):
-    """True if a group of that many contacts, or all that happened lately, is better left to steps."""
+    """True if steps are cheaper than events for a group of `touching` contacts, or for the events of late."""
     h = numbers[Number.STEP_LENGTH]
     if h == INFINITY or (touching < 2 and counts[Count.WORK] == 0):
         return False
@@ -75,7 +75,7 @@ def crowded(touching, numbers, counts):
 
 @compiled
 def begin_steps(numbers, counts):
-    """From now on, discs take steps."""
+    """Let discs take steps from now on."""
     counts[Count.STEPPING], counts[Count.LISTED] = 1, NONE
     counts[Count.CALM], counts[Count.PATIENCE] = 0, LEAST_PATIENCE
     numbers[Number.STEP_END] = numbers[Number.NOW]
@@ -91,7 +91,7 @@ def end_steps(numbers, counts):
 @compiled
 def step(discs, grid, constraints, pile, report, numbers, counts):
     """Take the step that begins now. Returns a Reason; unless it is Reason.DONE, nothing has happened yet."""
-    _note_motion(discs, pile, numbers)
+    _begin_paths(discs, pile, numbers)
     if counts[Count.CALM] >= counts[Count.PATIENCE]:
         enter_pushing_pairs(discs, constraints, pile, counts)
         if _pushes(discs, constraints):
@@ -120,15 +120,15 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
         find_impulses(active, tolerance, pile)
         if supplies_energy(active, h, discs, pile):
             pile.forces[: counts[Count.LISTED]] = (
-                0.0  # those of the step before mislead, as of a row that has come loose
+                0.0  # the forces of the step before mislead, as in a row that has come loose
             )
         elif stays_within_reach(h, discs, pile):
             break
     numbers[Number.STEP_END] = numbers[Number.NOW] + h
     _report_impacts(active, h, discs, pile, report, numbers, counts)
     pushing = _keep_forces(active, h, pile, counts)
-    _find_near(active, h, discs, pile, numbers)
-    calm = _set_off(h, discs, pile, numbers)
+    _mark_near(active, h, discs, pile, numbers)
+    calm = _start_paths(h, discs, pile, numbers)
     if calm or pushing == 0:
         counts[Count.CALM] += 1
     else:
@@ -138,7 +138,7 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
 
 @compiled
 def _pushes(discs, constraints):
-    """True if any contact pushes; if none does, the pile has dissolved."""
+    """True if a contact pushes; without any, the pile has dissolved."""
     i = 0
     while i < discs.shape[0] and constraints.first_persistent[i] == NONE:
         i += 1
@@ -146,7 +146,7 @@ def _pushes(discs, constraints):
 
 
 @compiled
-def _note_motion(discs, pile, numbers):
+def _begin_paths(discs, pile, numbers):
     """Begin new paths of all discs now."""
     for i in range(discs.shape[0]):
         s = numbers[Number.NOW] - discs[i, Disc.EPOCH]
@@ -163,7 +163,7 @@ def _note_motion(discs, pile, numbers):
 
 @compiled
 def _report_impacts(active, h, discs, pile, report, numbers, counts):
-    """Report the contacts in which discs struck each other."""
+    """Report the contacts in which discs bounced."""
     for c in range(active):
         if pile.contacts[c, PileContact.IMPULSE] > 0.0:
             impulse = pile.contacts[c, PileContact.IMPULSE] / pile.scale[c]
@@ -186,7 +186,7 @@ def _report_impacts(active, h, discs, pile, report, numbers, counts):
 
 @compiled
 def _keep_forces(active, h, pile, counts):
-    """Note the forces of the step for the next; returns how many contacts push."""
+    """Keep the forces of the step for the next; returns the number of contacts that push."""
     for k in range(counts[Count.LISTED]):
         pile.forces[k] = 0.0
     pushing = 0
@@ -198,8 +198,8 @@ def _keep_forces(active, h, pile, counts):
 
 
 @compiled
-def _find_near(active, h, discs, pile, numbers):
-    """Mark the discs that were pushed, that end the step near another, or so near that a parabola could take them there."""
+def _mark_near(active, h, discs, pile, numbers):
+    """Mark the discs that were pushed, and the discs that end the step near another or could reach it on a parabola."""
     for c in range(active):
         i, j = pile.pairs[pile.order[c], 0], pile.pairs[pile.order[c], 1]
         nx, ny, gap, _, _ = separation(pile.order[c], discs, pile, numbers)
@@ -218,10 +218,10 @@ def _find_near(active, h, discs, pile, numbers):
 
 
 @compiled
-def _set_off(h, discs, pile, numbers):
-    """Send the discs that others are near to on straight lines; the rest stay on their parabolas.
+def _start_paths(h, discs, pile, numbers):
+    """Start straight paths of the discs that are near others; the rest stay on their parabolas.
 
-    Adds the energy that they lose in the step. Returns True if those that others push are calm.
+    Counts the energy that they lose in the step. Returns True if the discs that others push are calm.
     """
     calm = True
     for i in range(discs.shape[0]):

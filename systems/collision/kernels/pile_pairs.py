@@ -34,7 +34,7 @@ def velocity_after(i, pile):
 
 @compiled
 def allow_travel(h, discs, pile):
-    """How far discs may go in a step without impacts."""
+    """Set the farthest travel of discs in a step without impacts."""
     for i in range(discs.shape[0]):
         pull = math.hypot(discs[i, Disc.GX], discs[i, Disc.GY])
         speed = math.hypot(discs[i, Disc.VX], discs[i, Disc.VY])
@@ -45,7 +45,7 @@ def allow_travel(h, discs, pile):
 
 @compiled
 def allow_more_travel(h, fastest, discs, pile):
-    """How far they may go once they have been struck by those that are near, or by others through these."""
+    """Set the farthest travel of discs that near discs may strike, directly or through others."""
     for i in range(discs.shape[0]):
         if not is_held(i, discs):
             speed, pull = math.hypot(discs[i, Disc.VX], discs[i, Disc.VY]), pile.travel[Travel.PULL, i]
@@ -57,7 +57,7 @@ def allow_more_travel(h, fastest, discs, pile):
 
 @compiled
 def stays_within_reach(h, discs, pile):
-    """False if a disc would travel farther than was allowed; it may then go twice as far."""
+    """False if a disc would travel farther than allowed; twice that travel is then allowed."""
     within = True
     for i in range(discs.shape[0]):
         vx, vy = velocity_after(i, pile)
@@ -70,7 +70,7 @@ def stays_within_reach(h, discs, pile):
 
 @compiled
 def list_pairs(h, discs, grid, constraints, pile, numbers, counts):
-    """See to it that all pairs are listed whose gap is within their reach. Returns a Reason."""
+    """Ensure that all pairs are listed whose gap is within their reach. Returns a Reason."""
     if counts[Count.LISTED] != NONE and _stays_in_boxes(discs, grid, pile, numbers):
         return Reason.DONE
     enter_pushing_pairs(discs, constraints, pile, counts)
@@ -110,7 +110,7 @@ def list_pairs(h, discs, grid, constraints, pile, numbers, counts):
 
 @compiled
 def _stays_in_boxes(discs, grid, pile, numbers):
-    """True if no disc can get out of the box for which its pairs were listed."""
+    """True if no disc can leave the box for which its pairs were listed."""
     for i in range(discs.shape[0]):
         if not is_held(i, discs):
             reach = pile.travel[Travel.REACH, i]
@@ -124,7 +124,7 @@ def _stays_in_boxes(discs, grid, pile, numbers):
 
 @compiled
 def enter_pushing_pairs(discs, constraints, pile, counts):
-    """Enter the listed pairs that push into the table of lasting contacts, instead of all there are."""
+    """Enter the listed pairs that push into the table of persistent contacts, in place of all its entries."""
     if counts[Count.LISTED] == NONE:
         return
     for i in range(discs.shape[0]):
@@ -151,9 +151,9 @@ def separation(k, discs, pile, numbers):
 
 @compiled
 def choose_length(discs, pile, numbers, counts):
-    """Length of a step (s), in which no two discs that might meet travel far relative to one another.
+    """Length of a step (s) in which no two discs that might collide travel far relative to one another.
 
-    And the speed (m/s) of the fastest. Sets FAST for those that might.
+    Also returns the speed (m/s) of the fastest. Sets FASTEST of the discs that might collide.
     """
     longest = numbers[Number.STEP_LENGTH]
     h, fastest = longest, 0.0
@@ -173,13 +173,13 @@ def choose_length(discs, pile, numbers, counts):
 
 @compiled
 def smaller_radius(i, j, discs):
-    """Radius of the smaller of two discs, or of what meets an obstacle."""
+    """Radius of the smaller of two discs, or of a disc at an obstacle."""
     return discs[i, Disc.RADIUS] if is_straight(j, discs) else min(discs[i, Disc.RADIUS], discs[j, Disc.RADIUS])
 
 
 @compiled
 def choose_contacts(discs, pile, numbers, counts):
-    """The listed pairs whose gap is within their reach, in `chosen`; returns how many they are."""
+    """Set `chosen` to the listed pairs whose gap is within their reach; returns their number."""
     active = 0
     for k in range(counts[Count.LISTED]):
         i, j = pile.pairs[k, 0], pile.pairs[k, 1]

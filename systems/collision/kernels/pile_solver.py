@@ -23,7 +23,7 @@ SIDE_BY_SIDE = (
 
 @compiled
 def start_without_contacts(h, discs, pile):
-    """The velocities at the end of the step without contacts."""
+    """Set the velocities at the end of the step without contacts."""
     for i in range(discs.shape[0]):
         for d in range(2):
             pile.motion[Motion.SPEED, i, d] = _free(i, d, h, discs, pile)
@@ -40,7 +40,7 @@ def _free(i, d, h, discs, pile):
 
 @compiled
 def make_contacts(active, h, discs, pile, numbers):
-    """Make contacts of the chosen pairs, with the impulses of the step before; `chosen` then is in their order."""
+    """Make contacts of the chosen pairs, in the order of sweeps, with the impulses of the step before."""
     length = (active + SIDE_BY_SIDE - 1) // SIDE_BY_SIDE
     c = 0
     for s in range(length):
@@ -90,18 +90,18 @@ def _make_contact(c, k, h, discs, pile, numbers):
 
 @compiled
 def bounces(speed, i, j, h, discs, pile, numbers):
-    """True if discs bounce that part at a speed (m/s): not if they approach by less than free fall gives in two steps."""
+    """True if discs bounce: `speed` (of separation, m/s) exceeds what free fall gives in two steps, in approach."""
     slow = 2.0 * h * max(pile.travel[Travel.PULL, i], pile.travel[Travel.PULL, j])
     return speed < -slow and speed < -rest_speed(i, j, discs, numbers[Number.REST_HEIGHT], numbers[Number.NOW])
 
 
 @compiled
 def find_impulses(active, tolerance, pile):
-    """Impulses after which hardly a contact closes faster than the tolerance.
+    """Find the impulses after which contacts close no faster than about the tolerance.
 
     Sweeps to and fro, accelerated by conjugate directions: Silcowitz, Niebe, Erleben, "A nonsmooth nonlinear
     conjugate gradient method for interactive contact force problems", Vis. Comput. 26 (2010). Each sweep goes once
-    through memory: what the acceleration adds to an impulse is added when its contact is due.
+    through memory: the acceleration of an impulse is added when its contact is relaxed.
     """
     size, share, keep = 0.0, 0.0, 0.0
     for turn in range(MOST_PILE_SWEEPS):
@@ -123,7 +123,7 @@ def find_impulses(active, tolerance, pile):
 
 @compiled
 def _accelerate(share, keep, pile):
-    """Go on in the direction of the sweeps so far by a share; if they are kept, it adds the last one to them."""
+    """Move the velocities by a share of the direction of the sweeps so far; `keep` adds the last sweep to it."""
     motion = pile.motion
     for i in range(motion.shape[1]):
         for d in range(2):
@@ -137,13 +137,13 @@ def _accelerate(share, keep, pile):
 
 @compiled
 def _relax_forward(c, share, keep, pile):
-    """Go on likewise with the impulse of a contact, and relax it."""
+    """Move the impulse of a contact likewise, and relax the contact."""
     contacts = pile.contacts
-    given = contacts[c, PileContact.IMPULSE]
+    present = contacts[c, PileContact.IMPULSE]
     more = share * contacts[c, PileContact.DIRECTION]
-    contacts[c, PileContact.DIRECTION] = keep * (more + given - contacts[c, PileContact.PREVIOUS])
-    contacts[c, PileContact.PREVIOUS] = given + more
-    _relax(c, given + more, pile)
+    contacts[c, PileContact.DIRECTION] = keep * (more + present - contacts[c, PileContact.PREVIOUS])
+    contacts[c, PileContact.PREVIOUS] = present + more
+    _relax(c, present + more, pile)
 
 
 @compiled
@@ -167,9 +167,9 @@ def _relax(c, before, pile):
 
 @compiled
 def supplies_energy(active, h, discs, pile):
-    """True if the impulses begin with such that sweeps have not made good: they could supply energy.
+    """True if the impulses could supply energy: they began too large, and sweeps have not corrected them.
 
-    Sweeps lessen ½ |u₁ − u₀|² + p·(N u₀ + b), u₀ being the motion without impulses, which is 0 without any.
+    Sweeps lessen ½ |u₁ − u₀|² + p·(N u₀ + b) with the motion u₀ without impulses; without impulses it is 0.
     """
     contacts, motion = pile.contacts, pile.motion
     total, size = 0.0, 0.0

@@ -62,14 +62,14 @@ def push_apart(c, impulse, group):
 
 @compiled
 def copy_motion(source, target, members):
-    """Note a motion."""
+    """Copy a motion."""
     for m in range(members):
         target[m, 0], target[m, 1] = source[m, 0], source[m, 1]
 
 
 @compiled
 def begin(members, group):
-    """Note the motion as the initial one; what its largest part can feign by round-off is the noise."""
+    """Copy the motion to `initial`, and set the noise to the round-off of its largest part."""
     largest = 0.0
     for m in range(members):
         group.initial[m, 0], group.initial[m, 1] = group.motion[m, 0], group.motion[m, 1]
@@ -79,10 +79,10 @@ def begin(members, group):
 
 @compiled
 def project(members, active, tolerance, most, group):
-    """Project the motion for the first `active` contacts of marks[ACTIVE]; impulses in column GIVEN.
+    """Project the motion for the first `active` contacts of marks[ACTIVE]; impulses in column IMPULSE.
 
     tolerance: rate at which a contact of a large group may still close. most: sweeps over its contacts. Large groups
-    start from the impulses that GIVEN holds, small ones from none.
+    start from the impulses that IMPULSE holds, small ones from none.
     """
     copy_motion(group.motion, group.start, members)
     if active <= DIRECT:
@@ -143,17 +143,17 @@ def _fit(fitted, group):
         share = 1.0
         for r in range(fitted):
             if values[r] <= 0.0:
-                given = contacts[marks[Mark.CHOSEN, r], Contact.IMPULSE]
-                share = min(share, given / (given - values[r]))
+                present = contacts[marks[Mark.CHOSEN, r], Contact.IMPULSE]
+                share = min(share, present / (present - values[r]))
         kept = 0
         for r in range(fitted):
             c = marks[Mark.CHOSEN, r]
-            given = contacts[c, Contact.IMPULSE]
-            if values[r] <= 0.0 and given <= share * (given - values[r]):
+            present = contacts[c, Contact.IMPULSE]
+            if values[r] <= 0.0 and present <= share * (present - values[r]):
                 contacts[c, Contact.IMPULSE] = 0.0
                 marks[Mark.STATE, c] = IDLE
             else:
-                contacts[c, Contact.IMPULSE] = given + share * (values[r] - given)
+                contacts[c, Contact.IMPULSE] = present + share * (values[r] - present)
                 marks[Mark.CHOSEN, kept] = c
                 kept += 1
         if kept == fitted:
@@ -194,7 +194,7 @@ def _solve(count, group):
 
 @compiled
 def sweep(active, most, tolerance, group):
-    """Gauss–Seidel, to and fro, from the impulses GIVEN so far, until rates change by less than the tolerance.
+    """Gauss–Seidel, to and fro, from the impulses so far, until rates change by less than the tolerance.
 
     Accelerated by conjugate directions: Silcowitz, Niebe, Erleben, "A nonsmooth nonlinear conjugate gradient method for
     interactive contact force problems", Vis. Comput. 26 (2010).
