@@ -63,12 +63,12 @@ class ImpactColumns:
 class Discs:
     """Discs that fly, collide and rest on one another.
 
-    fly, take_steps, open_window: the kernels that advance them, compiled; a subclass has them.
+    fly, take_steps, open_horizon: the compiled kernels that advance them; a subclass has them (free/compiled.py).
     """
 
-    fly: Callable[..., int]
-    take_steps: Callable[..., int]
-    open_horizon: Callable[..., int]
+    fly: Callable[..., Reason]
+    take_steps: Callable[..., Reason]
+    open_horizon: Callable[..., Reason]
 
     def __init__(
         self,
@@ -110,10 +110,7 @@ class Discs:
         self.rows[: self.count, Disc.EPOCH] = time
         self.rows[: self.count, Disc.BOUNCE] = restitution
         self.rows[:, Disc.STEP] = np.inf
-        added, others = self.rows[self.count :], self._obstacles
-        added[:, [Disc.OX, Disc.OY]], added[:, [Disc.TX, Disc.TY]] = others.start, others.span
-        added[:, Disc.RADIUS], added[:, Disc.BOUNCE] = others.radius, others.restitution
-        added[:, Disc.SHARED] = _shared_ends(others)
+        self._enter_obstacles()
         speed = np.abs(self._columns(Disc.VX)).sum(axis=1)
         self.rows[: self.count, Disc.NOISE] = SPEED_NOISE * speed
         self.numbers = np.zeros(len(Number))
@@ -133,6 +130,12 @@ class Discs:
         self.pile = Pile.empty(n, len(self.group.links))
         self.report = Report.empty(max(REPORTED_AT_ONCE, len(self.group.links)))
         self.constraints = Constraints.of(n, joined, 2 * len(self.group.links), self.counts)
+
+    def _enter_obstacles(self) -> None:
+        added, others = self.rows[self.count :], self._obstacles
+        added[:, [Disc.OX, Disc.OY]], added[:, [Disc.TX, Disc.TY]] = others.start, others.span
+        added[:, Disc.RADIUS], added[:, Disc.BOUNCE] = others.radius, others.restitution
+        added[:, Disc.SHARED] = _shared_ends(others)
 
     def _columns(self, first: int) -> Floats:
         """The x and y columns of the discs that begin with one."""
@@ -163,26 +166,16 @@ class Discs:
 
     def _go_on(self, until: float, most_events: int) -> Reason:
         """Let a pile take its steps, or else all discs fly within a horizon, which is opened if there is none."""
-        rows, grid, constraints, queue, group, report = (
-            self.rows,
-            self.grid,
-            self.constraints,
-            self.queue,
-            self.group,
-            self.report,
-        )
+        rows, grid, constraints, report = self.rows, self.grid, self.constraints, self.report
+        queue, group, pile = self.queue, self.group, self.pile
         numbers, counts = self.numbers, self.counts
         if counts[Count.STEPPING]:
-            return Reason(
-                self.take_steps(until, most_events, rows, grid, constraints, self.pile, report, numbers, counts)
-            )
+            return self.take_steps(until, most_events, rows, grid, constraints, pile, report, numbers, counts)
         if counts[Count.RENEW]:
-            reason = Reason(self.open_horizon(rows, grid, constraints, queue, numbers, counts))
+            reason = self.open_horizon(rows, grid, constraints, queue, numbers, counts)
             if reason is not Reason.DONE:
                 return reason
-        return Reason(
-            self.fly(until, most_events, rows, grid, constraints, queue, group, report, numbers, counts)
-        )
+        return self.fly(until, most_events, rows, grid, constraints, queue, group, report, numbers, counts)
 
     def _make_room(self, reason: Reason) -> None:
         n = len(self.rows)
@@ -282,7 +275,7 @@ class Discs:
             self.constraints.first_persistent[i] = entry
 
     def _persistent_entries(self) -> tuple[Integers, Integers]:
-        """The discs that have lasting contacts, once for each, and the entries, in the order of the chains."""
+        """The discs that have persistent contacts, once per contact, and the entries, in the order of the chains."""
         owners, entries = [], []
         for i in np.flatnonzero(self.constraints.first_persistent != NONE).tolist():
             entry = int(self.constraints.first_persistent[i])
@@ -293,7 +286,7 @@ class Discs:
         return np.array(owners, dtype=np.int64), np.array(entries, dtype=np.int64)
 
     def contact_forces(self) -> Floats:
-        """The sum of the forces (N) with which others keep each disc away in lasting contacts, shape (n, 2)."""
+        """The sum of the forces (N) on each disc in its persistent contacts, shape (n, 2)."""
         owners, entries = self._persistent_entries()
         others = self.constraints.persistent[entries, Entry.OTHER]
         displacement, _ = self.state_at(self.now)
@@ -325,7 +318,7 @@ class Discs:
 
     @property
     def impacts(self) -> int:
-        """How many there were."""
+        """Number of impacts so far."""
         return int(self.counts[Count.IMPACTS])
 
     def lost_at(self, time: float) -> float:

@@ -17,7 +17,7 @@ from systems.collision.columns import Contact, Group
 from systems.collision.driven.compiled import kernels
 from systems.collision.driven.crowds import CROWD_CONTACTS, NO_IMPACT, CrowdStepper
 from systems.collision.system import persistent_contacts
-from tests.systems.test_encounters import GRAVITY, box, energy_of_discs
+from tests.systems.collision.test_driven_collisions import GRAVITY, box, energy_of_discs
 
 GRAVITY_PULL = 9.81
 

@@ -1,4 +1,4 @@
-"""Who is near whom is looked up when the document changes or particles have moved, not in every step."""
+"""The neighbour list is made anew when the document changes or particles have moved, not in every step."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from systems.collision.driven import neighbours
 from systems.collision.driven.neighbours import NeighbourList
 from systems.collision.driven.stepper import DrivenCollisions
 from tests.benchmarks.models import lattice
-from tests.systems.test_encounters import truss
+from tests.systems.collision.test_driven_collisions import truss
 
 
 def test_a_step_looks_up_nothing_and_an_edit_does(monkeypatch: pytest.MonkeyPatch) -> None:

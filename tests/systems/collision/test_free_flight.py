@@ -13,7 +13,7 @@ from game.commands.command_line import main
 from game.documents.models import document
 from systems.collision.driven.neighbours import NeighbourList
 from systems.edit.pull import hand_on
-from tests.systems.test_encounters import box, energy_of_discs
+from tests.systems.collision.test_driven_collisions import box, energy_of_discs
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
 
