@@ -109,7 +109,7 @@ def test_where_particles_may_meet_that_is_waited_for_too(app: App, compiler: Com
     frames(app, 4)
     assert session.model.clock.steps > 0
     loaded = driven_kernels.kernels()  # though nothing has met yet
-    for name in ("gaps", "kinds", "sway", "meeting", "compliance", "forces", "push"):
+    for name in ("gaps", "kinds", "path_deviation", "time_of_impact", "compliance", "forces", "resolve"):
         assert getattr(loaded, name).signatures
 
 

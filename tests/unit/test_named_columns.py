@@ -19,8 +19,14 @@ def second(row):
 """
 
 
+class Column(IntEnum):
+    """Stands for the enumerations of the test."""
+
+    SECOND = 1
+
+
 def second(row):
-    return row[Column.SECOND]  # noqa: F821
+    return row[Column.SECOND]
 
 
 def test_a_column_with_another_number_is_compiled_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

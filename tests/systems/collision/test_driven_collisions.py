@@ -356,7 +356,7 @@ def test_a_ball_that_makes_a_truss_yield_rests_on_what_is_left() -> None:
 
 
 def test_a_hand_presses_a_disc_onto_a_node() -> None:
-    """From aside, then from above; it never passes, and all work is accounted for, through impacts and persistent contact."""
+    """From aside, then from above; it never passes, and all work is accounted for, in impacts and contact."""
     session = Session.open(truss({"position": [0.2, 1.5]}))
     session.simulation.advance(0)
     hand = hand_on(session.model, session.view, session.particles["ball"], lambda: session.pace)
