@@ -1,4 +1,4 @@
-"""Tags: empty components that mark the few entities a person has singled out."""
+"""Tags: empty components that mark elements which a person has singled out."""
 
 from __future__ import annotations
 
@@ -15,7 +15,13 @@ class DiagramShown:
     __slots__ = ()
 
 
-class Hovered:
+class Rare:
+    """A tag that few elements carry at a time: esper holds it, and its queries find them."""
+
+    __slots__ = ()
+
+
+class Hovered(Rare):
     """A click would hit it."""
 
     __slots__ = ()

@@ -19,6 +19,7 @@ from components.field import Column, Field, FieldError, Role, same
 from components.handle import Handle, set_entity
 from components.spelling import missing
 from components.table import Table, grown
+from components.tags import Rare
 
 H = TypeVar("H", bound=Handle)
 Layout = tuple[tuple[str, tuple[str, ...]], ...]
@@ -57,7 +58,7 @@ class World:
         self.before_command: Callable[[], None] | None = None
         self.row_of_entity: NDArray[np.int64] = np.full(64, -1, dtype=np.int64)
         self.tables: dict[str, Table[Any]] = {}
-        self.tags_revision = self._told_of_tags = 0
+        self.tags_revision = 0
         self._marked: dict[type, NDArray[np.bool_]] = {}  # by tag, for each esper id whether it has it
         self._tagged: tuple[Any, dict[Any, NDArray[np.intp]]] = (None, {})  # rows, found at these revisions
         self.changing = False
@@ -80,19 +81,7 @@ class World:
         )
 
     def activate(self) -> None:
-        """Make this world's esper context the current one, and tell it which entities are marked."""
-        self._switch()
-        if self._told_of_tags != self.tags_revision:
-            for tag, marks in self._marked.items():
-                before = {entity for entity, _ in esper.get_component(tag)}
-                now, mark = set(np.flatnonzero(marks).tolist()), tag()
-                for entity in before - now:
-                    esper.remove_component(entity, tag)
-                for entity in now - before:
-                    esper.add_component(entity, mark)
-            self._told_of_tags = self.tags_revision
-
-    def _switch(self) -> None:
+        """Make this world's esper context the current one: queries and new entities are its own from now on."""
         if esper.current_world != self.context:
             esper.switch_world(self.context)
 
@@ -405,7 +394,7 @@ class World:
                 return command.apply(self)
 
     def _create(self, command: Create) -> Command:
-        self._switch()
+        self.activate()
         table = self.tables[command.kind.table]
         handles = command.kind.of_world(self, command.count)
         entities = list(map(esper.create_entity, handles))
@@ -414,7 +403,7 @@ class World:
         return Delete(tuple(entities))
 
     def _delete(self, command: Delete) -> Command:
-        self._switch()
+        self.activate()
         doomed = self._with_dependents(np.array(command.entities, dtype=np.int64))
         removed = []
         # Referring tables first, so that what they refer to can still be named by entity.
@@ -433,7 +422,7 @@ class World:
         return Restore(tuple(reversed(removed)))
 
     def _restore(self, command: Restore) -> Command:
-        self._switch()
+        self.activate()
         entities: list[int] = []
         for piece in command.removed:
             table = self.tables[piece.table]
@@ -463,7 +452,7 @@ class World:
 
     def check_entities(self) -> None:
         """Raise LookupError, and put them back, if entities were deleted through esper, past the tables."""
-        self._switch()
+        self.activate()
         esper.clear_dead_entities()
         whole = (len(esper.get_component(t.kind)) == t.count for t in self.tables.values() if t.count)
         if all(whole):
@@ -471,16 +460,19 @@ class World:
         handles = {handle.entity: handle for table in self.tables.values() for handle in table.handles}
         last = max(*handles, *esper.get_entities())
         _delete_context(self.context)
-        self._switch()
+        self.activate()
         for entity in range(1, last + 1):  # esper numbers them in order
             esper.create_entity(*([handles[entity]] if entity in handles else []))
         self.tags_revision = self.next_revision()
         raise LookupError("elements were deleted through esper; use model.delete(handles), which can be undone")
 
-    # --- tags: marks that esper is told of when somebody is about to ask it ---------------------------
+    # --- tags ------------------------------------------------------------------------------------------
+    #
+    # A tag that one or a few elements carry at a time (Rare) is a component that esper holds and finds; one that
+    # all of a large model may carry is a column, since esper takes a microsecond for each component.
 
     def tag(self, handle: Handle, tag: type) -> None:
-        """Mark an entity with an (empty) component, such as Selected."""
+        """Mark an entity, such as with Selected."""
         if handle.exists:
             self._mark(self._ids([handle]), tag, True)
 
@@ -495,10 +487,33 @@ class World:
         self._mark(slice(None), tag, wanted & (self.row_of_entity >= 0))
 
     def _mark(self, entities: list[int] | slice, tag: type, marked: bool | NDArray[np.bool_]) -> None:
+        if issubclass(tag, Rare):
+            self._mark_in_esper(entities, tag, marked)
+            return
         marks = self._marks(tag)
         if (marks[entities] != marked).any():
             marks[entities] = marked
             self.tags_revision = self.next_revision()
+
+    def _mark_in_esper(self, entities: list[int] | slice, tag: type, marked: bool | NDArray[np.bool_]) -> None:
+        before = wanted = set(self._having(tag).tolist())
+        if isinstance(entities, slice):
+            wanted = set(np.flatnonzero(marked).tolist())
+        elif marked:
+            wanted = before.union(entities)
+        else:
+            wanted = before.difference(entities)
+        for entity in before - wanted:
+            esper.remove_component(entity, tag)
+        for entity in wanted - before:
+            esper.add_component(entity, tag())
+        if before != wanted:
+            self.tags_revision = self.next_revision()
+
+    def _having(self, tag: type) -> NDArray[np.int64]:
+        """The esper ids of the entities that carry a rare tag, deleted ones included, ascending."""
+        self.activate()
+        return np.array(sorted(entity for entity, _ in esper.get_component(tag)), dtype=np.int64)
 
     def _marks(self, tag: type) -> NDArray[np.bool_]:
         """For each esper id, whether it has a mark."""
@@ -529,7 +544,11 @@ class World:
             self._tagged = now, {}
         known = self._tagged[1]
         if (tag, table) not in known:
-            known[tag, table] = np.flatnonzero(self._marks(tag)[self.tables[table].entities])
+            if issubclass(tag, Rare):
+                rows = np.flatnonzero(np.isin(self.tables[table].entities, self._having(tag)))
+            else:
+                rows = np.flatnonzero(self._marks(tag)[self.tables[table].entities])
+            known[tag, table] = rows
         return known[tag, table]
 
     def rows_of(self, handles: Iterable[Handle]) -> dict[str, NDArray[np.intp]]:
@@ -540,15 +559,6 @@ class World:
         marked = np.zeros(len(self.row_of_entity), dtype=bool)
         marked[entities] = True
         return {table.name: np.flatnonzero(marked[table.entities]) for table in self.tables.values()}
-
-    def handle(self, entity: int) -> Handle:
-        """The handle of an existing entity. Raises LookupError."""
-        self._switch()
-        for table in self.tables.values():
-            found: Handle | None = esper.try_component(entity, table.kind)
-            if found is not None:
-                return found
-        raise LookupError(f"There is no entity {entity}.")
 
     # --- references between tables -----------------------------------------------------------------
 

@@ -30,11 +30,12 @@ from game.documents.preferences import (
     remember_magnification,
     remember_theme,
 )
+from game.editor.frame import Frame
 from game.editor.scenes.load import Load
 from game.preparation import Preparation
 from game.scripts.performance import FOOTER, LARGER, Performance
 from game.scripts.script import Failure, Recorder, Script
-from game.session import Frame, Session
+from game.session import Session
 from systems.base import System
 from systems.edit.hover import Hover
 from systems.input.pygame_input import PygameInput

@@ -14,8 +14,9 @@ from components.field import Column, Role, same
 from components.model import Model
 from components.settings import INTEGRATORS
 from game.documents import models
+from game.editor.frame import Frame
 from game.registry import SYSTEMS
-from game.session import Frame, Session
+from game.session import Session
 from systems.base import Commit, Driver, Law, StepSystem, StopReason, System
 from systems.catalogue import DRIVERS, register_driver, step_systems
 from systems.program.binding import ProgramError, bind

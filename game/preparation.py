@@ -52,7 +52,9 @@ class Preparation(System):
 
     name = "programs.preparation"
     phase = Phase.EVENTS
-    asks_esper = False
+    reads = ("document", "state")
+    writes = ("programs",)
+    headless = False
 
     def __init__(self) -> None:
         self._frames = 0
@@ -104,7 +106,7 @@ class Preparation(System):
         """While nothing happens: what takes the steps while a hand pulls, for loading it takes two frames."""
         if self._seen == self._looked or simulation.integrator == FLIGHT:
             return
-        plan = simulation.schedule.step_plan(simulation.model)
+        plan = simulation.plan
         pulled = (*_job(simulation, plan), Pull.name)
         if pulled in self._running and self._running[pulled].poll() is None:  # still compiling
             return
@@ -128,7 +130,7 @@ class Preparation(System):
             return max((waited for waited in waits if waited is not None), default=None)
         if simulation.ready:
             return self._waits_for_meetings(simulation)
-        job = _job(simulation, simulation.schedule.step_plan(simulation.model))
+        job = _job(simulation, simulation.plan)
         waited = self._waits(job, lambda: _is_compiled(simulation))
         others = self._waits_for_meetings(simulation)
         if waited is None and job in self._running:  # then it is new, with a hand that pulls as well
@@ -174,8 +176,7 @@ class Preparation(System):
 
 def _may_meet(simulation: Simulation) -> bool:
     """True if particles that do not fly free may meet."""
-    plan = simulation.schedule.step_plan(simulation.model)
-    return simulation.integrator != FLIGHT and detects_impacts(plan)
+    return simulation.integrator != FLIGHT and detects_impacts(simulation.plan)
 
 
 def _may_rest(model: Model) -> bool:
@@ -185,13 +186,13 @@ def _may_rest(model: Model) -> bool:
 
 def _with_support(simulation: Simulation) -> list[StepSystem]:
     """The plan from when on something rests on something."""
-    names = (system.name for system in simulation.schedule.step_plan(simulation.model))
+    names = (system.name for system in simulation.plan)
     return simulation.schedule.named((*names, Support.name))
 
 
 def _halves(simulation: Simulation) -> tuple[Job, Job]:
     """What compiles what its free particles need."""
-    plan = simulation.schedule.step_plan(simulation.model)
+    plan = simulation.plan
     return PULLED if may_pile(simulation.model, any(isinstance(system, Pull) for system in plan)) else FREE
 
 
@@ -205,7 +206,7 @@ def _is_compiled(simulation: Simulation) -> bool:
     """True if its program need only be loaded."""
     if simulation.integrator == FLIGHT:
         return all(has_parts(*half[1:]) for half in _halves(simulation))
-    return _has_program(simulation, simulation.schedule.step_plan(simulation.model))
+    return _has_program(simulation, simulation.plan)
 
 
 def _has_program(simulation: Simulation, plan: Sequence[StepSystem]) -> bool:

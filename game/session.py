@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -32,9 +31,10 @@ from game.documents.history.history import History
 from game.documents.history.timeline import Timeline
 from game.documents.open_documents import Desk, Desks, ModelFile, file_of
 from game.editor.actions import ACTIONS, WHILE_DRAWING
+from game.editor.frame import Frame, frame_systems
 from game.editor.gestures import Gesture
 from game.editor.host import Autosaves, Prepares, Window
-from game.editor.scenes import Scenes, Stage, all_scenes
+from game.editor.scenes import Scenes, Stage, all_scenes, scene_systems
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import make_room, show
 from game.mods.mod import FAULTS
@@ -49,7 +49,8 @@ from systems.physics.pace import natural_pace
 from systems.run.energy import Energy
 from systems.run.frame_clock import FrameClock
 from systems.run.simulation import FREE_FLIGHT, Simulation
-from systems.schedule import Schedule
+from systems.run.system import Time
+from systems.schedule import Plan, Schedule
 
 if TYPE_CHECKING:
     from game.editor.clipboard import Part
@@ -61,18 +62,6 @@ if TYPE_CHECKING:
 CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
 ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
-
-
-@dataclass
-class Frame:
-    """What frame systems are given: the session, the time since the last frame, and its actions.
-
-    pressed: (key or button, pixel) in the order in which a person pressed them; see input/bindings.py.
-    """
-
-    session: Session
-    elapsed: float
-    pressed: list[tuple[str, Vector]] = field(default_factory=list)
 
 
 class Session:
@@ -93,9 +82,15 @@ class Session:
         file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
     ) -> None:
         self.pull = Pull()
-        self.schedule = Schedule([*step_systems(), self.pull, *(make() for make in SYSTEMS), *systems])
+        scenes = all_scenes()
+        self._time = Time()
+        ours = [*frame_systems(), self._time, *scene_systems(), *step_systems(), self.pull]
+        self.schedule = Schedule(
+            [*ours, *(make() for make in SYSTEMS), *systems],
+            wanted={scene.name: scene.systems for scene in scenes},
+        )
         self.desks = Desks(model, self.schedule, self.pull, file)
-        self.scenes = Scenes(all_scenes())
+        self.scenes = Scenes(scenes)
         self.view: View = view or View()
         self.gesture: Gesture | None = None
         self._clipboard = ""
@@ -112,7 +107,6 @@ class Session:
         self.lesson: Script | None = None  # that a person asked for
         self.awaited: Simulation | None = None  # something could not be done without its step program
         self._blank = Model()  # what the footer is drawn over
-        self._keyed = ""  # the scene in which a key was pressed last
         self.faults_told = len(FAULTS)  # of mods; the others are shown
         self.offer_tools()
         self._begin_at_desk()
@@ -191,7 +185,7 @@ class Session:
                 f"This model holds data of mods that are not loaded: {', '.join(missing)}. They are kept and"
                 " saved again, but have no effect."
             )
-        if self.scene == "simulation":
+        if self.time_passes:
             self.history.begin_run()
 
     # --- the model ---------------------------------------------------------------------------------
@@ -310,6 +304,7 @@ class Session:
         limit = _forward("limit", limit)
         time = None if time is None else _forward("time", time)
         steps = None if steps is None else int(_forward("steps", steps, whole=True))
+        self.act_in_scene()
         self._note_beginning()
         self.history.begin_run()
         self.timeline.begin()
@@ -323,7 +318,7 @@ class Session:
             self.simulation.advance(steps)
         if self.simulation.reason is not StopReason.REST and steps is None:
             self.timeline.clear()  # the last step was a short one, which stepping back does not take again
-        if self.scene != "simulation":
+        if not self.time_passes:
             self.history.end_run()
         ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
         return ended.get(self.simulation.reason, reached)
@@ -391,7 +386,7 @@ class Session:
         self.simulation.start_anew()
         self.timeline.clear()
         self.history.end_run()
-        if self.scene == "simulation":
+        if self.time_passes:
             self.history.begin_run()
 
     def step(self, steps: int = 1) -> bool:
@@ -401,6 +396,7 @@ class Session:
         """
         steps = operator.index(steps)
         target = self.model.clock.steps + steps
+        self.act_in_scene()
         self._note_beginning()
         if not self.has_program(self.simulation):
             return False
@@ -413,7 +409,7 @@ class Session:
         else:
             self.timeline.go_to(max(target, self.timeline.first))
         self.history.end_run()
-        if self.scene == "simulation":
+        if self.time_passes:
             self.history.begin_run()
         return bool(self.model.clock.steps == target)
 
@@ -460,7 +456,7 @@ class Session:
         return opening
 
     def _through_log(self, title: str) -> str:
-        if self.scene == "simulation":
+        if self.time_passes:
             self.history.begin_run()
         return title
 
@@ -501,6 +497,20 @@ class Session:
         """The name of the active scene."""
         return self.scenes.active.name
 
+    @property
+    def time_passes(self) -> bool:
+        """True while frames let time pass in the model that is open."""
+        return self.schedule.is_active(self._time, self.scene)
+
+    def plan(self, scene: str | None = None) -> Plan:
+        """Which systems run in a scene (by default the active one) with the model, in order, and why others do not.
+
+        >>> Session.open("isostatic").plan("pause").left_out["run.time"]
+        'not active in pause, only in simulation'
+        """
+        with self.simulation.in_scene(scene or self.scene):
+            return self.simulation.planned()
+
     def act(self, name: str, pixel: Vector | None = None) -> None:
         """Perform a named action with the pointer at a pixel; what it refuses is said in `notice`."""
         if name not in ACTIONS:
@@ -536,9 +546,10 @@ class Session:
 
         Raises ValueError if no key is called so.
         """
-        self._press(key_named(key), pixel)
+        self.press_named(key_named(key), pixel)
 
-    def _press(self, key: str, pixel: Vector | None) -> None:
+    def press_named(self, key: str, pixel: Vector | None) -> None:
+        """Press a key or button by the name that bindings know it by, or type a text."""
         if key.startswith(TEXT):
             self.type(key.removeprefix(TEXT))
             return
@@ -549,7 +560,7 @@ class Session:
         elif name is not None:
             if self.on_press is not None:
                 self.on_press(key, pixel)
-            if self.scene == "simulation":
+            if self.time_passes:
                 self.get_ready()
             self.notice = ""
             self.act(name, pixel)
@@ -635,29 +646,15 @@ class Session:
     # --- frames --------------------------------------------------------------------------------------
 
     def frame(self, elapsed: float) -> Frame:
-        """One frame, `elapsed` s after the last: input → actions → transition → fixed steps → events → picture.
-
-        Raises ValueError.
-        """
+        """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
         frame = Frame(self, _forward("elapsed", elapsed))
-        self._phase(Phase.INPUT, frame)
-        for key, pixel in frame.pressed if not self.performing else ():
-            if not key.startswith(TEXT):
-                self._keyed = self.scene
-            elif self._keyed != self.scene:  # the key that led here; it is not meant for a box
-                continue
-            self._press(key, pixel)  # whatever keys there are
-        self.scenes.apply(self)
-        self._phase(Phase.EDIT, frame)
-        if not (self.performing and self.scene == "simulation"):
-            self.scenes.active.advance(self, elapsed)
-        self._phase(Phase.EVENTS, frame)
-        self.update_view()
-        self._phase(Phase.RENDER, frame)
+        for phase in Phase:
+            self.schedule.run(phase, frame)
         return frame
 
-    def _phase(self, phase: Phase, frame: Frame) -> None:
-        self.schedule.run(phase, self.scene, self.model, frame)
+    def act_in_scene(self) -> None:
+        """Let time pass under the systems of the active scene; where time stands still, under those of simulation."""
+        self.simulation.act_in(self.scene if self.time_passes else "simulation")
 
     def get_ready(self) -> None:
         """Account for edits as if a frame had begun, so that what follows does not depend on when frames do."""
@@ -666,7 +663,8 @@ class Session:
             self.simulation.advance(0)
 
     def advance(self, elapsed: float) -> None:
-        """Let the time of one frame pass in the model."""
+        """Let the time of one frame pass in the model, under the laws that act in the active scene."""
+        self.act_in_scene()
         self._note_beginning()
         if self.simulation.halted or not self.has_program(self.simulation):
             return

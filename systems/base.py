@@ -31,13 +31,13 @@ __all__ = ["ACCOUNTS", "Commit", "Driver", "Law", "Mod", "Phase", "StepSystem", 
 
 
 class Phase(Enum):
-    """When in a frame a system runs, in this order."""
+    """The parts of a frame, in order. A frame is `for phase in Phase: schedule.run(phase, frame)` and nothing else."""
 
-    INPUT = "input"  # input devices become named actions
-    EDIT = "edit"  # what follows from actions: hovering, dragging, camera
-    STEP = "step"  # the fixed steps; step systems are compiled into one program
-    EVENTS = "events"  # what happened in the steps is told to others
-    RENDER = "render"  # pictures; reads only
+    INPUT = "input"  # input devices report pressed keys and buttons
+    EDIT = "edit"  # presses become actions, actions become commands; scenes change; hovering
+    STEP = "step"  # time passes; laws, commits and the integrator are compiled into one program
+    EVENTS = "events"  # what follows from what happened in the steps: probes, autosave, edits by mods
+    RENDER = "render"  # the view is brought up to date, and drawn; the model is only read
 
 
 class StopReason(IntEnum):
@@ -69,11 +69,13 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
 
     name: qualified, such as "physics.elasticity"; unique.
     before, after: names of systems in the same phase that must run later, earlier.
-    reads, writes: columns ("particles.velocity") or named resources it touches. Two systems of a phase
+    reads, writes: columns ("particles.velocity") or named resources ("view") it touches. Two systems of a phase
         that touch the same thing, one writing, must be ordered by before/after.
     adds: columns that it adds to; additions never conflict.
-    scenes: names of the scenes it is active in; None: all.
-    asks_esper: False if it never queries esper itself, which then need not be told of every mark first.
+    scenes: names of the scenes it is active in; None: all. A scene may name further systems (`Scene.systems`).
+    unneeded: why a model for which `needs` is False leaves the system out, such as "the model has no cables".
+    headless: of a system in phase EVENTS: it also runs where there are no frames, in `Session.run` and on the
+        command line, every EVENT_INTERVAL steps and at the end of a run.
     mod: the mod that brought it, if one did; set by the program.
     """
 
@@ -85,7 +87,8 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
     writes: ClassVar[tuple[str, ...]] = ()
     adds: ClassVar[tuple[str, ...]] = ()
     scenes: ClassVar[tuple[str, ...] | None] = None
-    asks_esper: ClassVar[bool] = True
+    unneeded: ClassVar[str] = "the model has nothing for it to do"
+    headless: ClassVar[bool] = True
     mod: Mod | None = None
 
     def needs(self, model: Model) -> bool:

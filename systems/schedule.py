@@ -1,12 +1,23 @@
-"""Schedule: which systems run, in which order, for a scene and a model; and how long each takes."""
+"""Schedule: which systems run, in which order, for a scene and a model; and how long each takes.
+
+>>> from systems.base import System
+>>> class Idle(System):
+...     name = "example.idle"
+...     scenes = ("pause",)
+>>> from components.model import Model
+>>> Schedule([Idle()]).plan("simulation", Model()).left_out
+{'example.idle': 'not active in simulation, only in pause'}
+"""
 
 from __future__ import annotations
 
 import time
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from graphlib import CycleError, TopologicalSorter
-from typing import Any, TypeVar
+from typing import Protocol, TypeVar
 
 from components.model import Model
 from systems.base import Commit, Driver, Law, Phase, StepSystem, System
@@ -18,15 +29,40 @@ class ScheduleError(ValueError):
     """Systems that cannot be put in order; the message names them and says what to declare."""
 
 
+class Moving(Protocol):
+    """A frame as the schedule sees it: the active scene and the open model, which systems may change on the way."""
+
+    @property
+    def scene(self) -> str:
+        """The name of the active scene."""
+
+    @property
+    def model(self) -> Model:
+        """The model that is open."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The systems that run in a scene with a model, in order, by phase; and why the others do not, by name."""
+
+    scene: str
+    phases: Mapping[Phase, tuple[System, ...]]
+    left_out: Mapping[str, str]
+
+
 class Schedule:
     """All registered systems, ordered within their phases.
 
     Order: `before` and `after`, ties by registration. Two systems of a phase of which one writes what the
     other touches must be ordered, directly or through others.
+
+    wanted: by scene, names or patterns such as "physics.*" of systems that it activates although they do not
+        name it. seconds: spent so far in each system, by name.
     """
 
-    def __init__(self, systems: Iterable[System]) -> None:
+    def __init__(self, systems: Iterable[System], wanted: Mapping[str, Sequence[str]] | None = None) -> None:
         self._systems = tuple(systems)
+        self._wanted = wanted or {}
         self.seconds: dict[str, float] = defaultdict(float)
         self._check_names()
         self._ordered = {phase: self._order_phase(phase) for phase in Phase}
@@ -104,25 +140,46 @@ class Schedule:
 
     # --- plans -----------------------------------------------------------------------------------
 
-    def frame_plan(self, phase: Phase, scene: str, model: Model) -> list[System]:
-        """The frame systems of a phase that a scene activates and a model needs."""
-        return [
-            system
-            for system in self._ordered[phase]
-            if not isinstance(system, StepSystem) and _active(system, scene) and system.needs(model)
-        ]
+    def is_active(self, system: System, scene: str) -> bool:
+        """True if a system acts in a scene: it names the scene, or the scene names it."""
+        named = system.scenes is None or scene in system.scenes
+        return named or any(fnmatchcase(system.name, wanted) for wanted in self._wanted.get(scene, ()))
 
-    def step_plan(self, model: Model) -> list[StepSystem]:
-        """Laws and commits that the model needs, in order."""
+    def _reason(self, system: System, scene: str, model: Model) -> str:
+        """Why a system does not run in a scene with a model; "" if it does."""
+        if not self.is_active(system, scene):
+            return self.inactive(system, scene)
+        return "" if system.needs(model) else system.unneeded
+
+    @staticmethod
+    def inactive(system: System, scene: str) -> str:
+        """That a system is not active in a scene, and where it is."""
+        return f"not active in {scene}, only in {', '.join(system.scenes or ())}"
+
+    def plan(self, scene: str, model: Model) -> Plan:
+        """Which systems run in a scene with a model, and why the others do not."""
+        reasons = {system.name: self._reason(system, scene, model) for system in self._systems}
+        phases = {
+            phase: tuple(system for system in ordered if not reasons[system.name])
+            for phase, ordered in self._ordered.items()
+        }
+        return Plan(scene, phases, {name: reason for name, reason in reasons.items() if reason})
+
+    def step_plan(self, scene: str, model: Model) -> list[StepSystem]:
+        """Laws and commits that act in a scene and that the model needs, in order."""
         return [
             system
             for system in self._ordered[Phase.STEP]
-            if isinstance(system, StepSystem) and not isinstance(system, Driver) and system.needs(model)
+            if isinstance(system, StepSystem)
+            and not isinstance(system, Driver)
+            and self.is_active(system, scene)
+            and system.needs(model)
         ]
 
     def left_out_of_statics(self, model: Model) -> str:
         """The sentence that names the laws of mods that a model needs and statics does not know; "" if there are none."""
-        laws = (law for law in self.step_plan(model) if isinstance(law, Law) and law.mod is not None)
+        plan = self.step_plan("simulation", model)
+        laws = (law for law in plan if isinstance(law, Law) and law.mod is not None)
         names = ", ".join(law.name for law in laws if law.each != "loads")
         return f"Settling leaves out the laws of mods: {names}." if names else ""
 
@@ -132,14 +189,21 @@ class Schedule:
         wanted = {by_name[name] for name in names}
         return [system for system in by_name.values() if system in wanted]
 
-    def run(self, phase: Phase, scene: str, model: Model, frame: Any) -> None:
-        """Run one phase of a frame, timing each system."""
-        for system in self.frame_plan(phase, scene, model):
-            if system.asks_esper:
-                model.activate()
-            started = time.perf_counter()
-            system.process(frame)
-            self.seconds[system.name] += time.perf_counter() - started
+    # --- running ---------------------------------------------------------------------------------
+
+    def run(self, phase: Phase, frame: Moving, *, headless: bool = False) -> None:
+        """Run one phase of a frame, timing each system; each is asked for when its turn comes.
+
+        headless: only systems that also run where there are no frames.
+        """
+        for system in self._ordered[phase]:
+            if isinstance(system, StepSystem) or (headless and not system.headless):
+                continue
+            if self.is_active(system, frame.scene) and system.needs(frame.model):
+                frame.model.activate()
+                started = time.perf_counter()
+                system.process(frame)
+                self.seconds[system.name] += time.perf_counter() - started
 
 
 def _role(system: System) -> type:
@@ -153,7 +217,3 @@ def _contested(one: System, other: System) -> list[str]:
     written = (set(one.writes) & also) | (set(other.writes) & touched)
     mixed = (set(one.adds) & set(other.reads)) | (set(other.adds) & set(one.reads))
     return sorted(written | mixed)
-
-
-def _active(system: System, scene: str) -> bool:
-    return system.scenes is None or scene in system.scenes

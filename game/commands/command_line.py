@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from components.field import FieldError
-from game.commands import bench, curve, force_method, play, render, run, sweep, verify, window
+from game.commands import bench, curve, force_method, plan, play, render, run, sweep, verify, window
 from game.commands.arguments import BAD_INPUT, Parser, UsageError, write
 from game.commands.options import NOT_ANSWERED, use_cores_as_asked
 from game.commands.reports.report import AnalysisError
@@ -81,6 +81,7 @@ COMMANDS |= {
     "verify": verify.command,
     "curve": curve.command,
     "force-method": force_method.command,
+    "plan": plan.command,
     "mods": _mods,
     "sweep": sweep.command,
 }
@@ -92,6 +93,7 @@ ABOUT |= {
     "curve": "load–displacement curve, through limit points",
     "force-method": "hyperstatic forces by the force method",
     "sweep": "compute many variants of a model",
+    "plan": "which systems run in a scene with a model, and why others do not",
     "render": "draw a model, or its run, without a display",
     "play": "play a scripted session or a lesson",
     "mods": "list, check and begin extensions",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
 
 from components.settings import INTEGRATORS
@@ -13,6 +13,7 @@ from game.commands.arguments import Parser, UsageError, count, numbers, positive
 from game.commands.reports.report import Analysis
 from game.paths.overrides import apply_override
 from game.session import DEFAULT_LIMIT, Session
+from systems.base import System
 from systems.program.cores import VARIABLE
 
 ANSWERED, NOT_ANSWERED, NO_DISPLAY = 0, 1, 3  # exit statuses; BAD_INPUT is 2
@@ -42,9 +43,9 @@ def add_model(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def session_of(options: argparse.Namespace) -> Session:
-    """A session with the model of `add_model`. Raises ModelError, OverrideError, FieldError."""
-    session = Session.open(options.model)
+def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> Session:
+    """A session with the model of `add_model`, and further systems. Raises ModelError, OverrideError, FieldError."""
+    session = Session.open(options.model, systems)
     if session.notice:  # data of mods that are not loaded, which would change the result
         print(f"pinjoint: {session.notice}", file=sys.stderr)
     for override in options.set:

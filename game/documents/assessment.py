@@ -122,7 +122,7 @@ class Assessment:
     def _laws_are_known(self) -> bool:
         """True if statics knows all forces that act on the model."""
         known = {system.name for system in step_systems()}
-        plan = self._simulation.schedule.step_plan(self._model)
+        plan = self._simulation.plan
         return all(law.name in known or law.each == "loads" for law in plan if isinstance(law, Law))
 
 

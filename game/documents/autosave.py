@@ -50,7 +50,9 @@ class Autosave(System):
 
     name = "files.autosave"
     phase = Phase.EVENTS
-    asks_esper = False
+    reads = ("document", "state")
+    writes = ("spares",)
+    headless = False
 
     def __init__(self, folder: Path | None = None, interval: float = INTERVAL) -> None:
         self._folder = folder or library.data_folder() / "autosave"

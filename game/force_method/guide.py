@@ -131,7 +131,7 @@ class Guide:
         if unit is not None:
             _unload(copy)
             copy.assign(list(copy.particles), "force", unit_force(self.model, unit).tolist())
-        return Set(copy, view_like(self._view), Live(Simulation(copy, self._schedule)))
+        return Set(copy, view_like(self._view), Live(Simulation(copy, self._schedule, "force method")))
 
     @property
     def running(self) -> list[Set]:

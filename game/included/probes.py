@@ -131,8 +131,10 @@ class Sampling(System):
 
     name = "probes.sampling"
     phase = Phase.EVENTS
+    reads = ("document", "state")
+    writes = ("probes",)
+    headless = False
     scenes = ("simulation", "pause")
-    asks_esper = False
 
     def process(self, frame: Any) -> None:
         probes_of(frame.session).sample(frame.session)

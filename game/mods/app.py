@@ -165,6 +165,11 @@ class App:
             raise ModError(f"There is a scene '{scene.name}' already; call this one something else.")
         if "pause" not in scene.targets:
             raise ModError(f"From the scene '{scene.name}' one must be able to go to pause; add it to targets.")
+        if hasattr(scene, "advance"):
+            raise ModError(
+                f"The scene '{scene.name}' has a method 'advance', which nothing calls any more; write a System with"
+                f" phase = Phase.STEP and scenes = ('{scene.name}',), and register it by app.system."
+            )
         guarded: Callable[[], Scene] = guarded_scene(self._mod, scene)
         self._add(registry.SCENES, guarded)
 

@@ -126,7 +126,8 @@ _METHODS = tuple(name for name, method in vars(Scene).items() if callable(method
 
 def guarded_scene(mod: Mod, kind: type[Scene]) -> type[Scene]:
     """The scene of a mod, so wrapped that it does nothing and leads to pause once the mod is switched off."""
-    return type(kind.__name__, (kind,), {name: _guarded_method(mod, kind, name) for name in _METHODS})
+    methods = {name: _guarded_method(mod, kind, name) for name in _METHODS}
+    return type(kind.__name__, (kind,), {**methods, "mod": mod})
 
 
 def _guarded_method(mod: Mod, kind: type[Scene], name: str) -> Callable[..., Any]:
@@ -136,8 +137,6 @@ def _guarded_method(mod: Mod, kind: type[Scene], name: str) -> Callable[..., Any
         made = mod.call(f"the scene '{kind.name}'", own, scene, session, *arguments, otherwise=mod)
         if made is not mod:
             return made
-        if name == "advance":
-            session.scenes.request("pause")
         return plain(scene, session, *arguments)
 
     return method

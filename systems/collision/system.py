@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from components.collision_state import PersistentContacts
+from components.model import Model
 from components.obstacles import any_obstacles, obstacles
 from systems.base import Driver, Law, StepSystem
 from systems.broad_phase import nearest
-
-if TYPE_CHECKING:
-    from components.model import Model
 
 REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
 PULLED_PARTICLES = 8  # up to which an integrator follows a hand's force within a step
@@ -30,6 +28,7 @@ class Collision(StepSystem):
     """
 
     name = "collision.discs"
+    unneeded = "no two particles, and no particle and obstacle, can meet; or settings.collisions is off"
     reads = ("particles.radius", "particles.mobility", "settings.restitution")
     writes = ("particles.velocity", "clock.collisions", "clock.dissipated_impact")
     detects_impacts = True
@@ -70,6 +69,7 @@ class Support(Law):
     """Forces in persistent contacts of driven particles; constant during a step."""
 
     name = "collision.support"
+    unneeded = "no contact lasts among particles that rods, drag or laws of mods drive"
     each = "particles"
     kernel = "systems.collision.kernels.pairs:contact_force"
     adds = ("particles.force",)

@@ -21,8 +21,11 @@ class Hover(System):
 
     name = "edit.hover"
     phase = Phase.EDIT
+    after = ("edit.actions",)
+    reads = ("document", "view")
+    writes = ("tags",)
+    unneeded = "the model has nothing to point at"
     scenes = ("simulation", "pause", "properties", "force method")
-    asks_esper = False
 
     def __init__(self) -> None:
         self._looked: Any = None  # at what, from where and at which point, in the last frame

@@ -39,6 +39,7 @@ class Pull(Law):
     """The hand's force on one particle. Its work is accounted for; no hand, no law."""
 
     name = "edit.pull"
+    unneeded = "no hand pulls a particle"
     each = "particles"
     kernel = "systems.edit.kernels:pull"
     reads = ("particles.displacement", "particles.velocity")

@@ -55,7 +55,7 @@ class PygameInput(System):
 
     name = "input.pygame"
     phase = Phase.INPUT
-    asks_esper = False
+    writes = ("pressed", "view")
 
     def __init__(self) -> None:
         self.closed = False

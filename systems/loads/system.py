@@ -25,6 +25,7 @@ class VaryingLoads(Law):
     def __init__(self, kind: HistoryKind) -> None:
         self.kind, self.mod = kind, kind.mod
         self.name = f"loads.{kind.name}"  # type: ignore[misc]
+        self.unneeded = f"no load has the history '{kind.name}'"  # type: ignore[misc]
         self.kernel = kind.factor  # type: ignore[misc]
 
     def _rows(self, model: Model) -> list[int]:

@@ -15,6 +15,7 @@ class Elasticity(Law):
     """Axial force of rods that never yielded and cannot: N = EA ε."""
 
     name = "physics.elasticity"
+    unneeded = "the model has no rods, or some have yielded or can (physics.elasticity_after_yielding)"
     elastic = True
     kernel = "systems.physics.kernels:elastic"
     reads = ("rods.stiffness", "rods.rest_length")
@@ -28,6 +29,7 @@ class ElasticityAfterYielding(Law):
     """Axial force of rods with plastic strain: N = EA (ε − ε_p)."""
 
     name = "physics.elasticity_after_yielding"
+    unneeded = "no rod has yielded or can"
     elastic = True
     kernel = "systems.physics.kernels:elastic_after_yielding"
     reads = ("rods.stiffness", "rods.rest_length", "rods.plastic_strain")
@@ -41,6 +43,7 @@ class AxialDamping(Law):
     """Viscous force along the axis of the rods, on top of N."""
 
     name = "physics.axial_damping"
+    unneeded = "no rod has a damper, or there are cables (physics.axial_damping_of_cables)"
     kernel = "systems.physics.kernels:axial_damper"
     reads = ("rods.damping",)
     adds = ("rods.axial_force",)
@@ -54,6 +57,7 @@ class Slackness(Law):
     """Cables do not push: N ≥ 0. Where one goes slack or taut, drivers with events end a step."""
 
     name = "physics.slackness"
+    unneeded = "the model has no cables"
     kernel = "systems.physics.kernels:taut"
     branch = "systems.physics.kernels:slack_branch"
     margin = "systems.physics.kernels:slack_margin"
@@ -69,6 +73,7 @@ class AxialDampingOfCables(Law):
     """Axial damping in a model with cables, whose dampers act while they are taut and never make them push."""
 
     name = "physics.axial_damping_of_cables"
+    unneeded = "the model has no cables with dampers"
     kernel = "systems.physics.kernels:taut_damper"
     reads = ("rods.damping", "rods.tension_only")
     adds = ("rods.axial_force",)
@@ -82,6 +87,7 @@ class Drag(Law):
     """The environment's resistance to all motion."""
 
     name = "physics.drag"
+    unneeded = "the drag of the environment is 0"
     each = "particles"
     kernel = "systems.physics.kernels:drag"
     reads = ("particles.mass", "particles.velocity", "environment.drag")

@@ -15,6 +15,7 @@ class Strength(Law):
     """No axial force passes a rod's strength."""
 
     name = "plasticity.strength"
+    unneeded = "no rod can yield: strengths are unlimited, or settings.plasticity is off"
     kernel = "systems.plasticity.kernels:limited"
     after = ("physics.elasticity_after_yielding",)
     reads = ("rods.tension_limit", "rods.compression_limit")
@@ -28,6 +29,7 @@ class Yielding(Commit):
     """Plastic strain takes up what exceeds the elastic range."""
 
     name = "plasticity.yielding"
+    unneeded = "no rod can yield: strengths are unlimited, or settings.plasticity is off"
     kernel = "systems.plasticity.kernels:yielded"
     branch = "systems.plasticity.kernels:branch"
     margin = "systems.plasticity.kernels:margin"

@@ -24,7 +24,9 @@ class PygameRender(System):
 
     name = "render.pygame"
     phase = Phase.RENDER
-    asks_esper = False
+    after = ("render.view",)
+    reads = ("document", "state", "view")
+    writes = ("surface",)
 
     def __init__(self, surface: pygame.Surface, raster: Callable[[], Raster | None] | None = None) -> None:
         self.surface = surface

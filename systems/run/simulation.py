@@ -16,7 +16,7 @@ from components.model import ADDED, Model
 from components.rod import is_warm
 from components.snapshot import Snapshot
 from components.world import Derivation
-from systems.base import Driver, StepSystem, StopReason
+from systems.base import Driver, Phase, StepSystem, StopReason
 from systems.catalogue import DRIVERS
 from systems.collision.driven.stepper import DrivenCollisions
 from systems.collision.free.flight import Flight
@@ -34,7 +34,7 @@ from systems.run.checkpoint import Moment
 from systems.run.energy import Account, Energy
 from systems.run.sleep import Sleep
 from systems.run.step_size import StepSize
-from systems.schedule import Schedule
+from systems.schedule import Plan, Schedule
 
 MOST_RETRIES = 6  # times that an automatic step is halved before a run is given up
 FREE_FLIGHT = FreeFlight()
@@ -63,12 +63,14 @@ class Simulation:
     note: what a person should know though the run goes on, or "".
     impacts: what collided so far.
     compute_seconds, compile_seconds: spent so far in steps, and in compiling or loading programs.
+    scene: the one whose laws, commits and integrators act.
     watch: asked before steps are taken; returns after how many at most it wants to be asked again.
     """
 
-    def __init__(self, model: Model, schedule: Schedule) -> None:
+    def __init__(self, model: Model, schedule: Schedule, scene: str = "simulation") -> None:
         self.model = model
         self.schedule = schedule
+        self.scene = scene
         self.reason = StopReason.DONE
         self.message = ""
         self.note = ""
@@ -77,7 +79,7 @@ class Simulation:
         self._sleep = Sleep(model)
         self._step_size = StepSize(model, self._sleep, lambda: self.driver)
         self._account = Account(model, self._measured)
-        self._encounters = DrivenCollisions(model, self.impacts, self._short_step, self._rebind)
+        self._driven_collisions = DrivenCollisions(model, self.impacts, self._short_step, self._rebind)
         self.compute_seconds = 0.0
         self.compile_seconds = 0.0
         self.watch: Callable[[], int] | None = None
@@ -105,6 +107,44 @@ class Simulation:
         )
 
     @property
+    def plan(self) -> list[StepSystem]:
+        """The laws and commits that act in its scene and that the model needs, in order."""
+        return self.schedule.step_plan(self.scene, self.model)
+
+    def planned(self) -> Plan:
+        """All systems that run in its scene with its model, the integrator among them, and why the others do not."""
+        found = self.schedule.plan(self.scene, self.model)
+        phases, left_out = dict(found.phases), dict(found.left_out)
+        for integrator in (*DRIVERS.values(), FREE_FLIGHT):
+            if not self.schedule.is_active(integrator, self.scene):
+                left_out[integrator.name] = self.schedule.inactive(integrator, self.scene)
+            elif integrator is self.driver:
+                phases[Phase.STEP] = (*phases[Phase.STEP], integrator)
+            else:
+                left_out[integrator.name] = f"{self.driver.name} integrates"
+        return Plan(self.scene, phases, left_out)
+
+    @contextmanager
+    def in_scene(self, scene: str) -> Iterator[None]:
+        """What is asked inside is answered as if the systems of a scene acted."""
+        driver, before = self._driver, self.scene
+        self._driver, self.scene = None, scene
+        try:
+            yield
+        finally:
+            self._driver, self.scene = driver, before
+
+    def act_in(self, scene: str) -> None:
+        """Let the systems of a scene act from now on. What they do otherwise counts as an edit."""
+        if scene != self.scene:
+            before, integrator = self.plan, self._integrator
+            here, self.scene = self.scene, scene
+            if self.plan != before or self._integrator is not integrator:
+                self.scene = here  # the energy from which the edit starts is that under the laws until now
+                self.before_change()
+                self.scene = scene
+
+    @property
     def _started(self) -> bool:
         return self.model.clock.step_size > 0.0
 
@@ -114,7 +154,7 @@ class Simulation:
     def driver(self) -> Driver:
         """The integrator that the settings ask for, or that suits the model; free particles need none."""
         if self._driver is None:
-            free = flies_free(self.schedule.step_plan(self.model), self.model)
+            free = flies_free(self.plan, self.model)
             self._driver = FREE_FLIGHT if free else self._integrator
         return self._driver
 
@@ -122,7 +162,8 @@ class Simulation:
     def _integrator(self) -> Driver:
         """The one that the settings name; another where they name none, or that of a mod that is switched off."""
         named = DRIVERS.get(self.model.settings.integrator)
-        if named is None or (named.mod is not None and named.mod.off):
+        off = named is None or (named.mod is not None and named.mod.off)
+        if named is None or off or not self.schedule.is_active(named, self.scene):
             return DRIVERS[choose(self.model)]
         return named
 
@@ -142,7 +183,7 @@ class Simulation:
     @property
     def ready(self) -> bool:
         """False if the next step or observation needs a program that is not loaded yet."""
-        return self._program is not None or self._key(self.schedule.step_plan(self.model)) in self._programs
+        return self._program is not None or self._key(self.plan) in self._programs
 
     @property
     def collides(self) -> bool:
@@ -257,7 +298,7 @@ class Simulation:
     def _bind(self) -> None:
         """Take hold of the model by the program of its plan, without mods whose systems cannot join it."""
         while self._program is None:
-            systems = self.schedule.step_plan(self.model)
+            systems = self.plan
             self._collides = detects_impacts(systems)
             try:
                 self._program = self._bound(systems)
@@ -301,7 +342,7 @@ class Simulation:
     def _part_overlaps(self) -> None:
         """Particles that edits left in one another's place are moved apart; a note says so."""
         self.note = ""
-        if detects_impacts(self.schedule.step_plan(self.model)):
+        if detects_impacts(self.plan):
             self.note = part_overlaps(self.model)
 
     def _measured(self) -> Column:
@@ -385,7 +426,7 @@ class Simulation:
         if not isinstance(program, Program):
             return program.advance(steps, until)
         if self._collides:
-            return self._encounters.advance(program, steps, until)
+            return self._driven_collisions.advance(program, steps, until)
         return program.advance(steps, until, landing)
 
     def _heed(self, reason: StopReason) -> None:
@@ -473,7 +514,7 @@ class Simulation:
     def _land(self, target: float) -> StopReason:
         """Take the last, short step to a time (s)."""
         if isinstance(self.program, Program) and self._collides:
-            return self._encounters.land(self.program, target)
+            return self._driven_collisions.land(self.program, target)
         return self._short_step(target)
 
     def _short_step(self, target: float) -> StopReason:

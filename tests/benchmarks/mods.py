@@ -45,7 +45,7 @@ class DragOfMod(Drag):
 
 def _program(model: Model, law: System) -> Program:
     systems = [system for system in step_systems() if system.name != "physics.drag"]
-    plan = Schedule([*systems, law]).step_plan(model)
+    plan = Schedule([*systems, law]).step_plan("simulation", model)
     assert any(isinstance(system, Drag) for system in plan)
     model.writable("clock.step_size")[0] = STEP
     return make_program(model, plan, DRIVERS["velocity_verlet"])

@@ -84,7 +84,7 @@ def compiling(whats: Sequence[str]) -> list[Row]:
 def _job(session: Session) -> list[str]:
     """What compiles the program of its model."""
     simulation = session.simulation
-    plan = simulation.schedule.step_plan(session.model)
+    plan = simulation.plan
     return [simulation.integrator, form_of(session.model, simulation.driver), *(system.name for system in plan)]
 
 

@@ -20,7 +20,9 @@ STEP = 1e-6  # s, stable in all models of benchmarks
 
 def program_runner(model: Model, steps: int, *, on: int = 1, form: str = "") -> Callable[[], None]:
     """Takes so many steps, on so many cores."""
-    program = make_program(model, Schedule(step_systems()).step_plan(model), DRIVERS["velocity_verlet"], form)
+    program = make_program(
+        model, Schedule(step_systems()).step_plan("simulation", model), DRIVERS["velocity_verlet"], form
+    )
     model.writable("clock.step_size")[0] = STEP
 
     def run() -> None:

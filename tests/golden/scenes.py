@@ -115,7 +115,7 @@ def _load(window: Window) -> Session:
     session = pressed(window, "d")
     session.type("hyperstatic")
     for _ in session.scenes.active.stages(session)[0][0].tiles:  # type: ignore[union-attr]
-        session.scenes.active.advance(session, 0.0)
+        session.frame(0.0)
     return session
 
 

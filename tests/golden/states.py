@@ -29,7 +29,7 @@ def _saved(*names: str) -> None:
 def _shown(session: Session) -> Session:
     """The pictures that are looked for are read."""
     while session.busy:
-        session.scenes.active.advance(session, 0.0)
+        session.frame(0.0)
     return session
 
 

@@ -271,7 +271,7 @@ def test_a_layer_that_fails(session: Any) -> None:
     check_switched_off(made, before, "its drawing layer failed: AttributeError")
 
 
-@pytest.mark.parametrize("method", ["enter", "advance", "hint", "busy"])
+@pytest.mark.parametrize("method", ["enter", "hint", "busy"])
 def test_a_scene_that_fails_leads_back_to_pause(session: Any, method: str) -> None:
     code = f"""
 from game.editor.scenes import Scene

@@ -77,7 +77,7 @@ def frames(app: App, count: int) -> None:
 
 def test_it_begins_with_the_model_that_is_open(app: App, compiler: Compiler) -> None:
     (job,) = compiler.jobs
-    plan = app.session.schedule.step_plan(app.session.model)
+    plan = app.session.simulation.plan
     assert job == (app.session.simulation.integrator, FEW, *(system.name for system in plan))
 
 
@@ -220,7 +220,7 @@ def test_what_another_process_compiles_is_what_the_model_needs(name: str, warmth
     session = Session(models.load(name))
     session.model.assign(list(session.rods), "temperature_change", warmth)
     simulation = session.simulation
-    plan = session.schedule.step_plan(session.model)
+    plan = session.simulation.plan
     example, same_plan, driver, form = _example(preparation._job(simulation, plan))
     there = _writer(example.model, same_plan, driver, form)
     here = _writer(session.model, plan, simulation.driver, form_of(session.model, simulation.driver))
@@ -328,7 +328,7 @@ for entry in (module.advance, module.observe):
 
 def test_another_process_compiles_what_this_one_loads(tmp_path: Path) -> None:
     session = Session.open(json.loads(ALONE))
-    names = [system.name for system in session.schedule.step_plan(session.model)]
+    names = [system.name for system in session.simulation.plan]
     folders = {"XDG_CACHE_HOME": str(tmp_path), "LOCALAPPDATA": str(tmp_path), "HOME": str(tmp_path)}
     command = [sys.executable, "-m", "game.prepare", "--no-mods", session.simulation.integrator, FEW, *names]
     subprocess.run(command, env=os.environ | folders, check=True, timeout=300)

@@ -258,7 +258,7 @@ def test_a_file_that_is_no_model_is_explained(session: Session, data: Path, cont
     session.press("d")
     scene = scene_of(session)
     while scene.busy(session):
-        scene.advance(session, 0.0)
+        session.frame(0.0)
     assert "cannot be read" in [tile.caption for tile in scene.form.tiles]
     session.type("bad")
     session.press("return")

@@ -14,17 +14,24 @@ from systems.schedule import Schedule, ScheduleError
 from tests.reference.models import model, oscillator, particle
 
 
-def system(name: str, **attributes: Any) -> System:
-    """A frame system that notes in `frame` that it ran."""
+class Noting:
+    """A frame in a scene that notes what ran."""
 
-    def process(self: System, frame: list[str]) -> None:
-        frame.append(self.name)
+    def __init__(self, scene: str = "pause") -> None:
+        self.scene, self.model, self.ran = scene, Model(), list[str]()
+
+
+def system(name: str, **attributes: Any) -> System:
+    """A frame system that notes in the frame that it ran."""
+
+    def process(self: System, frame: Noting) -> None:
+        frame.ran.append(self.name)
 
     return type("Noted", (System,), {"name": name, "process": process} | attributes)()
 
 
 def order(*systems: System, phase: Phase = Phase.EDIT) -> list[str]:
-    return [s.name for s in Schedule(systems).frame_plan(phase, "pause", Model())]
+    return [s.name for s in Schedule(systems).plan("pause", Model()).phases[phase]]
 
 
 # --- order -----------------------------------------------------------------------------------------------
@@ -59,17 +66,17 @@ def test_systems_run_in_the_scenes_that_they_name() -> None:
     everywhere, paused = system("everywhere"), system("paused", scenes=("pause",))
     schedule = Schedule([everywhere, paused])
     for scene, expected in [("pause", ["everywhere", "paused"]), ("simulation", ["everywhere"])]:
-        ran: list[str] = []
-        schedule.run(Phase.EDIT, scene, Model(), ran)
-        assert ran == expected
+        frame = Noting(scene)
+        schedule.run(Phase.EDIT, frame)
+        assert frame.ran == expected
 
 
 def test_each_system_is_timed_and_what_the_model_does_not_need_is_left_out() -> None:
     idle = system("idle", needs=lambda self, model: False)
     schedule = Schedule([system("busy"), idle])
-    ran: list[str] = []
-    schedule.run(Phase.EDIT, "pause", Model(), ran)
-    assert ran == ["busy"]
+    frame = Noting()
+    schedule.run(Phase.EDIT, frame)
+    assert frame.ran == ["busy"]
     assert schedule.seconds.keys() == {"busy"}
     assert schedule.seconds["busy"] > 0.0
 
@@ -155,7 +162,7 @@ PLANS = {
 
 
 def plan(document: Any) -> set[str]:
-    return {s.name for s in Schedule(step_systems()).step_plan(models.load(document))}
+    return {s.name for s in Schedule(step_systems()).step_plan("simulation", models.load(document))}
 
 
 @pytest.mark.parametrize("name", models.bundled())

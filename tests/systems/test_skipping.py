@@ -62,7 +62,7 @@ def can_meet(model: dict[str, Any]) -> bool:
 
 
 def planned(session: Session) -> set[str]:
-    return {system.name for system in session.schedule.step_plan(session.model)}
+    return {system.name for system in session.simulation.plan}
 
 
 @pytest.mark.parametrize("name", models.bundled())
@@ -101,5 +101,5 @@ def test_an_edit_brings_a_system_in_and_undoing_it_takes_it_out(edit: Any, syste
 def test_an_empty_model_needs_nothing() -> None:
     session = Session.open({"format": "pinjoint model", "version": 1})
     assert planned(session) == set()
-    names = [system.name for system in session.schedule.frame_plan(Phase.EDIT, "pause", session.model)]
+    names = [system.name for system in session.schedule.plan("pause", session.model).phases[Phase.EDIT]]
     assert "edit.hover" not in names

@@ -93,9 +93,6 @@ def test_a_handle_finds_its_row_wherever_it_moves() -> None:
     assert b.row == 0
     assert b.position == (1.0, 1.0)
     assert [rod.name for rod in model.rods] == ["BC"]
-    assert model.handle(b.entity) is b
-    with pytest.raises(LookupError):
-        model.handle(10**6)
 
 
 def test_deleting_a_particle_deletes_its_rods_and_loads() -> None:
@@ -628,8 +625,6 @@ def test_tags_mark_existing_entities_in_order_of_creation() -> None:
     assert model.tagged(DiagramShown) == [b]
     model.apply(log.pop())
     assert model.tagged(Selected) == [a, c, rod]
-    model.activate()
-    assert [entity for entity, _ in esper.get_components(Particle, Selected)] == [a.entity, c.entity]
 
 
 def test_the_revision_of_tags_tells_when_marks_changed() -> None:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from components import Vector
 from game.editor.scenes import Scene
+from systems.base import Phase, System
 
 if TYPE_CHECKING:
     from game import Session
@@ -23,12 +23,6 @@ class CountDown(Scene):
     def enter(self, session: Session) -> None:
         self.left = SECONDS
 
-    def advance(self, session: Session, elapsed: float) -> None:
-        self.left -= elapsed
-        self.heading = f"{math.ceil(self.left)} …"
-        if self.left <= 0.0:
-            session.scenes.request("simulation")
-
     def busy(self, session: Session) -> bool:
         return True
 
@@ -36,17 +30,29 @@ class CountDown(Scene):
         return "Space begin now     + a second more     Esc back"
 
 
-def more(session: Session, pixel: Vector) -> None:
-    scene = session.scenes.active
-    assert isinstance(scene, CountDown)
-    scene.left += 1.0
+class Ticking(System):
+    name = "countdown.ticking"
+    phase = Phase.STEP
+    scenes = ("count down",)
+
+    def process(self, frame: Any) -> None:
+        scene = frame.session.scenes.active
+        scene.left -= frame.elapsed
+        scene.heading = f"{math.ceil(scene.left)} …"
+        if scene.left <= 0.0:
+            frame.session.scenes.request("simulation")
+
+
+def more(session: Any, pixel: Any) -> None:
+    session.scenes.active.left += 1.0
 
 
 def plugin(app: App) -> None:
     app.scene(CountDown)
+    app.system(Ticking)
     here = ("count down",)
-    go = app.action("countdown.start", key="n", scenes=("pause",), title="count down, then run")
-    go(lambda session, pixel: session.scenes.request("count down"))
+    start = app.action("countdown.start", key="n", scenes=("pause",), title="count down, then run")
+    start(lambda session, pixel: session.scenes.request("count down"))
     app.action("countdown.more", key="+", scenes=here, title="a second more")(more)
     app.key("space", "toggle run", here, "begin now")
     app.key("escape", "back", here, "back to pause")

@@ -1,17 +1,24 @@
 """Scenes: the modes of the program, a state machine with pause as its hub."""
 
-from game.editor.scenes.base import Scene, SceneError, Scenes, Stage
-from game.editor.scenes.force_method import ForceMethod
+from game.editor.scenes.base import PHYSICS, Scene, SceneError, Scenes, Stage
+from game.editor.scenes.files import Pictures
+from game.editor.scenes.force_method import ForceMethod, Sets
 from game.editor.scenes.load import Load
 from game.editor.scenes.pause import Pause
 from game.editor.scenes.properties import Properties
 from game.editor.scenes.save import Save
 from game.editor.scenes.simulation import Simulation
 from game.registry import SCENES
+from systems.base import System
 
-__all__ = ["Scene", "SceneError", "Scenes", "Stage", "all_scenes"]
+__all__ = ["PHYSICS", "Scene", "SceneError", "Scenes", "Stage", "all_scenes", "scene_systems"]
 
 
 def all_scenes() -> list[Scene]:
     """The six modes, the first of which the program starts in, and those of mods."""
     return [Pause(), Simulation(), Properties(), Save(), Load(), ForceMethod(), *(scene() for scene in SCENES)]
+
+
+def scene_systems() -> list[System]:
+    """The systems that some of the modes bring."""
+    return [Pictures(), Sets()]

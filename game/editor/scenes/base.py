@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
+from systems.base import Mod
+
 if TYPE_CHECKING:
     from components.camera import Viewport
     from components.field import Vector
@@ -18,6 +20,10 @@ if TYPE_CHECKING:
 Stage = tuple["Model | Form | Toolbar", "View"]
 
 
+# The systems that let time pass, for scenes that want what happens in a simulation.
+PHYSICS = ("run.*", "physics.*", "plasticity.*", "loads.*", "collision.*", "edit.pull")
+
+
 class SceneError(ValueError):
     """A transition that does not exist; the message says from where to where, and what does."""
 
@@ -26,13 +32,17 @@ class Scene:
     """One mode. Systems say by their `scenes` in which they are active; keys are in input/bindings.py.
 
     heading: the word shown top left in red. targets: scenes that may follow. sources: further scenes that
-    this one may follow, which need not know it.
+    this one may follow, which need not know it. systems: names, or patterns such as "physics.*", of systems that
+    are active in it although they do not name it; PHYSICS lists those that let time pass.
+    mod: the mod that brought it, if one did; set by the program.
     """
 
     name: ClassVar[str]
     heading: str = ""
     targets: ClassVar[tuple[str, ...]] = ("pause",)
     sources: ClassVar[tuple[str, ...]] = ()
+    systems: ClassVar[tuple[str, ...]] = ()
+    mod: Mod | None = None
 
     @property
     def message(self) -> str:
@@ -44,9 +54,6 @@ class Scene:
 
     def exit(self, session: Session) -> None:
         """Called once when it stops being the active one."""
-
-    def advance(self, session: Session, elapsed: float) -> None:
-        """Let the time of one frame pass, where it does."""
 
     def finish(self) -> None:
         """Do now what was put off until a picture has announced it."""
@@ -112,6 +119,11 @@ class Scenes:
     def __getitem__(self, name: str) -> Scene:
         return self._by_name[name]
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all scenes."""
+        return tuple(self._by_name)
+
     def request(self, *names: str) -> None:
         """Ask for a transition, or a chain of them. Raises SceneError if one is not legal."""
         here = self._by_name[self._requested[-1]] if self._requested else self.active
@@ -126,9 +138,15 @@ class Scenes:
         self._requested.extend(names)
 
     def apply(self, session: Session) -> None:
-        """Make the requested transitions: exit, then enter."""
+        """Make the requested transitions: exit, then enter. From a scene of a mod that is switched off, to pause."""
+        if self.active.mod is not None and self.active.mod.off and not self._requested:
+            self.request("pause")
         while self._requested:
             name = self._requested.pop(0)
             self.active.exit(session)
             self.active = self._by_name[name]
             self.active.enter(session)
+            if session.time_passes:
+                session.history.begin_run()
+            else:
+                session.history.end_run()

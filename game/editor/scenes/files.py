@@ -12,6 +12,7 @@ from components.form import Form, Tile
 from components.model import Model
 from game.documents import library, models
 from game.editor.scenes.form import FormScene
+from systems.base import Phase, System
 from systems.forms import typing
 from systems.render.form_layout import tile_columns
 
@@ -94,9 +95,8 @@ class FileScene(FormScene):
     def busy(self, session: Session) -> bool:
         return self._next_unread(session) is not None
 
-    def advance(self, session: Session, elapsed: float) -> None:
+    def read_pictures(self, session: Session) -> None:
         """Read the next pictures that are looked for, few in a frame so that typing stays fluent."""
-        super().advance(session, elapsed)
         until = time.perf_counter() + READING
         while (tile := self._next_unread(session)) is not None:
             self._unread.remove(tile)
@@ -109,6 +109,23 @@ class FileScene(FormScene):
             return None
         seen = [place.item for place in self.layout(session).places]
         return next((tile for tile in self._unread if tile in seen), None)
+
+
+class Pictures(System):
+    """Reads the pictures of models to choose from."""
+
+    name = "files.pictures"
+    phase = Phase.EVENTS
+    scenes = ("save", "load")
+    reads = ("files",)
+    writes = ("form",)
+    headless = False
+
+    def process(self, frame: Any) -> None:
+        """Read a few of them."""
+        scene = frame.session.scenes.active
+        if isinstance(scene, FileScene):
+            scene.read_pictures(frame.session)
 
 
 def tile(

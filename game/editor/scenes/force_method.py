@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from components.camera import Camera, Viewport
 from components.field import Vector
@@ -13,6 +13,7 @@ from components.model import Model
 from components.view import Page, Status, View, drawn_positions
 from game.editor.scenes.base import Scene
 from game.force_method import PARTS, words
+from systems.base import Phase, System
 from systems.render.overlays import heading_height
 from systems.render.page import page_height
 
@@ -110,6 +111,7 @@ class ForceMethod(Scene):
         return [self._mechanism] if self._mechanism is not None else []
 
     def advance(self, session: Session, elapsed: float) -> None:
+        """Let the time of one frame pass in the sets that move; work that takes a while is announced first."""
         if self._work is not None and not self._work.said:
             self._work.said = True
             return
@@ -224,6 +226,22 @@ class ForceMethod(Scene):
     def fit(self, session: Session) -> None:
         for model, view in self._lay_out(session):
             _fit(model, view)
+
+
+class Sets(System):
+    """Lets the time of one frame pass in the sets of the force method that move."""
+
+    name = "force_method.sets"
+    phase = Phase.STEP
+    scenes = ("force method",)
+    reads = ("pace",)
+    writes = ("sets",)
+
+    def process(self, frame: Any) -> None:
+        """Move them."""
+        scene = frame.session.scenes.active
+        if isinstance(scene, ForceMethod):
+            scene.advance(frame.session, frame.elapsed)
 
 
 def _place(view: View, viewport: Viewport, ratio: float) -> None:

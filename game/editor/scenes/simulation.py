@@ -16,15 +16,6 @@ class Simulation(Scene):
     name = "simulation"
     targets = ("pause",)
 
-    def enter(self, session: Session) -> None:
-        session.history.begin_run()
-
-    def exit(self, session: Session) -> None:
-        session.history.end_run()
-
-    def advance(self, session: Session, elapsed: float) -> None:
-        session.advance(elapsed)
-
     def busy(self, session: Session) -> bool:
         return not session.simulation.halted
 

@@ -204,7 +204,7 @@ def test_a_structure_without_anything_near_it_takes_the_same_steps() -> None:
     alone.settings.collisions = False
     for session in (collides, alone):
         session.run(steps=300)
-    assert "collision.discs" in [system.name for system in collides.schedule.step_plan(collides.model)]
+    assert "collision.discs" in [system.name for system in collides.simulation.plan]
     assert state(collides) == state(alone)
 
 

@@ -73,7 +73,7 @@ def test_free_particles_fly_on_exact_paths() -> None:
 )
 def test_without_anything_to_touch_collisions_are_left_out(document: dict[str, Any]) -> None:
     session = Session.open(document)
-    assert "collision.discs" not in [system.name for system in session.schedule.step_plan(session.model)]
+    assert "collision.discs" not in [system.name for system in session.simulation.plan]
 
 
 # --- energy, momentum, effective mass ----------------------------------------------------------------------

@@ -1,0 +1,77 @@
+"""Frame: what frame systems are given, and the systems by which a session takes part in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from components.field import Vector
+from components.model import Model
+from systems.base import Phase, System
+from systems.input.bindings import TEXT
+
+if TYPE_CHECKING:
+    from game.session import Session
+
+
+@dataclass
+class Frame:
+    """One frame: the session, the seconds since the last frame, and what was pressed.
+
+    pressed: (key or button, pixel) in the order in which a person pressed them; see input/bindings.py.
+    """
+
+    session: Session
+    elapsed: float
+    pressed: list[tuple[str, Vector]] = field(default_factory=list)
+
+    @property
+    def scene(self) -> str:
+        """The name of the active scene."""
+        return self.session.scene
+
+    @property
+    def model(self) -> Model:
+        """The model that is open."""
+        return self.session.model
+
+
+class Actions(System):
+    """Turns what was pressed into actions, and makes the transitions between scenes that were requested."""
+
+    name = "edit.actions"
+    phase = Phase.EDIT
+    reads = ("pressed",)
+    writes = ("document", "scene", "view")
+
+    def __init__(self) -> None:
+        self._keyed = ""  # the scene in which a key was pressed last
+
+    def process(self, frame: Any) -> None:
+        """Perform the actions of the frame in their order, then let the scene change."""
+        session: Session = frame.session
+        for key, pixel in frame.pressed if not session.performing else ():
+            if not key.startswith(TEXT):
+                self._keyed = session.scene
+            elif self._keyed != session.scene:  # the key that led here; it is not meant for a box
+                continue
+            session.press_named(key, pixel)
+        session.scenes.apply(session)
+
+
+class ShowView(System):
+    """Brings what the view says about the session up to date."""
+
+    name = "render.view"
+    phase = Phase.RENDER
+    reads = ("document", "state", "scene")
+    writes = ("view",)
+
+    def process(self, frame: Any) -> None:
+        """Status line, panels, previews, flashes, the toolbar."""
+        frame.session.update_view()
+
+
+def frame_systems() -> list[System]:
+    """The systems of every session, besides those of the engine."""
+    return [Actions(), ShowView()]

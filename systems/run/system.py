@@ -1,0 +1,25 @@
+"""The system of phase STEP: time passes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from systems.base import Phase, System
+
+
+class Time(System):
+    """Lets the time of one frame pass in the model that is open: as many steps as its pace and the machine allow.
+
+    The laws, commits and the integrator that act in the scene take these steps, as one compiled program.
+    """
+
+    name = "run.time"
+    phase = Phase.STEP
+    scenes = ("simulation",)
+    reads = ("document", "pace")
+    writes = ("state",)
+
+    def process(self, frame: Any) -> None:
+        """Take the steps of the frame. While a script is shown in a window, only its own lines let time pass."""
+        if not frame.session.performing:
+            frame.session.advance(frame.elapsed)

@@ -1,0 +1,50 @@
+"""Tags against brute force, through deletion and undo: in columns, and in esper where few elements carry them."""
+
+from __future__ import annotations
+
+import random
+
+import esper
+
+from components.handle import Handle
+from components.model import Model
+from components.particle import Particle
+from components.tags import DiagramShown, Hovered, Selected
+
+
+def test_tags_of_a_model_agree_with_brute_force_through_deletion_and_undo() -> None:
+    chance = random.Random(7)
+    tags = (Selected, DiagramShown, Hovered)
+    for _ in range(200):
+        model = Model()
+        log: list[object] = []
+        particles = model.create(Particle, chance.randint(3, 12))
+        model.on_command = log.append
+        marks: dict[type, set[Handle]] = {tag: set() for tag in tags}
+        for _ in range(20):
+            particle, tag = chance.choice(particles), chance.choice(tags)
+            if chance.random() < 0.2:
+                model.delete([particle])
+            elif log and chance.random() < 0.3:
+                model.apply(log.pop())  # type: ignore[arg-type]
+            elif particle in marks[tag] and chance.random() < 0.5:
+                model.untag(particle, tag)
+                marks[tag].discard(particle)
+            elif particle.exists:
+                model.tag(particle, tag)
+                marks[tag].add(particle)
+            for tag in tags:
+                assert model.tagged(tag) == [p for p in particles if p.exists and p in marks[tag]]
+            model.activate()
+            found = {handle for _, (handle, _) in esper.get_components(Particle, Hovered)}
+            assert found == {p for p in particles if p.exists and p in marks[Hovered]}
+
+
+def test_only_one_element_at_a_time_is_under_the_pointer() -> None:
+    model = Model()
+    first, second = model.create(Particle, 2)
+    model.tag(first, Hovered)
+    revision = model.tags_revision
+    model.tag_only([second], Hovered)
+    assert model.tagged(Hovered) == [second]
+    assert model.tags_revision > revision
