@@ -2,8 +2,7 @@
 
 Of a model whose particles fly free it is a FreeFlightState, of one whose particles an integrator moves it is a
 PersistentContacts; a model has at most one of them, in the clock's column `collision_state`. Both are mappings: what a
-model file holds. Files written before the two were told apart hold one mapping for both, under the key `paths`
-(see `_from_paths`).
+model file holds. Files written before the two were told apart hold one mapping for both, under the key `paths`.
 """
 
 from __future__ import annotations
@@ -13,52 +12,54 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from components.field import FieldError
 
 Floats = NDArray[np.float64]
 Pairs = NDArray[np.int64]
+_DIMENSIONS = {"motion": 2, "forces": 1, "pile": 1, "longest_step": 0}  # of attributes that are real numbers
 
 
 class _Saved(Mapping[str, Any]):
-    """A mapping of its attributes `keys`, with its `kind`, in what JSON can hold: ∞ is None."""
+    """A mapping of the attributes `saved` and the `kind`, in what JSON can hold: ∞ is None."""
 
     kind: ClassVar[str]
-    keys_saved: ClassVar[tuple[str, ...]]
+    saved: ClassVar[tuple[str, ...]]
+
+    def _arrays(self) -> list[NDArray[Any]]:
+        return [np.asarray(getattr(self, key)) for key in self.saved]
 
     @property
     def nbytes(self) -> int:
         """Memory of the arrays, bytes."""
-        return sum(np.asarray(getattr(self, key)).nbytes for key in self.keys_saved)
+        return sum(array.nbytes for array in self._arrays())
 
     def __iter__(self) -> Iterator[str]:
-        return iter(("kind", *self.keys_saved))
+        return iter(("kind", *self.saved))
 
     def __len__(self) -> int:
-        return 1 + len(self.keys_saved)
+        return 1 + len(self.saved)
 
     def __getitem__(self, key: str) -> Any:
-        if key == "kind":
-            return self.kind
-        if key not in self.keys_saved:
+        if key not in self.saved and key != "kind":
             raise KeyError(key)
-        return _without_infinity(np.asarray(getattr(self, key)).tolist())
+        value = getattr(self, key)
+        return value if key == "kind" else _replaced(np.asarray(value).tolist(), math.inf, None)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({dict(self)!r})"
 
     def __eq__(self, other: object) -> bool:
-        return type(self) is type(other) and all(
-            np.asarray(getattr(self, key)).tobytes() == np.asarray(getattr(other, key)).tobytes()
-            for key in self.keys_saved
-        )
+        if not isinstance(other, _Saved) or type(self) is not type(other):
+            return False
+        return [array.tobytes() for array in self._arrays()] == [array.tobytes() for array in other._arrays()]
 
     __hash__ = None  # type: ignore[assignment]
 
 
 class FreeFlightState(_Saved):
-    """The parabolas of all particles and the contacts that last, of particles that fly free.
+    """The parabolas of all particles and the contacts that persist, of particles that fly free.
 
     motion: one row per particle, its columns FLIGHT of systems/collision/columns.py. contacts: a particle and one that it
     touches, in the order in which the flight looks at them, shape (k, 2). forces: in the contacts, N, shape (k,). pile:
@@ -66,7 +67,7 @@ class FreeFlightState(_Saved):
     """
 
     kind = "free flight"
-    keys_saved = ("motion", "contacts", "forces", "pile")
+    saved = ("motion", "contacts", "forces", "pile")
 
     def __init__(self, motion: Floats, contacts: Pairs, forces: Floats, pile: Floats) -> None:
         self.motion = motion
@@ -76,22 +77,23 @@ class FreeFlightState(_Saved):
 
 
 class PersistentContacts(_Saved):
-    """The contacts that last, of particles that an integrator moves.
+    """The contacts that persist, of particles that an integrator moves.
 
-    pairs: two particles, or a particle and an obstacle, which counts on after the particles, shape (k, 2).
+    pairs: two particles, or a particle and an obstacle, whose number follows those of the particles, shape (k, 2).
     forces: that keep the pairs apart, N, shape (k,). longest_step: of the next step, s; ∞: as long as usual.
     """
 
     kind = "persistent contacts"
-    keys_saved = ("pairs", "forces", "longest_step")
+    saved = ("pairs", "forces", "longest_step")
 
     def __init__(self, pairs: NDArray[np.integer[Any]], forces: Floats, longest_step: float = math.inf) -> None:
         self.pairs: Pairs = pairs.astype(np.int64)
         self.forces = forces
-        self.longest_step = longest_step
+        self.longest_step = float(longest_step)
 
 
 CollisionState = FreeFlightState | PersistentContacts
+_KINDS: dict[str, type[CollisionState]] = {cls.kind: cls for cls in (FreeFlightState, PersistentContacts)}
 
 
 def check_collision_state(value: Any, where: str) -> CollisionState:
@@ -99,74 +101,42 @@ def check_collision_state(value: Any, where: str) -> CollisionState:
     if isinstance(value, FreeFlightState | PersistentContacts):
         return value
     try:
-        return _from_paths(value) if "kind" not in value else _from_file(value)
+        entries = dict(value) if "kind" in value else _from_paths(**value)
+        kind = _KINDS[entries.pop("kind")]
+        found = kind(**{key: _read(key, entry) for key, entry in entries.items()})
+        count = len(found.contacts if isinstance(found, FreeFlightState) else found.pairs)
+        if len(found.forces) != count:
+            raise ValueError
     except (TypeError, ValueError, KeyError, OverflowError):
         raise FieldError(
             f"{where}: it is not what a saved run holds; remove it, and the run goes on to within round-off."
         ) from None
+    return found
 
 
-def _from_file(value: Mapping[str, Any]) -> CollisionState:
-    kind = {cls.kind: cls for cls in (FreeFlightState, PersistentContacts)}[value["kind"]]
-    _expect(set(value) == {"kind", *kind.keys_saved})
-    if kind is FreeFlightState:
-        return FreeFlightState(
-            _motion(value["motion"]), *_contacts(value["contacts"], value["forces"]), _vector(value["pile"])
-        )
-    longest = value["longest_step"]
-    return _persistent(value["pairs"], value["forces"], math.inf if longest is None else longest)
+def _from_paths(motion: Any, contacts: Any, forces: Any, crowd: Any) -> dict[str, Any]:
+    """The entries of files of earlier programs: `crowd` is the pile, or without motion at most the longest step."""
+    if len(motion):
+        return {"kind": "free flight", "motion": motion, "contacts": contacts, "forces": forces, "pile": crowd}
+    (longest,) = crowd or [None]
+    return {"kind": "persistent contacts", "pairs": contacts, "forces": forces, "longest_step": longest}
 
 
-def _from_paths(value: Mapping[str, Any]) -> CollisionState:
-    """From files of earlier programs: with motion, `crowd` is the pile; without, at most the longest step."""
-    _expect(set(value) == {"motion", "contacts", "forces", "crowd"})
-    if len(value["motion"]):
-        return _from_file(
-            {
-                "kind": FreeFlightState.kind,
-                "motion": value["motion"],
-                "contacts": value["contacts"],
-                "forces": value["forces"],
-                "pile": value["crowd"],
-            }
-        )
-    crowd = _vector(value["crowd"])
-    _expect(len(crowd) <= 1)
-    return _persistent(value["contacts"], value["forces"], *crowd.tolist())
-
-
-def _persistent(pairs: Any, forces: Any, longest_step: float = math.inf) -> PersistentContacts:
-    longest = float(longest_step)
-    _expect(longest > 0.0)
-    return PersistentContacts(*_contacts(pairs, forces), longest)
-
-
-def _contacts(pairs: ArrayLike, forces: ArrayLike) -> tuple[Pairs, Floats]:
-    rows, values = np.array(pairs, dtype=np.int64).reshape(-1, 2), _vector(forces)
-    _expect(len(rows) == len(values) and not (rows < 0).any())
-    return rows, values
-
-
-def _motion(value: Any) -> Floats:
-    motion = np.array(
-        [[math.inf if number is None else number for number in row] for row in value], dtype=np.float64
-    )
-    _expect(motion.ndim == 2 and not np.isnan(motion).any())
-    return motion
-
-
-def _vector(value: ArrayLike) -> Floats:
-    vector = np.array(value, dtype=np.float64)
-    _expect(vector.ndim == 1)
-    return vector
-
-
-def _expect(holds: bool) -> None:
+def _read(key: str, value: Any) -> Any:
+    """An attribute as a model file holds it. Raises ValueError or TypeError."""
+    if key in ("contacts", "pairs"):
+        array = np.array(value, dtype=np.int64).reshape(-1, 2)
+        holds = not (array < 0).any()
+    else:
+        array = np.array(_replaced(value, None, math.inf), dtype=np.float64)
+        holds = array.ndim == _DIMENSIONS.get(key) and not np.isnan(array).any()
     if not holds:
         raise ValueError
+    return array
 
 
-def _without_infinity(value: Any) -> Any:
-    if isinstance(value, list):
-        return [_without_infinity(entry) for entry in value]
-    return None if value == math.inf else value
+def _replaced(value: Any, old: Any, new: Any) -> Any:
+    """A value, or nested lists of values, with another one in place of `old`."""
+    if isinstance(value, list | tuple):
+        return [_replaced(entry, old, new) for entry in value]
+    return new if value == old else value

@@ -17,9 +17,7 @@ from systems.collision.driven.compiled import kernels
 SLACK = 1e-13  # of the reach of two discs: a smaller overlap is round-off
 AROUND = 1.5  # radii: the neighbours of a disc within it are moved apart at a time
 MOST_ROUNDS = 100  # in each of which neighbours are found anew
-UNSEEN_OVERLAP = (
-    1e-3  # of a radius: overlaps that steps of piles leave, too small to see and not worth a message
-)
+UNSEEN_OVERLAP = 1e-3  # of a radius: too small to see, as steps of piles leave them, and not worth a message
 
 
 def overlaps(place: Floats, radius: Floats, others: Obstacles | None = None) -> Rows:

@@ -94,9 +94,7 @@ class Support(Law):
         """Push the particles of a model by these forces (kN) in the next step."""
         if model in self._pushes and not (self._pushes[model] == force).all():
             self._pushes[model][...] = force
-            model.writable(
-                "particles.velocity"
-            )  # marks the state as changed: its forces must be evaluated anew
+            model.writable("particles.velocity")  # changed: its forces must be evaluated anew
 
 
 def persistent_contacts(model: Model) -> PersistentContacts | None:

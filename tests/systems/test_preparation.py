@@ -245,7 +245,7 @@ def test_what_free_particles_need_is_compiled_by_two_processes_at_once(
     monkeypatch.setattr(preparation, "has_parts", lambda *parts: compiled.issuperset(parts))
     app.session.adopt(models.load("collision_i"))
     frames(app, 2)
-    assert compiler.jobs[1:] == [("free_flight", "fly"), ("free_flight", "open_window")]
+    assert compiler.jobs[1:] == [("free_flight", "fly"), ("free_flight", "open_horizon")]
     compiled.add("fly")
     app.session.press("space")
     frames(app, 2)
@@ -266,7 +266,7 @@ def test_what_piles_need_is_waited_for_once_something_pulls(
     assert steps > 0
     app.session.environment.acceleration = (0.0, -9.81)
     frames(app, 3)
-    assert compiler.jobs[1:] == [("free_flight", "open_window", "take_steps")]
+    assert compiler.jobs[1:] == [("free_flight", "open_horizon", "take_steps")]
     assert app.session.model.clock.steps == steps
     compiler.status = 0
     frames(app, 3)
@@ -389,10 +389,10 @@ def test_a_folder_of_somebody_else_is_not_used(tmp_path: Path, monkeypatch: pyte
 
 
 PARTS = """
-from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, engine, has_parts
+from systems.collision.free.compiled import EVENTS, PILES, HORIZONS, engine, has_parts
 
 engine()
-print(*(has_parts(part) for part in (EVENTS, WINDOWS, PILES)))
+print(*(has_parts(part) for part in (EVENTS, HORIZONS, PILES)))
 """
 
 

@@ -31,10 +31,7 @@ FIRST_BARRIER = 1e-5  # μ at first, in weight × radius of the lighter and the 
 QUICK, SLOW = 0.03, 0.8  # what is left of μ after an iteration that got far, and after others
 LONG_STEP = 0.5  # of Newton's step: an iteration that takes more of it got far
 TO_EDGE = 0.995  # of the way to where a gap or a force vanishes
-STILL, BALANCED = (
-    1e-10,
-    5e-10,
-)  # at the end: last motion in radii, residual force as a share of the largest weight
+STILL, BALANCED = 1e-10, 5e-10  # at the end: motion in radii, residual force in largest weights
 CLOSED = 1e-13  # μ at the end
 EARLY_ITERATIONS = 10  # after which discs move less than LITTLE radii, or no equilibrium is near
 LITTLE = 1e-2

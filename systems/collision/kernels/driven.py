@@ -6,7 +6,7 @@ from systems.collision.columns import EPSILON, Contact, Mark, PairKind
 from systems.collision.kernels import compiled
 from systems.collision.kernels.impact import respond
 from systems.collision.kernels.pairs import gap_of
-from systems.collision.kernels.projection import begin, compliance, opening_rate, project
+from systems.collision.kernels.projection import begin, compliance, opening_rate, project, push_apart
 from systems.collision.kernels.time_of_impact import INFINITY, first_touch
 
 DOUBT = 1e-3  # of a radius, by which a path may differ from a parabola where particles collide
@@ -119,7 +119,11 @@ def _limit_work(members, active, group):
     before, after = 0.0, 0.0
     for k in range(active):
         c = group.marks[Mark.ACTIVE, k]
-        group.contacts[c, Contact.IMPULSE] = max(group.contacts[c, Contact.IMPULSE], 0.0)
+        if group.contacts[c, Contact.IMPULSE] < 0.0:  # the last acceleration of the sweeps went too far
+            push_apart(c, -group.contacts[c, Contact.IMPULSE], group)
+            group.contacts[c, Contact.IMPULSE] = 0.0
+    for k in range(active):
+        c = group.marks[Mark.ACTIVE, k]
         before += group.contacts[c, Contact.IMPULSE] * opening_rate(c, group.initial, group)
         after += group.contacts[c, Contact.IMPULSE] * opening_rate(c, group.motion, group)
     if after <= 0.0:

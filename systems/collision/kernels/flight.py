@@ -146,9 +146,8 @@ def _velocity(i, discs, time):
     """Velocity of a disc; at the end of a step in persistent contact, the velocity of RATTLE before its projection."""
     s = time - discs[i, Disc.EPOCH]
     vx, vy, ax, ay = discs[i, Disc.VX], discs[i, Disc.VY], discs[i, Disc.AX], discs[i, Disc.AY]
-    if (ax != discs[i, Disc.GX] or ay != discs[i, Disc.GY]) and (
-        vx != 0.0 or vy != 0.0 or ax != 0.0 or ay != 0.0
-    ):
+    moves = vx != 0.0 or vy != 0.0 or ax != 0.0 or ay != 0.0
+    if moves and (ax != discs[i, Disc.GX] or ay != discs[i, Disc.GY]):
         return vx + 0.5 * s * (ax + discs[i, Disc.GX]), vy + 0.5 * s * (ay + discs[i, Disc.GY])
     return vx + s * ax, vy + s * ay
 
@@ -171,11 +170,8 @@ def _link(i, j, force, touching, discs, group, time):
         contact[Contact.ROUND] = rounded
         if distance == 0.0:  # no direction is better than another
             dx = distance = COINCIDENT
-        contact[Contact.NX], contact[Contact.NY], contact[Contact.DISTANCE] = (
-            dx / distance,
-            dy / distance,
-            distance,
-        )
+        contact[Contact.NX], contact[Contact.NY] = dx / distance, dy / distance
+        contact[Contact.DISTANCE] = distance
         contact[Contact.BIAS], contact[Contact.FORCE] = 0.0, force
         contact[Contact.COMPLIANCE] = compliance(touching, touching, group)
     return touching + 1
@@ -258,9 +254,8 @@ def _restitution(touching, discs, group, numbers):
     least = INFINITY
     for c in range(touching):
         i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
-        if opening_rate(c, group.motion, group) < -rest_speed(
-            i, j, discs, numbers[Number.REST_HEIGHT], numbers[Number.NOW]
-        ):
+        slow = rest_speed(i, j, discs, numbers[Number.REST_HEIGHT], numbers[Number.NOW])
+        if opening_rate(c, group.motion, group) < -slow:
             least = min(least, discs[j, Disc.BOUNCE])
     return least if least < INFINITY else 0.0
 
@@ -345,10 +340,8 @@ def _redirect(count, struck, duration, discs, group, numbers):
         i = group.members[m]
         s = now - discs[i, Disc.EPOCH]
         vx, vy, ax, ay = group.other[m, 0], group.other[m, 1], group.motion[m, 0], group.motion[m, 1]
-        old = (
-            vx == discs[i, Disc.VX] + s * discs[i, Disc.AX] and vy == discs[i, Disc.VY] + s * discs[i, Disc.AY]
-        )
-        old = old and ax == discs[i, Disc.AX] and ay == discs[i, Disc.AY]
+        old = vx == discs[i, Disc.VX] + s * discs[i, Disc.AX] and ax == discs[i, Disc.AX]
+        old = old and vy == discs[i, Disc.VY] + s * discs[i, Disc.AY] and ay == discs[i, Disc.AY]
         pushed = ax != discs[i, Disc.GX] or ay != discs[i, Disc.GY]
         pushed = pushed and (vx != 0.0 or vy != 0.0 or ax != 0.0 or ay != 0.0)
         discs[i, Disc.STEP] = now + duration if pushed else INFINITY
@@ -392,12 +385,8 @@ def _schedule_anew(count, discs, grid, constraints, queue, group, numbers, count
         grid.found[near] = i  # and the end of the step of its persistent contacts
         for k in range(near + 1):
             j = grid.found[k]
-            again = (
-                group.place[j] != NONE
-                and j < i
-                and discs[j, Disc.EPOCH] == numbers[Number.NOW]
-                and not is_held(j, discs)
-            )
+            again = group.place[j] != NONE and j < i and discs[j, Disc.EPOCH] == numbers[Number.NOW]
+            again = again and not is_held(j, discs)
             if not again and not schedule_impact(i, j, discs, constraints, queue, numbers, counts):
                 return False
     return True

@@ -62,10 +62,8 @@ def next_impact(i, j, discs, constraints, end):
     reach = discs[i, Disc.RADIUS] + discs[j, Disc.RADIUS]
     noise, growth = speed_noise(discs, i, j, start), pull_noise(discs, i, j)
     if straight:
-        tx, ty = discs[j, Disc.TX], discs[j, Disc.TY]
-        time = start + first_touch(
-            path, tx, ty, discs[j, Disc.SHARED], reach, noise, growth, end - start, False
-        )
+        tx, ty, shared = discs[j, Disc.TX], discs[j, Disc.TY], discs[j, Disc.SHARED]
+        time = start + first_touch(path, tx, ty, shared, reach, noise, growth, end - start, False)
     else:
         time = start + first_approach(path, reach, noise, growth, end - start, False)
     if time > end or is_joined(i, j, constraints) or find_persistent(i, j, constraints) != NONE:
@@ -150,10 +148,9 @@ def _survey(discs, numbers, horizon):
     area, sweep = 0.0, 0.0
     for i in range(discs.shape[0]):
         s = numbers[Number.NOW] - discs[i, Disc.EPOCH]
-        speed = max(
-            abs(discs[i, Disc.VX] + s * discs[i, Disc.AX]), abs(discs[i, Disc.VY] + s * discs[i, Disc.AY])
-        )
-        pull = max(abs(discs[i, Disc.AX]), abs(discs[i, Disc.AY]))
+        ax, ay = discs[i, Disc.AX], discs[i, Disc.AY]
+        speed = max(abs(discs[i, Disc.VX] + s * ax), abs(discs[i, Disc.VY] + s * ay))
+        pull = max(abs(ax), abs(ay))
         side = 2.0 * discs[i, Disc.RADIUS] + horizon * (speed + 0.5 * horizon * pull)
         area += min(side * side, most)
         sweep += min(discs[i, Disc.RADIUS] * speed, most / horizon)
@@ -170,9 +167,8 @@ def _cost(discs, numbers, horizon):
     area, sweep = _survey(discs, numbers, horizon)
     pairs = numbers[Number.CROWDING] * area
     count = discs.shape[0]
-    return (BOX_COST * count + pairs) / horizon + 2.0 * numbers[Number.CROWDING] * sweep * (
-        BOX_COST + 2.0 * pairs / count
-    )
+    impacts = 2.0 * numbers[Number.CROWDING] * sweep
+    return (BOX_COST * count + pairs) / horizon + impacts * (BOX_COST + 2.0 * pairs / count)
 
 
 @compiled
@@ -202,11 +198,8 @@ def _spread(discs):
     """Area (m²) of a box around all discs, in the first estimate of how crowded they are."""
     left, bottom, right, top = INFINITY, INFINITY, -INFINITY, -INFINITY
     for i in range(discs.shape[0]):
-        x, y, r = (
-            discs[i, Disc.OX] + discs[i, Disc.UX],
-            discs[i, Disc.OY] + discs[i, Disc.UY],
-            discs[i, Disc.RADIUS],
-        )
+        x, y = discs[i, Disc.OX] + discs[i, Disc.UX], discs[i, Disc.OY] + discs[i, Disc.UY]
+        r = discs[i, Disc.RADIUS]
         left, right = min(left, x - r), max(right, x + r)
         bottom, top = min(bottom, y - r), max(top, y + r)
     return (right - left) * (top - bottom)

@@ -7,9 +7,7 @@ from systems.collision.kernels.time_of_impact import nearest_of_piece
 
 OVERCORRECTION = 0.05  # of an overlap, by which discs are moved farther than necessary, so that sweeps end
 MOST_OVERLAP_SWEEPS = 400  # over the same pairs
-GOLDEN_ANGLE = (
-    2.399963229728653  # between the directions in which discs with one centre move, so that all differ
-)
+GOLDEN_ANGLE = 2.399963229728653  # between the directions in which discs with one centre move
 
 
 @compiled

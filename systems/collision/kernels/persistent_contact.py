@@ -113,9 +113,7 @@ def support(count, touching, discs, group, numbers):
         if duration < INFINITY:
             least = LEAST_SHARE * duration
             met = _meet_at_end(duration, count, closed, discs, group, numbers)
-            while duration > least and (
-                not met or _one_lets_go(closed, group)
-            ):  # or they would touch again at once
+            while duration > least and (not met or _one_lets_go(closed, group)):  # or they touch again at once
                 duration = max(0.25 * duration, least)
                 closed = _push_now(count, touching, discs, group, numbers)
                 met = _meet_at_end(duration, count, closed, discs, group, numbers)
@@ -178,9 +176,8 @@ def _list_closed(touching, discs, group, numbers):
         slow = max(4.0 * group.noise[0], touch_speed(discs, i, j, numbers[Number.NOW]))
         if contacts[c, Contact.COMPLIANCE] > 0.0 and opening_rate(c, group.other, group) <= slow:
             x, y = _relative(c, group.other, group)
-            contacts[c, Contact.BIAS] = (
-                contacts[c, Contact.ROUND] * (x * x + y * y) / contacts[c, Contact.DISTANCE]
-            )
+            turning = contacts[c, Contact.ROUND] * (x * x + y * y)
+            contacts[c, Contact.BIAS] = turning / contacts[c, Contact.DISTANCE]
             contacts[c, Contact.IMPULSE] = contacts[c, Contact.FORCE]
             group.marks[Mark.ACTIVE, closed] = c
             closed += 1
@@ -248,9 +245,8 @@ def _slides(c, discs, group, numbers):
     i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
     x, y = _relative(c, group.other, group)
     rate = group.contacts[c, Contact.NX] * x + group.contacts[c, Contact.NY] * y
-    return group.contacts[c, Contact.ROUND] == 0.0 and abs(rate) <= speed_noise(
-        discs, i, j, numbers[Number.NOW]
-    )
+    noise = speed_noise(discs, i, j, numbers[Number.NOW])
+    return group.contacts[c, Contact.ROUND] == 0.0 and abs(rate) <= noise
 
 
 @compiled

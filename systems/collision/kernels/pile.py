@@ -30,7 +30,6 @@ from systems.collision.kernels.pile_pairs import (
     enter_pushing_pairs,
     list_pairs,
     separation,
-    smaller_radius,
     stays_within_reach,
     velocity_after,
 )
@@ -41,13 +40,10 @@ from systems.collision.kernels.pile_solver import (
     start_without_contacts,
     supplies_energy,
 )
-from systems.collision.kernels.time_of_impact import INFINITY
+from systems.collision.kernels.time_of_impact import INFINITY, smaller_radius
 
 TOLERANCE = 1e-8  # of the smallest radius: depth by which discs sink in a step whose sweeps have settled
-LARGE_PILE, ROUGHNESS = (
-    1000,
-    4e-3,
-)  # contacts, above which: or of the travel of the fastest disc, if that is more
+LARGE_PILE, ROUGHNESS = 1000, 4e-3  # contacts above which this share of the fastest travel is allowed, too
 NEARBY = 0.2  # of the radius of the smaller of two discs: gap below which they move on straight lines
 CALM_TRAVEL = 0.004  # of the smallest radius, in a step: a disc that travels less is calm
 CALM_SPEEDS = 1.0  # of the speed that free fall gives in a step: a slower disc is calm
@@ -119,9 +115,8 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
             tolerance = max(tolerance, ROUGHNESS * fastest)
         find_impulses(active, tolerance, pile)
         if supplies_energy(active, h, discs, pile):
-            pile.forces[: counts[Count.LISTED]] = (
-                0.0  # the forces of the step before mislead, as in a row that has come loose
-            )
+            # the forces of the step before mislead, as in a row that has come loose
+            pile.forces[: counts[Count.LISTED]] = 0.0
         elif stays_within_reach(h, discs, pile):
             break
     numbers[Number.STEP_END] = numbers[Number.NOW] + h
@@ -211,10 +206,8 @@ def _mark_near(active, h, discs, pile, numbers):
             near = 2.0
         elif gap + h * (nx * vx + ny * vy) <= max(NEARBY * smaller_radius(i, j, discs), bend):
             near = 1.0
-        pile.travel[Travel.NEAR, i], pile.travel[Travel.NEAR, j] = (
-            max(pile.travel[Travel.NEAR, i], near),
-            max(pile.travel[Travel.NEAR, j], near),
-        )
+        pile.travel[Travel.NEAR, i] = max(pile.travel[Travel.NEAR, i], near)
+        pile.travel[Travel.NEAR, j] = max(pile.travel[Travel.NEAR, j], near)
 
 
 @compiled

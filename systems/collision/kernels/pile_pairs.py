@@ -17,7 +17,7 @@ from systems.collision.kernels.persistent_contact import (
     forget_persistent,
     is_held,
 )
-from systems.collision.kernels.time_of_impact import is_straight, nearest, relative_motion
+from systems.collision.kernels.time_of_impact import nearest, relative_motion, smaller_radius
 
 PASSED_ON = 0.25  # of the travel of the fastest disc, or of a radius: travel that impacts may pass on to a disc in a step
 STEPS_AHEAD, ROOM_AHEAD = 4.0, 0.1  # steps, and radii, that discs may travel until pairs are listed anew
@@ -26,10 +26,8 @@ STEPS_AHEAD, ROOM_AHEAD = 4.0, 0.1  # steps, and radii, that discs may travel un
 @compiled
 def velocity_after(i, pile):
     """Velocity of a disc in the step, from its scaled velocity."""
-    return (
-        pile.motion[Motion.SPEED, i, 0] * pile.motion[Motion.ROOT, i, 0],
-        pile.motion[Motion.SPEED, i, 1] * pile.motion[Motion.ROOT, i, 1],
-    )
+    speed, root = pile.motion[Motion.SPEED], pile.motion[Motion.ROOT]
+    return speed[i, 0] * root[i, 0], speed[i, 1] * root[i, 1]
 
 
 @compiled
@@ -49,10 +47,9 @@ def allow_more_travel(h, fastest, discs, pile):
     for i in range(discs.shape[0]):
         if not is_held(i, discs):
             speed, pull = math.hypot(discs[i, Disc.VX], discs[i, Disc.VY]), pile.travel[Travel.PULL, i]
+            speed += pile.travel[Travel.FASTEST, i]
             through = PASSED_ON * min(h * fastest, discs[i, Disc.RADIUS])
-            pile.travel[Travel.REACH, i] = (
-                h * (speed + pile.travel[Travel.FASTEST, i] + 2.0 * h * pull) + through
-            )
+            pile.travel[Travel.REACH, i] = h * (speed + 2.0 * h * pull) + through
 
 
 @compiled
@@ -169,12 +166,6 @@ def choose_length(discs, pile, numbers, counts):
             pile.travel[Travel.FASTEST, i] = max(pile.travel[Travel.FASTEST, i], speed)
             pile.travel[Travel.FASTEST, j] = max(pile.travel[Travel.FASTEST, j], speed)
     return max(h, SHORTEST_SHARE * longest), fastest
-
-
-@compiled
-def smaller_radius(i, j, discs):
-    """Radius of the smaller of two discs, or of a disc at an obstacle."""
-    return discs[i, Disc.RADIUS] if is_straight(j, discs) else min(discs[i, Disc.RADIUS], discs[j, Disc.RADIUS])
 
 
 @compiled

@@ -12,13 +12,9 @@ from systems.collision.kernels.persistent_contact import is_held
 from systems.collision.kernels.pile_pairs import separation
 from systems.collision.kernels.time_of_impact import rest_speed
 
-MOST_PILE_SWEEPS = (
-    80  # to and fro over the contacts in a step; the next step continues from the impulses reached
-)
+MOST_PILE_SWEEPS = 80  # to and fro over the contacts in a step; the next continues from its impulses
 ENERGY_ROUND_OFF = 1e-9  # of the energy of motion
-SIDE_BY_SIDE = (
-    8  # contacts next to each other in the order of sweeps are far apart, and computed at the same time
-)
+SIDE_BY_SIDE = 8  # contacts next to each other in the order of sweeps are far apart: computed at once
 
 
 @compiled
@@ -73,9 +69,8 @@ def _make_contact(c, k, h, discs, pile, numbers):
     if opening == 0.0:
         return
     speed = nx * vx + ny * vy
-    pulled = speed + h * (
-        nx * (discs[j, Disc.GX] - discs[i, Disc.GX]) + ny * (discs[j, Disc.GY] - discs[i, Disc.GY])
-    )
+    gx, gy = discs[j, Disc.GX] - discs[i, Disc.GX], discs[j, Disc.GY] - discs[i, Disc.GY]
+    pulled = speed + h * (nx * gx + ny * gy)
     bias = gap / h
     if pulled + bias < 0.0 and bounces(speed, i, j, h, discs, pile, numbers):
         bias = min(bias, discs[j, Disc.BOUNCE] * speed)
@@ -110,9 +105,8 @@ def find_impulses(active, tolerance, pile):
             _relax_forward(c, share, keep, pile)
         previous, size, fastest = size, 0.0, 0.0
         for c in range(active - 1, -1, -1):
-            change = (
-                _relax(c, pile.contacts[c, PileContact.IMPULSE], pile) - pile.contacts[c, PileContact.PREVIOUS]
-            )
+            impulse = _relax(c, pile.contacts[c, PileContact.IMPULSE], pile)
+            change = impulse - pile.contacts[c, PileContact.PREVIOUS]
             size += change * change
             fastest = max(fastest, abs(change) * pile.scale[c])
         if fastest <= tolerance:
@@ -128,9 +122,8 @@ def _accelerate(share, keep, pile):
     for i in range(motion.shape[1]):
         for d in range(2):
             more = share * motion[Motion.DIRECTION, i, d]
-            motion[Motion.DIRECTION, i, d] = keep * (
-                more + motion[Motion.SPEED, i, d] - motion[Motion.PREVIOUS, i, d]
-            )
+            swept = more + motion[Motion.SPEED, i, d] - motion[Motion.PREVIOUS, i, d]
+            motion[Motion.DIRECTION, i, d] = keep * swept
             motion[Motion.SPEED, i, d] += more
             motion[Motion.PREVIOUS, i, d] = motion[Motion.SPEED, i, d]
 

@@ -19,19 +19,16 @@ def opening_rate(c, motion, group):
     """Rate at which a contact opens; negative: it closes."""
     a, b = group.links[c, 0], group.links[c, 1]
     x, y = motion[b, 0] - motion[a, 0], motion[b, 1] - motion[a, 1]
-    return (
-        group.contacts[c, Contact.NX] * x + group.contacts[c, Contact.NY] * y + group.contacts[c, Contact.BIAS]
-    )
+    nx, ny = group.contacts[c, Contact.NX], group.contacts[c, Contact.NY]
+    return nx * x + ny * y + group.contacts[c, Contact.BIAS]
 
 
 @compiled
 def compliance(c, d, group):
     """Rate at which a unit impulse in contact d opens contact c: N_cᵀ M⁻¹ N_d, 1/kg."""
     first, second = group.contacts[c], group.contacts[d]
-    ends = group.links[c], group.links[d]
-    return coupling(
-        ends, first[Contact.NX], first[Contact.NY], second[Contact.NX], second[Contact.NY], group.mobility
-    )
+    nx, ny, px, py = first[Contact.NX], first[Contact.NY], second[Contact.NX], second[Contact.NY]
+    return coupling((group.links[c], group.links[d]), nx, ny, px, py, group.mobility)
 
 
 @compiled
@@ -218,9 +215,8 @@ def sweep(active, most, tolerance, group):
         for k in range(active):
             c = group.marks[Mark.ACTIVE, k]
             more = share * contacts[c, Contact.DIRECTION] if turn > 0 else 0.0
-            contacts[c, Contact.DIRECTION] = keep * (
-                more + contacts[c, Contact.IMPULSE] - contacts[c, Contact.PREVIOUS]
-            )
+            swept = more + contacts[c, Contact.IMPULSE] - contacts[c, Contact.PREVIOUS]
+            contacts[c, Contact.DIRECTION] = keep * swept
             if more != 0.0:
                 contacts[c, Contact.IMPULSE] += more
                 push_apart(c, more, group)

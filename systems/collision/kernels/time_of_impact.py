@@ -41,6 +41,12 @@ def is_straight(i, discs):
 
 
 @compiled
+def smaller_radius(i, j, discs):
+    """Radius of the smaller of two discs, or of a disc at an obstacle."""
+    return discs[i, Disc.RADIUS] if is_straight(j, discs) else min(discs[i, Disc.RADIUS], discs[j, Disc.RADIUS])
+
+
+@compiled
 def nearest(dx, dy, j, discs):
     """As nearest_of_piece, for disc or obstacle j."""
     return nearest_of_piece(dx, dy, discs[j, Disc.TX], discs[j, Disc.TY])
@@ -103,12 +109,8 @@ def pull_noise(discs, i, j):
     """Relative acceleration (m/s²) that the round-off of the two accelerations can feign."""
     total = 0.0
     for disc in (i, j):
-        total += (
-            abs(discs[disc, Disc.AX])
-            + abs(discs[disc, Disc.AY])
-            + abs(discs[disc, Disc.GX])
-            + abs(discs[disc, Disc.GY])
-        )
+        path = abs(discs[disc, Disc.AX]) + abs(discs[disc, Disc.AY])
+        total += path + abs(discs[disc, Disc.GX]) + abs(discs[disc, Disc.GY])
     return 2.0 * SPEED_NOISE * total
 
 
@@ -129,9 +131,11 @@ def place_noise(discs, i, j, time):
 @compiled
 def pull_on(discs, i, j):
     """The larger acceleration (m/s²) of two discs without contacts."""
-    return max(
-        math.hypot(discs[i, Disc.GX], discs[i, Disc.GY]), math.hypot(discs[j, Disc.GX], discs[j, Disc.GY])
+    first, second = (
+        math.hypot(discs[i, Disc.GX], discs[i, Disc.GY]),
+        math.hypot(discs[j, Disc.GX], discs[j, Disc.GY]),
     )
+    return max(first, second)
 
 
 @compiled
@@ -148,11 +152,7 @@ def rest_speed(i, j, discs, rest_height, time):
     """
     speed = touch_speed(discs, i, j, time)
     if discs[j, Disc.BOUNCE] < 1.0:
-        radius = (
-            discs[i, Disc.RADIUS]
-            if is_straight(j, discs)
-            else min(discs[i, Disc.RADIUS], discs[j, Disc.RADIUS])
-        )
+        radius = smaller_radius(i, j, discs)
         speed = max(speed, math.sqrt(2.0 * pull_on(discs, i, j) * rest_height * radius))
     return speed
 

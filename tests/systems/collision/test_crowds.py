@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -94,6 +94,7 @@ def test_contacts_are_held_apart_by_the_least_change_of_motion(seed: int, discs:
     assert np.abs(impulses * rates).max() <= 1e-11 * (1.0 + impulses.max()) ** 2
 
 
+@example(seed=12, discs=12, known=0.34375)  # impulses after the last sweep that pull
 @given(st.integers(0, 10**6), st.integers(12, 20), st.floats(0.0, 1e3))
 def test_impulses_that_are_not_found_do_no_work(seed: int, discs: int, known: float) -> None:
     """Sweeps over so many contacts that depend on one another go on for long, and may begin with any impulses."""
