@@ -12,15 +12,15 @@ import numpy as np
 
 from components.field import Column, Role, same
 from components.model import Model
-from components.settings import INTEGRATORS
 from game.documents import models
 from game.editor.frame import Frame
 from game.registry import SYSTEMS
 from game.session import Session
-from systems.base import Commit, Driver, Law, StepSystem, StopReason, System
-from systems.catalogue import DRIVERS, register_driver, step_systems
+from systems.base import Commit, Integrator, Law, StepSystem, StopReason, System
+from systems.catalogue import step_systems
+from systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
 from systems.program.binding import ProgramError, bind
-from systems.program.rows import KernelRows
+from systems.program.reference_laws import KernelRows
 from systems.run.simulation import Simulation
 from systems.schedule import Schedule, ScheduleError
 
@@ -91,7 +91,7 @@ def check_system(system: Callable[[], System], models: Iterable[Source] = MODELS
     >>> check_system(Drag).name
     'physics.drag'
     """
-    drives = isinstance(system(), Driver)
+    drives = isinstance(system(), Integrator)
     needed = [source for source in models if (_drives if drives else _is_needed)(system, source)]
     name = system().name
     if not needed:
@@ -146,7 +146,7 @@ def _compare(
         raise SystemCheckError(f"{name}: {did} {column}, which it does not declare in writes or adds.")
 
 
-# --- laws, commits and drivers ---------------------------------------------------------------------------
+# --- laws, commits and integrators ---------------------------------------------------------------------------
 
 
 def _all_with(system: System) -> list[System]:
@@ -164,7 +164,7 @@ def _check_steps(system: Callable[[], System], source: Source) -> float:
     written = (column for other in steps for column in other.writes)  # by what runs beside it
     allowed = {"particles.displacement", "particles.velocity", "particles.asleep", "clock"}
     allowed |= {*written, *made.adds}
-    if isinstance(made, Driver):
+    if isinstance(made, Integrator):
         allowed.add("settings.integrator")
     _compare(made.name, before, after, allowed, "running it changed")
     _check_finite(made.name, first)
@@ -193,19 +193,20 @@ def _run(system: System, source: Source, *, backwards: bool) -> Model:
 @contextmanager
 def _driven_by(system: System, simulation: Simulation) -> Iterator[None]:
     """If it is an integrator, let it be the one that takes the steps."""
-    if not isinstance(system, Driver):
+    if not isinstance(system, Integrator):
         yield
         return
     key = system.name.rpartition(".")[2]
-    drivers, texts = dict(DRIVERS), dict(INTEGRATORS)
-    register_driver(system)
+    former = INTEGRATORS.get(key)
+    register_integrator(system)
     try:
         simulation.model.settings.integrator = key
         yield
     finally:
-        for registry, before in ((DRIVERS, drivers), (INTEGRATORS, texts)):
-            registry.clear()
-            registry.update(before)  # type: ignore[arg-type]
+        if former is None:
+            remove_integrator(key)
+        else:
+            register_integrator(former)
 
 
 def _check_finite(name: str, model: Model) -> None:

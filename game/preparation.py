@@ -8,38 +8,34 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from components.obstacles import any_obstacles
 from components.rod import is_warm, nodes
 from game.mods import MODS
-from game.prepare import DRIVEN, FLIGHT, RASTER, WARM, Job, is_prepared, load_program
+from game.prepare import WARM, Job, is_prepared, load_program
 from systems.base import Phase, StepSystem, System
-from systems.catalogue import DRIVERS
-from systems.collision.driven.compiled import has_driven_collisions
-from systems.collision.driven.stepper import load_driven_collisions
-from systems.collision.free.compiled import EVENTS, HORIZONS, PILES, has_parts
+from systems.collision.driven.stepper import DRIVEN
+from systems.collision.free.compiled import EVENTS, HORIZONS, PILES
 from systems.collision.free.flight import may_pile
-from systems.collision.system import Support, detects_impacts, persistent_contacts
+from systems.collision.system import Support, persistent_contacts
 from systems.edit.pull import Pull
-from systems.program.compiler import is_blank, load_compiler
+from systems.physics.integrators import INTEGRATORS
+from systems.program.compiler import CompiledUnit, is_blank, load_compiler
 from systems.program.program import has_program
 from systems.program.writer import form_of, read_sources
-from systems.render.raster_program import has_raster, load_raster
+from systems.render.raster_program import RASTER, load_raster
 
 if TYPE_CHECKING:
     from components.model import Model
     from systems.render.raster import Raster
     from systems.run.simulation import Simulation
 
-FREE = (FLIGHT, EVENTS), (FLIGHT, HORIZONS)  # two processes compile the two halves of what free particles need
-PULLED = (FLIGHT, EVENTS), (FLIGHT, HORIZONS, PILES)  # and what they need where they may pile up
-AHEAD: dict[Job, Callable[[], bool]] = {
-    (RASTER,): has_raster,
-    (DRIVEN,): has_driven_collisions,
-    **{half: partial(has_parts, *half[1:]) for half in PULLED},
-}
+
+Units = tuple[CompiledUnit, ...]  # that one process compiles
+FREE: tuple[Units, ...] = (EVENTS,), (HORIZONS,)  # for free particles
+PULLED: tuple[Units, ...] = (EVENTS,), (HORIZONS, PILES)  # for those that may pile up
+AHEAD: tuple[Units, ...] = (RASTER,), (DRIVEN,), *PULLED  # which any model may come to need
 
 
 class Preparation(System):
@@ -63,7 +59,7 @@ class Preparation(System):
         self._compiler = threading.Thread(target=_load_libraries, daemon=True)
         self._blank = is_blank()  # then it is known without the compiler that nothing is compiled
         self._loaded = False  # the program was, in the last frame
-        self._driven_loaded = False  # they are loaded
+        self._driven = False  # the kernels of driven collisions are loaded
         self._looked = -1  # the model's revision when it was seen to what a hand needs
         self._pulled: set[Job] = set()  # what a hand needs, as far as it was loaded
         self._running: dict[Job, subprocess.Popen[bytes]] = {}
@@ -82,29 +78,29 @@ class Preparation(System):
         seen, self._seen = self._seen, simulation.model.revision
         loaded, self._loaded = self._loaded, simulation.ready
         if loaded and simulation.ready and self._waits_for_meetings(simulation) is None:
-            self._load_driven_collisions(simulation)
+            self._load_driven(simulation)
             if seen == self._seen and not frame.session.busy:
                 self._load_pulled(simulation)
         else:
             self._load(simulation, idle=seen == self._seen)
         self._compile_ahead()
 
-    def _load_driven_collisions(self, simulation: Simulation) -> None:
-        """In a frame after the program was loaded, and before anything meets."""
-        if not self._driven_loaded and _may_meet(simulation):
-            self._driven_loaded = True
-            load_driven_collisions()
+    def _load_driven(self, simulation: Simulation) -> None:
+        """Load what driven collisions need, in a frame after the program was loaded and before anything meets."""
+        if not self._driven and _may_meet(simulation):
+            self._driven = True
+            DRIVEN.load()
 
     def _compile_ahead(self) -> None:
-        """What any model may need, one after the other, while nothing else is compiled."""
+        """Compile what any model may need, one process after the other, while nothing else is compiled."""
         if all(process.poll() is not None for process in self._running.values()):
-            for job, is_compiled in AHEAD.items():
-                if self._waits(job, is_compiled) is not None:
+            for units in AHEAD:
+                if self._waits_for_units(units) is not None:
                     return
 
     def _load_pulled(self, simulation: Simulation) -> None:
         """While nothing happens: what takes the steps while a hand pulls, for loading it takes two frames."""
-        if self._seen == self._looked or simulation.integrator == FLIGHT:
+        if self._seen == self._looked or simulation.driver.exact:
             return
         plan = simulation.plan
         pulled = (*_job(simulation, plan), Pull.name)
@@ -125,8 +121,8 @@ class Preparation(System):
 
     def waits_for(self, simulation: Simulation) -> float | None:
         """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
-        if simulation.integrator == FLIGHT:  # it may be ready, but not for piles
-            waits = [self._waits(half, partial(has_parts, *half[1:])) for half in _halves(simulation)]
+        if simulation.driver.exact:  # it may be ready, but not for piles
+            waits = [self._waits_for_units(units) for units in _units(simulation)]
             return max((waited for waited in waits if waited is not None), default=None)
         if simulation.ready:
             return self._waits_for_meetings(simulation)
@@ -141,7 +137,7 @@ class Preparation(System):
         """The same for what happens where particles of structures meet; some come to rest on others."""
         if not _may_meet(simulation):
             return None
-        waited = self._waits((DRIVEN,), has_driven_collisions)
+        waited = self._waits_for_units((DRIVEN,))
         if not _may_rest(simulation.model):
             return waited
         plan = _with_support(simulation)
@@ -150,7 +146,10 @@ class Preparation(System):
 
     def raster(self) -> Raster | None:
         """What draws large pictures, as soon as it is compiled."""
-        return load_raster() if self._waits((RASTER,), has_raster) is None else None
+        return load_raster() if self._waits_for_units((RASTER,)) is None else None
+
+    def _waits_for_units(self, units: Units) -> float | None:
+        return self._waits(tuple(unit.name for unit in units), lambda: _are_compiled(units))
 
     def _waits(self, job: Job, is_compiled: Callable[[], bool]) -> float | None:
         if job in self._done:
@@ -176,7 +175,8 @@ class Preparation(System):
 
 def _may_meet(simulation: Simulation) -> bool:
     """True if particles that do not fly free may meet."""
-    return simulation.integrator != FLIGHT and detects_impacts(simulation.plan)
+    plan = simulation.plan
+    return not simulation.driver.exact and any(system.impulsive for system in plan)
 
 
 def _may_rest(model: Model) -> bool:
@@ -190,8 +190,12 @@ def _with_support(simulation: Simulation) -> list[StepSystem]:
     return simulation.schedule.named((*names, Support.name))
 
 
-def _halves(simulation: Simulation) -> tuple[Job, Job]:
-    """What compiles what its free particles need."""
+def _are_compiled(units: Units) -> bool:
+    return all(unit.is_compiled() for unit in units)
+
+
+def _units(simulation: Simulation) -> tuple[Units, ...]:
+    """The units that its free particles need."""
     plan = simulation.plan
     return PULLED if may_pile(simulation.model, any(isinstance(system, Pull) for system in plan)) else FREE
 
@@ -204,8 +208,8 @@ def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
 
 def _is_compiled(simulation: Simulation) -> bool:
     """True if its program need only be loaded."""
-    if simulation.integrator == FLIGHT:
-        return all(has_parts(*half[1:]) for half in _halves(simulation))
+    if simulation.driver.exact:
+        return all(_are_compiled(units) for units in _units(simulation))
     return _has_program(simulation, simulation.plan)
 
 
@@ -214,11 +218,11 @@ def _has_program(simulation: Simulation, plan: Sequence[StepSystem]) -> bool:
 
 
 def _load_libraries() -> None:
-    """What steps need besides their programs."""
+    """Import what steps need besides their programs, which takes several frames."""
     load_compiler()
-    for is_compiled in AHEAD.values():  # imports kernels, which takes several frames
-        is_compiled()
-    read_sources([driver for driver in DRIVERS.values() if driver.mod is None])
+    for units in AHEAD:  # imports kernels, which takes several frames
+        _are_compiled(units)
+    read_sources([integrator for integrator in INTEGRATORS.values() if integrator.mod is None])
     importlib.import_module("systems.plasticity.kernels")
     for library in ("scipy.spatial", "scipy.sparse.linalg"):
         importlib.import_module(library)

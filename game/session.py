@@ -47,8 +47,8 @@ from systems.edit.refusal import Refusal
 from systems.input.bindings import FORMS, TEXT, action_for, key_named
 from systems.physics.pace import natural_pace
 from systems.run.energy import Energy
-from systems.run.frame_clock import FrameClock
-from systems.run.simulation import FREE_FLIGHT, Simulation
+from systems.run.real_time import TimeScale
+from systems.run.simulation import Simulation
 from systems.run.system import Time
 from systems.schedule import Plan, Schedule
 
@@ -247,7 +247,7 @@ class Session:
         return self.model.clock.time
 
     @property
-    def clock(self) -> FrameClock:
+    def clock(self) -> TimeScale:
         """How fast time passes in the window."""
         return self.desk.live.clock
 
@@ -340,7 +340,7 @@ class Session:
             self.model.give("clock.time", np.array([time]))
             self.model.give("clock.origin", np.array([time]))
             self.model.give("clock.origin_steps", np.array([self.model.clock.steps]))
-            if len(found.final.contacts) and self.simulation.driver is not FREE_FLIGHT:
+            if len(found.final.contacts) and not self.simulation.driver.exact:
                 self.model.clock.collision_state = PersistentContacts(
                     found.final.contacts, 1000.0 * found.final.contact_force
                 )
@@ -508,8 +508,7 @@ class Session:
         >>> Session.open("isostatic").plan("pause").left_out["run.time"]
         'not active in pause, only in simulation'
         """
-        with self.simulation.in_scene(scene or self.scene):
-            return self.simulation.planned()
+        return self.simulation.planned(scene or self.scene)
 
     def act(self, name: str, pixel: Vector | None = None) -> None:
         """Perform a named action with the pointer at a pixel; what it refuses is said in `notice`."""

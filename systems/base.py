@@ -24,10 +24,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 import esper
 from numpy.typing import NDArray
 
+from systems.entries import ACCOUNTS
+
 if TYPE_CHECKING:
     from components.model import Model
 
-__all__ = ["ACCOUNTS", "Commit", "Driver", "Law", "Mod", "Phase", "StepSystem", "StopReason", "System"]
+__all__ = ["ACCOUNTS", "Commit", "Integrator", "Law", "Mod", "Phase", "StepSystem", "StopReason", "System"]
 
 
 class Phase(Enum):
@@ -48,9 +50,6 @@ class StopReason(IntEnum):
     REST = 2  # nothing moves any more
     DIVERGED = 3  # energy came from nowhere, or a number is not finite
     UNRESOLVED = 4  # no step, however small, has a finite result
-
-
-ACCOUNTS = ("work", "dissipated_damping", "dissipated_plastic", "dissipated_impact")
 
 
 class Mod(Protocol):
@@ -101,20 +100,22 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
 
 
 class StepSystem(System):
-    """Compiled behaviour inside the fixed steps: a law, a commit or a driver.
+    """Compiled behaviour inside the fixed steps: a law, a commit or an integrator.
 
     kernel: "module:function" of a numba-compiled function, or the function itself. Its parameters are
         bound by name: `<table>_<column>`, `time`, `dt`, an entry of `arrays`, or one of the quantities
         that the role provides. "": what it does is not part of the step program.
-    detects_impacts: a plan with the system finds the times of impacts and resolves them.
-    allows_free_flight: particles that only such systems act on move on exact paths between impacts.
+    impulsive: it acts at instants, by impacts, at which steps have to end.
     """
 
     phase: ClassVar[Phase] = Phase.STEP
     scenes: ClassVar[tuple[str, ...] | None] = ("simulation", "force method")
     kernel: ClassVar[str | Callable[..., Any]] = ""
-    detects_impacts: ClassVar[bool] = False
-    allows_free_flight: ClassVar[bool] = False
+    impulsive: ClassVar[bool] = False
+
+    def leaves_flight_exact(self, model: Model) -> bool:
+        """True if particles fly on exact paths between impacts all the same, for which no integrator is needed."""
+        return False
 
     def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
         """Further read-only arrays for the kernel, renewed whenever the document changes."""
@@ -152,7 +153,7 @@ class Commit(StepSystem):
     (the new value of the one column in `writes`, the energy dissipated in kN·m). Those that take the axial
     force come after the others.
 
-    branch, margin: kernels that tell drivers which locate events where the rod's law is not smooth; "": none.
+    branch, margin: kernels by which integrators locate events where the rod's law is not smooth; "": none.
         branch(elongation, rate, …) is the number of the branch of the law that the rod is about to follow;
         margin(branch, elongation, rate, dt, …) is positive while the rod stays on it, has no unit, and is 0
         where it leaves it.
@@ -163,32 +164,34 @@ class Commit(StepSystem):
     margin: ClassVar[str | Callable[..., Any]] = ""
 
 
-class Driver(StepSystem):
-    """Advances time: an integrator. Its kernel is *source*: see systems/physics/fixed_steps.py.
+class Integrator(StepSystem):
+    """Advances time. Its functions are source, pasted into the program: see systems/program/templates.
 
-    begins, ends: instead of a kernel, sources of what becomes of a particle before and after the forces of a step.
+    begins, ends: what becomes of a particle before and after the forces of a step, instead of a kernel.
     stable_step: the largest stable step (s) for the highest angular frequency ω (rad/s) and decay ζω
         (1/s) of a model, not both 0; infinite if unconditionally stable, 0 if stable at none.
-    order: of convergence. entry: source of the loop around the kernel. parts: sources that the kernel calls,
+    order: of convergence. entry: the loop around the kernel. parts: templates that the kernel calls,
         "module:function" or "module:function=name in the program". constants: numbers and arrays by name.
-    side_by_side: module with sources of a loop for many variants at a time (see physics/side_by_side.py); "": there is none.
-    controlled: it owns time and step size and locates events (see runge_kutta.py); else its steps are all
+    controlled: it owns time and step size and locates events (see templates/runge_kutta.py); else its steps are all
         alike. Either ends a step, or a piece of one, where a load changes abruptly.
     estimates_error: it chooses its steps so that settings.tolerance is met, unless the step is fixed.
+    exact: its results do not depend on the steps; it has no kernel.
     particle_rows, rod_rows: arrays of shape (particles, 2) and (rods,) that it needs.
     check_interval: steps between checks for rest and divergence; larger: notices later.
     guard: which energy it conserves, for the check for divergence; `shadow` in systems/physics/kernels.py.
     """
 
+    reads: ClassVar[tuple[str, ...]] = ("particles.mobility",)
+    writes: ClassVar[tuple[str, ...]] = ("particles.displacement", "particles.velocity", "clock.time")
     order: ClassVar[int] = 0
-    entry: ClassVar[str] = "systems.physics.fixed_steps:advance"
+    entry: ClassVar[str] = "systems.program.templates.fixed_steps:advance"
     begins: ClassVar[str] = ""
     ends: ClassVar[str] = ""
     parts: ClassVar[tuple[str, ...]] = ()
     constants: ClassVar[Mapping[str, Any]] = {}
-    side_by_side: ClassVar[str] = ""
     controlled: ClassVar[bool] = False
     estimates_error: ClassVar[bool] = False
+    exact: ClassVar[bool] = False
     particle_rows: ClassVar[int] = 0
     rod_rows: ClassVar[int] = 0
     check_interval: ClassVar[int] = 128

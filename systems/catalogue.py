@@ -1,19 +1,10 @@
-"""All systems that Pinjoint brings along, in order of registration."""
+"""The laws and commits that Pinjoint brings along."""
 
 from __future__ import annotations
 
-from components.settings import INTEGRATORS
-from systems.base import Driver, StepSystem
+from systems.base import StepSystem
 from systems.collision.system import Collision, Support
 from systems.loads.system import varying_loads
-from systems.physics.integrators import (
-    DormandPrince853,
-    ImplicitRungeKutta4,
-    RungeKutta4,
-    SemiImplicitEuler,
-    ThesisTaylor,
-    VelocityVerlet,
-)
 from systems.physics.system import (
     AxialDamping,
     AxialDampingOfCables,
@@ -24,29 +15,9 @@ from systems.physics.system import (
 )
 from systems.plasticity.system import Strength, Yielding
 
-DRIVERS: dict[str, Driver] = {}
-
-
-def register_driver(driver: Driver) -> None:
-    """Make an integrator known to models, the command line and the properties."""
-    key = driver.name.rpartition(".")[2]
-    DRIVERS[key] = driver
-    INTEGRATORS[key] = (driver.__doc__ or "").strip().partition("\n")[0]
-
-
-for _driver in (
-    VelocityVerlet(),
-    DormandPrince853(),
-    ImplicitRungeKutta4(),
-    RungeKutta4(),
-    SemiImplicitEuler(),
-    ThesisTaylor(),
-):
-    register_driver(_driver)
-
 
 def step_systems() -> list[StepSystem]:
-    """Laws and commits."""
+    """All of them, in order of registration."""
     return [
         Elasticity(),
         ElasticityAfterYielding(),

@@ -1,10 +1,19 @@
-"""How every kernel is compiled: IEEE division (no exception), no fastmath, so that bits are reproducible.
+"""How kernels are compiled, and the quick way to compile large programs of them.
 
-Those that only other kernels call are parts. numba makes machine code of every function by itself, after optimising
-it with all that it calls, although of a program only the outermost one is ever entered. A part stays what it was
-before that, and is optimised and made machine code of as a piece of what it is linked into, an entry: that compiles
-a large program in a fraction of the time. An entry knows that nobody else calls its parts, which are handed only the
-arguments that they use: of an array there are nine, and steps of a few rods spend a third of their time on others.
+All of them: IEEE division (no exceptions), no fastmath, so that the same input gives the same bits.
+
+    compiled   a kernel that may also be called from Python, and tested, by itself
+    part       a kernel that only other kernels call
+    entry      a function by which Python enters a program that consists of parts; its machine code is kept on disk
+
+numba would optimise every part with all that it calls and make machine code of it, although nothing but the entry is
+ever entered. Here, a part is only translated; the entry that it is linked into is optimised, and made machine code
+of, as a whole. Large programs compile in a fraction of the time. Since nobody else calls the parts of an entry, they
+are handed only the arguments that they use: an array consists of nine, and steps of a few rods would spend a third
+of their time on the others.
+
+This takes inner classes of numba (below PLAIN). With the environment variable PINJOINT_PLAIN_NUMBA=1 all three
+decorators are numba's own `njit` with the same options: programs compute the same bits and take longer to compile.
 """
 
 
@@ -12,6 +21,7 @@ arguments that they use: of an array there are nine, and steps of a few rods spe
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -34,8 +44,40 @@ from numba.core.untyped_passes import (
     WithLifting,
 )
 
+PLAIN = os.environ.get("PINJOINT_PLAIN_NUMBA", "") == "1"
+
+compiled = njit(error_model="numpy", no_cfunc_wrapper=True)  # type: ignore[call-overload]
+
+
+def part(*, apart: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """A decorator like `compiled`, with further options, for functions that only compiled ones call.
+
+    apart: no two of the arrays that it is given overlap, which numba then does not check.
+    """
+    if PLAIN:
+        plain: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True} | options
+        return njit(**plain)  # type: ignore[no-any-return]
+    chosen = {
+        "error_model": "numpy",
+        "nopython": True,
+        "boundscheck": None,
+        "no_cpython_wrapper": True,
+        "no_cfunc_wrapper": True,
+    }
+    compiler = _ApartCompiler if apart else _PartCompiler
+    return partial(_Part, locals={}, targetoptions=chosen | options, pipeline_class=compiler)
+
+
+def entry(**options: Any) -> Any:
+    """A decorator like `compiled`, with further options, for functions by which Python enters a program of parts."""
+    chosen: dict[str, Any] = {"error_model": "numpy", "cache": True} | options
+    return njit(**chosen) if PLAIN else njit(pipeline_class=_EntryCompiler, **chosen)
+
+
+# --- what numba knows of types -------------------------------------------------------------------
+
 # Passes over a function that look for what kernels do not have: `with`, closures and comprehensions, functions
-# inlined before their types are known, loops over unlike things, expressions of whole arrays.
+# inlined before their types are known, loops over tuples of different types, expressions of whole arrays.
 UNUSED = (
     WithLifting,
     InlineClosureLikes,
@@ -48,59 +90,12 @@ UNUSED = (
     NopythonRewrites,
 )
 
-compiled = njit(error_model="numpy", no_cfunc_wrapper=True)  # type: ignore[call-overload]
-
-
-class _Code(JITCodeLibrary):
-    """What a part consists of, and which others it calls: to be linked, never run."""
-
-    def finalize(self) -> None:
-        """It is what it is: what takes it in optimises it."""
-        if hasattr(
-            self, "_reload_init"
-        ):  # in newer versions of numba: what is to be done when cached code is loaded
-            for called in self._linking_libraries:
-                self._reload_init.update(called._reload_init)
-        self._finalized = True
-
-    def _get_module_for_linking(self) -> Any:
-        """It and all that it calls, each once; who links several such has one of each at last."""
-        self._ensure_finalized()
-        if self._shared_module is None:
-            self._shared_module = self._final_module.clone()
-            for called in self._called({}):
-                module = called._final_module if isinstance(called, _Code) else called._get_module_for_linking()
-                self._shared_module.link_in(module, preserve=True)
-            for function in self._shared_module.functions:
-                if not function.is_declaration and function.linkage.name == "external":
-                    function.linkage = "linkonce_odr"
-        return self._shared_module
-
-    def _called(self, found: dict[Any, None]) -> dict[Any, None]:
-        """All code that it calls, directly or not, in the order in which it does."""
-        for called in self._linking_libraries:
-            if called not in found:
-                found[called] = None
-                if isinstance(called, _Code):
-                    called._called(found)
-        return found
-
-    def _optimize_functions(self, module: Any) -> None:
-        module.data_layout = self._codegen._data_layout
-
-    @property
-    def codegen(self) -> _Code:
-        """Whoever asks for it wants to tell machine code its environment."""
-        return self
-
-    def set_env(self, name: str, environment: Any) -> None:
-        """There is no machine code to tell; only what parts raise would need it, and they raise nothing."""
-
 
 class _Typing(Context):
-    """What numba knows of types, and what it has found: for every a + b it would ask a dozen that may know the type.
+    """numba's context of types, with a memory of what calls return.
 
-    A large program has some six thousand such operations, of which a few hundred are different.
+    For every `a + b` numba asks a dozen candidates. A large program has some six thousand such operations, of which
+    a few hundred differ in types.
     """
 
     def __init__(self, known: Context) -> None:
@@ -108,7 +103,7 @@ class _Typing(Context):
         self._found: dict[Any, Any] = {}
 
     def resolve_function_type(self, function: Any, given: Any, named: Any) -> Any:
-        """Types of what a call is given and returns."""
+        """The signature of a function for arguments of these types."""
         known = self._lookup_global(function) or function
         if named or not isinstance(known, Function):
             return super().resolve_function_type(function, given, named)
@@ -121,8 +116,8 @@ class _Typing(Context):
         return self._found[key]
 
 
-class _Lean(Compiler):
-    """numba's compiler, with what it found of types, and without passes that kernels have no use for."""
+class _LeanCompiler(Compiler):
+    """numba's compiler with that memory and without the passes that kernels have no use for."""
 
     _typing = _Typing(cpu_target.typing_context)
 
@@ -130,40 +125,79 @@ class _Lean(Compiler):
         super().__init__(self._typing, *rest)
 
     def define_pipelines(self) -> list[PassManager]:
-        """One that makes machine code."""
+        """The usual passes, less the unused ones."""
         (usual,) = super().define_pipelines()
         lean = PassManager(usual.pipeline_name)
-        for kind, what_for in usual.passes:
+        for kind, purpose in usual.passes:
             if kind not in UNUSED:
-                lean.add_pass(kind, what_for)
+                lean.add_pass(kind, purpose)
         lean.finalize()
         return [lean]
 
 
-class _Compiler(_Lean):
+# --- parts ---------------------------------------------------------------------------------------
+
+
+class _PartCode(JITCodeLibrary):
+    """LLVM code of a part and a list of the libraries that it calls. It is linked into others, and never run."""
+
+    def finalize(self) -> None:
+        """End construction without optimising: the entry that links this part optimises it."""
+        if hasattr(
+            self, "_reload_init"
+        ):  # newer versions of numba: functions to call when cached code is loaded
+            for called in self._linking_libraries:
+                self._reload_init.update(called._reload_init)
+        self._finalized = True
+
+    def _get_module_for_linking(self) -> Any:
+        """The part and all that it calls, each once.
+
+        Their functions are "linkonce_odr": where several parts bring the same function, the linker keeps one.
+        """
+        self._ensure_finalized()
+        if self._shared_module is None:
+            self._shared_module = self._final_module.clone()
+            for called in self._called({}):
+                is_part = isinstance(called, _PartCode)
+                module = called._final_module if is_part else called._get_module_for_linking()
+                self._shared_module.link_in(module, preserve=True)
+            for function in self._shared_module.functions:
+                if not function.is_declaration and function.linkage.name == "external":
+                    function.linkage = "linkonce_odr"
+        return self._shared_module
+
+    def _called(self, found: dict[Any, None]) -> dict[Any, None]:
+        """All libraries that it calls, directly or not, in the order of the calls."""
+        for called in self._linking_libraries:
+            if called not in found:
+                found[called] = None
+                if isinstance(called, _PartCode):
+                    called._called(found)
+        return found
+
+    def _optimize_functions(self, module: Any) -> None:
+        module.data_layout = self._codegen._data_layout
+
+    @property
+    def codegen(self) -> _PartCode:
+        """The receiver of set_env(), which numba's compiler looks up here."""
+        return self
+
+    def set_env(self, name: str, environment: Any) -> None:
+        """Do nothing: only machine code has an environment, to raise exceptions with, and parts raise none."""
+
+
+class _PartCompiler(_LeanCompiler):
+    """Compiles a part as far as LLVM code."""
+
     def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
-        super().__init__(typing, target, library or _Code(target.codegen(), "part"), *rest)
+        super().__init__(typing, target, library or _PartCode(target.codegen(), "part"), *rest)
 
 
-class _Whole(JITCodeLibrary):
-    """What an entry consists of: parts that are its own."""
+class _ApartCompiler(_PartCompiler):
+    """The same for arrays that do not overlap."""
 
-    def _optimize_final_module(self) -> None:
-        for function in self._final_module.functions:
-            if not function.is_declaration and function.linkage.name == "linkonce_odr":
-                function.linkage = "internal"
-        super()._optimize_final_module()
-
-
-class _EntryCompiler(_Lean):
-    def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
-        if library is None:
-            library = _Whole(target.codegen(), "entry")
-            library.enable_object_caching()
-        super().__init__(typing, target, library, *rest)
-
-
-class _ApartCompiler(_Compiler):
     def __init__(
         self, typing: Any, target: Any, library: Any, given: Any, result: Any, flags: Any, *rest: Any
     ) -> None:
@@ -172,32 +206,36 @@ class _ApartCompiler(_Compiler):
 
 
 class _Part(CPUDispatcher):
+    """What the name of a part stands for."""
+
     def get_call_template(self, given: Any, named: Any) -> Any:
-        """Of one that is given the constant 3, as of one that is given any integer: no others are compiled."""
+        """The same version for the constant 3 as for any other integer."""
         plain = {name: unliteral(kind) for name, kind in named.items()}
         return super().get_call_template(tuple(unliteral(kind) for kind in given), plain)
 
     def __call__(self, *given: Any, **named: Any) -> Any:
-        """What was never compiled by itself cannot be called by itself."""
+        """Raise TypeError: a part has no machine code of its own."""
         raise TypeError(f"{self.py_func.__qualname__} is a part of programs: call it from a compiled function.")
 
 
-def part(*, apart: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """A decorator like `compiled`, with further options, for functions that only compiled ones call.
-
-    apart: no two of the arrays that it is given share memory that it writes to, which is then not made sure of.
-    """
-    chosen = {
-        "error_model": "numpy",
-        "nopython": True,
-        "boundscheck": None,
-        "no_cpython_wrapper": True,
-        "no_cfunc_wrapper": True,
-    }
-    compiler = _ApartCompiler if apart else _Compiler
-    return partial(_Part, locals={}, targetoptions=chosen | options, pipeline_class=compiler)
+# --- entries -------------------------------------------------------------------------------------
 
 
-def entry(**options: Any) -> Any:
-    """A decorator like `compiled`, with further options, for functions by which Python enters what parts make up."""
-    return njit(error_model="numpy", cache=True, pipeline_class=_EntryCompiler, **options)
+class _EntryCode(JITCodeLibrary):
+    """Code of an entry; its parts become internal, so that the optimiser may change how they are called."""
+
+    def _optimize_final_module(self) -> None:
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage.name == "linkonce_odr":
+                function.linkage = "internal"
+        super()._optimize_final_module()
+
+
+class _EntryCompiler(_LeanCompiler):
+    """Compiles an entry with its parts to machine code that can be cached."""
+
+    def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
+        if library is None:
+            library = _EntryCode(target.codegen(), "entry")
+            library.enable_object_caching()
+        super().__init__(typing, target, library, *rest)

@@ -20,7 +20,7 @@ from graphlib import CycleError, TopologicalSorter
 from typing import Protocol, TypeVar
 
 from components.model import Model
-from systems.base import Commit, Driver, Law, Phase, StepSystem, System
+from systems.base import Commit, Integrator, Law, Phase, StepSystem, System
 
 S = TypeVar("S", bound=System)
 
@@ -171,7 +171,7 @@ class Schedule:
             system
             for system in self._ordered[Phase.STEP]
             if isinstance(system, StepSystem)
-            and not isinstance(system, Driver)
+            and not isinstance(system, Integrator)
             and self.is_active(system, scene)
             and system.needs(model)
         ]
@@ -207,8 +207,8 @@ class Schedule:
 
 
 def _role(system: System) -> type:
-    """Laws, commits and drivers are kept apart by the step program itself."""
-    return next((role for role in (Law, Commit, Driver) if isinstance(system, role)), System)
+    """Laws, commits and integrators are kept apart by the step program itself."""
+    return next((role for role in (Law, Commit, Integrator) if isinstance(system, role)), System)
 
 
 def _contested(one: System, other: System) -> list[str]:

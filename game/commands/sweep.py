@@ -16,8 +16,8 @@ from game.sweeps.variation import FORMS
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     options = _parser().parse_args(words)
-    from game.sweeps.progress import ProgressBar
     from game.sweeps.results import check_output
+    from game.sweeps.run import ProgressBar
 
     if options.plot is not None:
         check_output(Path(options.plot), [".png"])
@@ -49,6 +49,11 @@ def command(words: Sequence[str]) -> int:
         raise UsageError(
             f"{error.filename or options.output} cannot be written: {error.strerror}. Choose another file."
         ) from None
+    for fault, count in results.faults.items():
+        print(
+            f"{count} variants were computed one by one, which takes longer, since together it failed: {fault}",
+            file=sys.stderr,
+        )
     counts = results.counts()
     why = "" if set(counts) <= set(FOUND) else "; its column 'message' says why"
     print(f"{options.output}: {', '.join(f'{count} {status}' for status, count in counts.items())}{why}")

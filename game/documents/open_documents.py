@@ -17,7 +17,7 @@ from game.documents.history.log import Edit, Entry
 from game.documents.history.timeline import Timeline
 from game.editor.shapes import Shapes
 from systems.edit.pull import Pull
-from systems.run.real_time import Live
+from systems.run.real_time import RealTimeRunner
 from systems.run.simulation import Simulation
 from systems.schedule import Schedule
 
@@ -63,7 +63,7 @@ class Desk:
         self.simulation = Simulation(model, schedule)
         self.timeline = Timeline(self.simulation, pull)
         self.history = History(model, self.simulation, on_change=self._changed)
-        self.live = Live(self.simulation)
+        self.live = RealTimeRunner(self.simulation)
         self.beginning: Snapshot | None = None
         self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)

@@ -20,7 +20,7 @@ from components.tags import Selected
 from components.view import View
 from game.editor.shapes import DRAWN_SHARE, extent
 from game.force_method import PARTS
-from systems.run.real_time import Live
+from systems.run.real_time import RealTimeRunner
 from systems.run.simulation import Simulation
 from systems.schedule import Schedule
 from systems.statics.force_method import (
@@ -44,7 +44,7 @@ class Set:
 
     model: Model
     view: View
-    live: Live
+    live: RealTimeRunner
 
     @property
     def simulation(self) -> Simulation:
@@ -131,7 +131,9 @@ class Guide:
         if unit is not None:
             _unload(copy)
             copy.assign(list(copy.particles), "force", unit_force(self.model, unit).tolist())
-        return Set(copy, view_like(self._view), Live(Simulation(copy, self._schedule, "force method")))
+        return Set(
+            copy, view_like(self._view), RealTimeRunner(Simulation(copy, self._schedule, "force method"))
+        )
 
     @property
     def running(self) -> list[Set]:

@@ -16,7 +16,6 @@ from components.kind import add_kind
 from components.load import HISTORIES, HistoryKind, register_history
 from components.model import ADDED
 from components.obstacles import SHAPES, Pieces, Shape, check_pieces
-from components.settings import INTEGRATORS
 from components.view import Readout
 from game import registry
 from game.commands.arguments import BAD_INPUT, UsageError
@@ -28,8 +27,7 @@ from game.editor.gestures.drawing import drawing_of
 from game.editor.scenes import Scene, all_scenes
 from game.mods.guard import guarded_history, guarded_integrator, guarded_scene, guarded_system
 from game.mods.mod import Mod, ModError
-from systems.base import Driver, System
-from systems.catalogue import DRIVERS, register_driver
+from systems.base import Integrator, System
 from systems.edit.refusal import Refusal
 from systems.input.bindings import (
     LIVE,
@@ -40,6 +38,7 @@ from systems.input.bindings import (
     remove_binding,
     remove_tool,
 )
+from systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
 from systems.render.icons import ICONS, Part
 from systems.render.layers import ABOVE, BELOW, Layer
 
@@ -129,14 +128,14 @@ class App:
         self._check_prefix("system", name or getattr(system, "__name__", "?"))
         self._add(registry.SYSTEMS, lambda: guarded_system(self._mod, system()))
 
-    def integrator(self, driver: type[Driver]) -> None:
+    def integrator(self, integrator: type[Integrator]) -> None:
         """Add an integrator that models, the command line and the properties can choose."""
-        self._check_prefix("integrator", driver.name)
-        key = driver.name.rpartition(".")[2]
+        self._check_prefix("integrator", integrator.name)
+        key = integrator.name.rpartition(".")[2]
         if key in INTEGRATORS:
-            raise ModError(f"There is an integrator '{key}' already; call {driver.name} something else.")
-        register_driver(guarded_integrator(self._mod, driver()))
-        self._undo.append(lambda: (DRIVERS.pop(key), INTEGRATORS.pop(key)))
+            raise ModError(f"There is an integrator '{key}' already; call {integrator.name} something else.")
+        register_integrator(guarded_integrator(self._mod, integrator()))
+        self._undo.append(lambda: remove_integrator(key))
 
     def history(self, kind: HistoryKind) -> None:
         """Add a way in which loads change in time."""

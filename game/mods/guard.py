@@ -13,7 +13,7 @@ from components.snapshot import Snapshot
 from game.editor.scenes import Scene
 from game.mods.mod import INCLUDED, Mod
 from game.mods.watchdog import interrupted_after, stop_after
-from systems.base import Driver, StepSystem, System
+from systems.base import Integrator, StepSystem, System
 from systems.physics.integrators import VelocityVerlet
 
 if TYPE_CHECKING:
@@ -101,9 +101,9 @@ def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
     return replace(kind, check=check, ends=ends, breaks=breaks, static=static, mod=mod)
 
 
-def guarded_integrator(mod: Mod, driver: Driver) -> Driver:
+def guarded_integrator(mod: Mod, integrator: Integrator) -> Integrator:
     """The integrator of a mod, so wrapped that it is no longer chosen once the mod is switched off."""
-    own = driver.stable_step
+    own = integrator.stable_step
 
     def stable_step(frequency: float, decay: float) -> float:
         size = float(own(frequency, decay))
@@ -112,13 +112,13 @@ def guarded_integrator(mod: Mod, driver: Driver) -> Driver:
         return size
 
     def called(frequency: float, decay: float) -> float:
-        what = f"the stable step of the integrator '{driver.name}'"
+        what = f"the stable step of the integrator '{integrator.name}'"
         size: float = mod.call(what, stable_step, frequency, decay, otherwise=math.nan)
         return VelocityVerlet.stable_step(frequency, decay) if math.isnan(size) else size
 
-    driver.mod = mod
-    vars(driver)["stable_step"] = called
-    return driver
+    integrator.mod = mod
+    vars(integrator)["stable_step"] = called
+    return integrator
 
 
 _METHODS = tuple(name for name, method in vars(Scene).items() if callable(method) and name[0] != "_")

@@ -11,8 +11,9 @@ from game.documents import models
 from game.editor.scenes import all_scenes
 from game.registry import SYSTEMS
 from systems.base import Commit, Law
-from systems.catalogue import DRIVERS, step_systems
+from systems.catalogue import step_systems
 from systems.input.bindings import BINDINGS
+from systems.physics.integrators import INTEGRATORS
 from systems.program.binding import ProgramError, bind, problem_of
 from systems.program.writer import read_sources
 
@@ -27,10 +28,10 @@ def problems(mod: Mod) -> Iterator[str]:
     for system in [*step_systems(), *(make() for make in SYSTEMS)]:
         if system.mod is mod and isinstance(system, Law | Commit):
             yield from filter(None, [_problem_of(system, model)])
-    for driver in DRIVERS.values():
-        if driver.mod is mod:
+    for integrator in INTEGRATORS.values():
+        if integrator.mod is mod:
             try:
-                read_sources([driver])
+                read_sources([integrator])
             except ProgramError as error:
                 yield str(error)
     scenes = {scene.name for scene in all_scenes()}

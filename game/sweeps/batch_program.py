@@ -1,23 +1,17 @@
-"""Step programs of batches: a loop over blocks that calls the compiled step program of a single run."""
+"""Step programs of batches: a loop over variants that calls the compiled step program of a single run."""
 
 from __future__ import annotations
 
 import inspect
-import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Column
-from game.sweeps.lane_program import LaneProgram
-from game.sweeps.lanes import lanes_for
-from game.sweeps.stack import Stack
-from systems.base import ACCOUNTS
-from systems.physics.integrators import SEARCH
+from game.sweeps.batched_model import BatchedModel
 from systems.program.compiler import compile_module, note_compiled
 from systems.program.program import Program
 
@@ -27,65 +21,43 @@ _SHARED = (
     "until",
     "landing",
     "loads_end",
-)  # one for all blocks, besides what is written anew for each
+)  # one for all variants, besides what is written anew for each
 _RETURNS = {"advance": "taken[k], reason[k] = "}
 _KEPT = {"observe": ("force",)}
 _PIECES = 4  # for each thread, so that none waits long for another
 
 
 class BatchProgram:
-    """The compiled functions of a step program, called for one block of a stack after the other.
+    """The compiled functions of a step program, called for one variant of a batched model after the other.
 
-    Blocks are independent: they are shared out among threads, and results do not depend on how many.
+    Variants are independent: they are shared out among threads, and results do not depend on how many.
 
-    varied_arrays: arrays of systems differ between blocks. many: there are so many that those which can take
-    their steps side by side do, for which more must be compiled.
+    varied_arrays: arrays of systems differ between variants.
     """
 
-    def __init__(
-        self, program: Program, threads: int, *, varied_arrays: bool = False, many: bool = False
-    ) -> None:
+    def __init__(self, program: Program, threads: int, *, varied_arrays: bool = False) -> None:
         self.program = program
         self._varied = varied_arrays
-        self._side_by_side = many and not varied_arrays and bool(program.driver.side_by_side)
-        self.driver = program.driver
+        self.integrator = program.integrator
         self.threads = threads
         self._columns = program.columns
         entries = {name: getattr(program.module, name, None) for name in ("advance", "observe", "commit")}
         self._entries = {name: entry for name, entry in entries.items() if entry is not None}
         self.has_history = "commit" in self._entries
-        self._scratch_shapes = self._shapes()
+        self._scratch_shapes = program.scratch
         self._parameters = {
             name: tuple(inspect.signature(entry.py_func).parameters) for name, entry in self._entries.items()
         }
         self._module = compile_module(self._source(), self._entries)
 
-    def _shapes(self) -> dict[str, tuple[int, ...]]:
-        """Of what is written anew for each block and read by nobody else."""
-        program, driver = self.program, self.driver
-        particles, rods = program.model.particles.count, program.model.rods.count
-        vectors = dict.fromkeys(("force", "resisting", "predicted"), (particles, 2))
-        accounts = dict.fromkeys(("power", "gained", "stage_power"), (len(ACCOUNTS),))
-        return (
-            vectors
-            | accounts
-            | {
-                "direction": (rods, 2),
-                "work": (driver.particle_rows, particles, 2),
-                "rod_work": (driver.rod_rows, rods),
-                "marks": (rods, program.marks),
-                "search": (SEARCH,),
-            }
-        )
-
     def _scratch(self, entry: str) -> dict[str, tuple[int, ...]]:
-        """What of this an entry writes; the forces that are observed are kept for each block."""
+        """What of this an entry writes; the forces that are observed are kept for each variant."""
         kept = _KEPT.get(entry, ())
         return {name: shape for name, shape in self._scratch_shapes.items() if name not in kept}
 
     def _source(self) -> str:
         lines = [
-            '"""A step program for blocks. Generated; safe to delete."""',
+            '"""A step program for variants. Generated; safe to delete."""',
             "",
             "from numba import njit",
             "",
@@ -95,45 +67,45 @@ class BatchProgram:
             arguments = [p if p in one_for_all else f"{p}[k]" for p in parameters]
             lines += [
                 '@njit(error_model="numpy", nogil=True, cache=True)',
-                f"def {name}_each(blocks, taken, reason, {', '.join(parameters)}):",
-                "    for k in blocks:",
+                f"def {name}_each(variants, taken, reason, {', '.join(parameters)}):",
+                "    for k in variants:",
                 f"        {_RETURNS.get(name, '')}{name}({', '.join(arguments)})",
                 "",
             ]
         return "\n".join(lines)
 
-    def columns(self, stack: Stack) -> dict[str, Column]:
+    def columns(self, model: BatchedModel) -> dict[str, Column]:
         """What the compiled functions end with, by name."""
         made: dict[str, Column] = {}
         for name, bound in self._columns.items():
             table, _, column = name.partition("_")
             key = f"{table}.{column}"
-            if stack.has(key):
-                made[name] = stack[key]
+            if model.has(key):
+                made[name] = model[key]
             elif not self._varied:
-                made[name] = np.repeat(bound[None], stack.blocks, axis=0)
+                made[name] = np.repeat(bound[None], model.variants, axis=0)
         if self._varied:
-            made |= self._arrays(stack)
+            made |= self._arrays(model)
         for name, bound in self._columns.items():
             made[name] = made[name].view()
             made[name].flags.writeable = bound.flags.writeable
         return made
 
-    def _arrays(self, stack: Stack) -> dict[str, Column]:
-        """The arrays of the systems, made for each block."""
-        blocks = [stack.part(np.array([block])).as_model() for block in range(stack.blocks)]
+    def _arrays(self, model: BatchedModel) -> dict[str, Column]:
+        """The arrays of the systems, made for each variant."""
+        variants = [model.part(np.array([variant])).as_model() for variant in range(model.variants)]
         each = [
-            {name: array for system in self.program.systems for name, array in system.arrays(block).items()}
-            for block in blocks
+            {name: array for system in self.program.systems for name, array in system.arrays(variant).items()}
+            for variant in variants
         ]
         return {name: np.array([arrays[name] for arrays in each]) for name in each[0]}
 
     def call(
-        self, entry: str, blocks: NDArray[np.intp], arguments: Mapping[str, Any], count: int
+        self, entry: str, variants: NDArray[np.intp], arguments: Mapping[str, Any], count: int
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Call an entry for some of `count` blocks; returns the steps taken by each, and the reasons to stop.
+        """Call an entry for some of `count` variants; returns the steps taken by each, and the reasons to stop.
 
-        arguments: by name of the parameter, with one entry for each block, but for those of all.
+        arguments: by name of the parameter, with one entry for each variant, but for those of all.
         """
         taken, reason = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
 
@@ -142,30 +114,10 @@ class BatchProgram:
             given = [scratch[p] if p in scratch else arguments[p] for p in self._parameters[entry]]
             getattr(self._module, f"{entry}_each")(some, taken, reason, *given)
 
-        groups: list[NDArray[np.intp]] = []
-        if entry == "advance" and arguments["landing"] == math.inf:  # else most steps are cut short
-            groups, blocks = self._groups(blocks)
-        if groups:
-            lanes = self._lanes
-            self._share_out(lambda group: lanes.advance(group, arguments, taken, reason), groups)
-        pieces = 1 if len(blocks) < 2 * self.threads else self.threads * _PIECES
-        self._share_out(one_by_one, np.array_split(blocks, pieces))
+        pieces = 1 if len(variants) < 2 * self.threads else self.threads * _PIECES
+        self._share_out(one_by_one, np.array_split(variants, pieces))
         note_compiled(self._module)
         return taken, reason
-
-    def _groups(self, blocks: NDArray[np.intp]) -> tuple[list[NDArray[np.intp]], NDArray[np.intp]]:
-        """The blocks that take their steps side by side, in groups, and the others, which are too few."""
-        if not self._side_by_side:
-            return [], blocks
-        lanes = lanes_for(self.program.model.particles.count)
-        whole = len(blocks) // lanes + (len(blocks) % lanes >= lanes // 2)
-        return [blocks[k * lanes : (k + 1) * lanes] for k in range(whole)], blocks[whole * lanes :]
-
-    @cached_property
-    def _lanes(self) -> LaneProgram:
-        return LaneProgram(
-            self.program, self._scratch("advance"), lanes_for(self.program.model.particles.count)
-        )
 
     def _share_out(self, work: Callable[[NDArray[np.intp]], None], pieces: Sequence[NDArray[np.intp]]) -> None:
         """Let threads do the work on each piece."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,22 +12,21 @@ from numpy.typing import NDArray
 from components.field import Column, FieldError
 from components.settings import AUTOMATIC
 from game.commands.reports.results import ENERGIES, reported
+from game.documents.document import ModelError
+from game.paths.overrides import OverrideError
 from game.paths.target import EVERY, Target, locate, settable
 from game.sweeps.batch import Batch
 from game.sweeps.batch_program import BatchProgram
+from game.sweeps.batched_model import BatchedModel
 from game.sweeps.measure import Measure
 from game.sweeps.plan import Plan, Record
-from game.sweeps.stack import Stack
+from game.sweeps.variant_runner import VariantRunner
 from game.sweeps.variation import Random, Value
 from systems.physics.automatic import SMALL, stiffnesses, suited_to
-from systems.program.program import Program
-from systems.run.simulation import at_rest_since
-
-if TYPE_CHECKING:
-    from game.sweeps.specimen import Specimen
+from systems.program.binding import ProgramError
+from systems.run.policy import at_rest_since
 
 MOST_NUMBERS = 2_000_000  # in the largest array of a batch: of stiffness, rods × directions of particles
-MANY = 30_000  # variants × rods from which steps side by side are worth compiling for
 # What makes another model of it, or lets its parts rest by themselves.
 _ALONE = ("particles.name", "particles.fixed", "rods.name", "loads.name", "settings.sleeping")
 _REPORTED = ("particles", "rods")
@@ -39,29 +38,28 @@ class Batches:
     size: how many variants to compute at a time; 1: they cannot be computed together.
     """
 
-    def __init__(self, specimen: Specimen, plan: Plan, threads: int) -> None:
-        self._specimen, self._plan, self._threads = specimen, plan, threads
+    def __init__(self, runner: VariantRunner, plan: Plan, threads: int) -> None:
+        self._runner, self._plan, self._threads = runner, plan, threads
         self._programs: dict[Hashable, BatchProgram | None] = {}
-        with specimen.taken_back():
-            specimen.override(plan.overrides)
-            self._targets = [locate(specimen.model, path, settable)[0] for path in plan.varied]
-            self._base = Stack.of(specimen.model, 1) if self._suits() else None
+        with runner.taken_back():
+            runner.override(plan.overrides)
+            self._targets = [locate(runner.model, path, settable)[0] for path in plan.varied]
+            self._base = BatchedModel.of(runner.model, 1) if self._suits() else None
         self._loads_vary = any(target.table.name == "loads" for target in self._targets)
-        rods, particles = specimen.model.rods.count, specimen.model.particles.count
-        self._many = plan.size * rods >= MANY
+        rods, particles = runner.model.rods.count, runner.model.particles.count
         most = MOST_NUMBERS // max(2 * rods * particles, 1)
         self.size = max(min(most, 1024), 1) if self._base is not None else 1
 
     def _suits(self) -> bool:
         """True unless something about the plan asks for single runs."""
-        model, plan = self._specimen.model, self._plan
+        model, plan = self._runner.model, self._plan
         placed = [v for v in plan.variations if not isinstance(v, Random) and ".position." in v.path]
         return (
             plan.analysis.load_factors is None
             and 0 < model.rods.count <= SMALL
             and model.clock.step_size == 0.0  # it has not begun
             and len(placed) <= 1  # two could meet on the way, which is refused
-            and all(type(system).__module__.startswith("systems.") for system in self._specimen.step_systems)
+            and all(type(system).__module__.startswith("systems.") for system in self._runner.step_systems)
             and all(self._is_number(target) for target in self._targets)
         )
 
@@ -79,14 +77,14 @@ class Batches:
         if self._base is None:
             return {}
         found: dict[int, list[Record]] = {}
-        for stack, key, of_stack in self._stacks(numbers):
-            program = self._program(key, of_stack[0])
+        for batched, key, of_model in self._batched(numbers):
+            program = self._program(key, of_model[0])
             if program is not None:
-                found |= self._run(Batch(stack, program), of_stack)
+                found |= self._run(Batch(batched, program), of_model)
         return found
 
-    def _stacks(self, numbers: Sequence[int]) -> Iterator[tuple[Stack, Hashable, list[int]]]:
-        """Stacks of variants that have one plan and one driver, what tells them apart, and their numbers."""
+    def _batched(self, numbers: Sequence[int]) -> Iterator[tuple[BatchedModel, Hashable, list[int]]]:
+        """Batched models of variants that have one plan and one integrator, what tells them apart, and their numbers."""
         assert self._base is not None
         groups: dict[Hashable, list[tuple[int, tuple[Value, ...]]]] = {}
         for number in numbers:
@@ -94,16 +92,16 @@ class Batches:
             if self._allowed(values):
                 groups.setdefault(tuple(map(_kind, values)), []).append((number, values))
         for kinds, variants in groups.items():
-            stack = self._base.part(np.zeros(len(variants), dtype=np.intp))
+            batched = self._base.part(np.zeros(len(variants), dtype=np.intp))
             for place, target in enumerate(self._targets):
-                self._put(stack, target, [values[place] for _, values in variants])
-            stack.derive()
-            sound = np.flatnonzero(~(stack.extreme() | _refused(stack)))
-            stack = stack.part(sound)
-            integrators = self._integrators(stack)
+                self._put(batched, target, [values[place] for _, values in variants])
+            batched.derive()
+            sound = np.flatnonzero(~(batched.extreme() | _refused(batched)))
+            batched = batched.part(sound)
+            integrators = self._integrators(batched)
             for integrator in np.unique(integrators).tolist():
                 at = np.flatnonzero(integrators == integrator)
-                yield stack.part(at), (kinds, integrator), [variants[row][0] for row in sound[at].tolist()]
+                yield batched.part(at), (kinds, integrator), [variants[row][0] for row in sound[at].tolist()]
 
     def _allowed(self, values: Sequence[Value]) -> bool:
         try:
@@ -117,8 +115,8 @@ class Batches:
         return True
 
     @staticmethod
-    def _put(stack: Stack, target: Target, values: Sequence[Value]) -> None:
-        column = stack[f"{target.table.name}.{target.field.name}"]
+    def _put(batched: BatchedModel, target: Target, values: Sequence[Value]) -> None:
+        column = batched[f"{target.table.name}.{target.field.name}"]
         stored = np.array([target.field.stored(value) for value in values], dtype=column.dtype)
         rows = slice(None) if target.element == EVERY else target.handles[0].row
         if target.axis:
@@ -127,13 +125,13 @@ class Batches:
             column[:, rows] = stored.reshape(-1, *(1,) * (column[:, rows].ndim - 1))
 
     @staticmethod
-    def _integrators(stack: Stack) -> NDArray[Any]:
-        """The name of each block's driver."""
-        chosen = stack.single("settings.integrator").copy()
-        chosen[(chosen == AUTOMATIC) & ~np.isnan(stack.single("settings.time_step"))] = "velocity_verlet"
+    def _integrators(batched: BatchedModel) -> NDArray[Any]:
+        """The name of the integrator of each variant."""
+        chosen = batched.single("settings.integrator").copy()
+        chosen[(chosen == AUTOMATIC) & ~np.isnan(batched.single("settings.time_step"))] = "velocity_verlet"
         automatic = np.flatnonzero(chosen == AUTOMATIC)
         if len(automatic):
-            found = stiffnesses(stack.as_model(), stack.single("environment.drag"))
+            found = stiffnesses(batched.as_model(), batched.single("environment.drag"))
             chosen[automatic] = [suited_to(stiffness) for stiffness in found[automatic].tolist()]
         return chosen
 
@@ -141,13 +139,13 @@ class Batches:
         """The program of variants that this one stands for; None: they need runs of their own."""
         if key not in self._programs:
             self._programs[key] = None
-            with suppress(ValueError), self._specimen.taken_back():  # a run of its own says what is wrong
-                self._specimen.override(self._plan.overrides_of(number))
-                simulation = self._specimen.simulation
-                program = simulation.program
-                if isinstance(program, Program) and not simulation.collides:
+            refused = OverrideError, ModelError, ProgramError  # a run of its own says what is wrong
+            with suppress(*refused), self._runner.taken_back():
+                self._runner.override(self._plan.overrides_of(number))
+                simulation = self._runner.simulation
+                if not simulation.collides:
                     self._programs[key] = BatchProgram(
-                        program, self._threads, varied_arrays=self._loads_vary, many=self._many
+                        simulation.step_program, self._threads, varied_arrays=self._loads_vary
                     )
         return self._programs[key]
 
@@ -161,23 +159,23 @@ class Batches:
             states.append(self._measured(batch))
         for target in analysis.times or ():
             batch.run_to(target)
-            before = batch.stack.state()
+            before = batch.model.state()
             batch.land(target)
             states.append(self._measured(batch))
-            batch.stack.restore(before)
+            batch.model.restore(before)
         found: dict[int, list[Record]] = {}
-        for block in np.flatnonzero(~batch.alone).tolist():
+        for variant in np.flatnonzero(~batch.alone).tolist():
             status = "at rest" if analysis.times is None else "time reached"
-            message = at_rest_since(batch.rested[block]) if batch.resting[block] else ""
-            found[numbers[block]] = [(status, message, *state[block]) for state in states]
+            message = at_rest_since(batch.rested[variant]) if batch.resting[variant] else ""
+            found[numbers[variant]] = [(status, message, *state[variant]) for state in states]
         return found
 
     def _measured(self, batch: Batch) -> list[tuple[Any, ...]]:
-        """What is recorded of the present state of each block: time, no load factor, measures."""
+        """What is recorded of the present state of each variant: time, no load factor, measures."""
         batch.observe()
         energy, residual = batch.energy.as_dict(), batch.residual
         batch.alone |= ~_finite(batch, energy, residual)
-        columns = [batch.clock("time").tolist(), [None] * batch.stack.blocks]
+        columns = [batch.clock("time").tolist(), [None] * batch.model.variants]
         for measure in self._plan.measures:
             columns.append(self._column(measure, batch, energy, residual))
         return list(zip(*columns, strict=True))
@@ -190,8 +188,8 @@ class Batches:
             return list(batch.clock("collisions").tolist())
         if section == "energy":
             return list(energy[str(rest[0])].tolist())
-        row = self._specimen.model.tables[str(section)][str(rest[0])].row
-        column = batch.stack[f"{section}.{rest[1]}"][(slice(None), row, *rest[2:])]
+        row = self._runner.model.tables[str(section)][str(rest[0])].row
+        column = batch.model[f"{section}.{rest[1]}"][(slice(None), row, *rest[2:])]
         return [None if value != value else value for value in column.tolist()]
 
 
@@ -202,10 +200,10 @@ def _kind(value: Value) -> Hashable:
     return "+" if value > 0.0 else "-" if value < 0.0 else "0"
 
 
-def _refused(stack: Stack) -> NDArray[np.bool_]:
+def _refused(batched: BatchedModel) -> NDArray[np.bool_]:
     """Which blocks would be refused: a velocity along a constraint, a rod that shrinks to nothing."""
-    pushed = stack["particles.fixed"] & (stack["particles.velocity"] != 0.0)
-    shrunk = stack["rods.thermal_expansion"] * stack["rods.temperature_change"] <= -1.0
+    pushed = batched["particles.fixed"] & (batched["particles.velocity"] != 0.0)
+    shrunk = batched["rods.thermal_expansion"] * batched["rods.temperature_change"] <= -1.0
     refused: NDArray[np.bool_] = pushed.any(axis=(1, 2))
     return refused | shrunk.any(axis=1)
 
@@ -215,9 +213,9 @@ def _finite(batch: Batch, energy: dict[str, Any], residual: Column) -> NDArray[n
     columns = [residual, *(energy[name] for name in ENERGIES)]
     for table in _REPORTED:
         for field in reported(table):
-            column = batch.stack[f"{table}.{field.name}"]
+            column = batch.model[f"{table}.{field.name}"]
             columns.append(np.where(np.isnan(column), 0.0, column) if field.nullable else column)
-    finite = np.ones(batch.stack.blocks, dtype=bool)
+    finite = np.ones(batch.model.variants, dtype=bool)
     for column in columns:
         finite &= np.isfinite(column).reshape(len(finite), -1).all(axis=1)
     return finite

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
-from game.sweeps.plan import Outcome, Plan
+from game.sweeps.batches import Batches
+from game.sweeps.plan import Outcome, Plan, Record
+from game.sweeps.variant_runner import VariantRunner
 from game.sweeps.variation import INSTALL, SweepError
-from game.sweeps.worker import Worker, compute
 from systems.program.cores import VARIABLE, cores
 
 MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
@@ -18,6 +21,72 @@ LARGE = 30_000  # variants × rods from which workers are worth the seconds in w
 LIGHT = 100  # rods up to which a variant takes as long as one of this many
 
 
+@dataclass
+class Computed:
+    """What some variants came to. faults: why some of them were not computed together though they should be able to.
+
+    Such a fault costs time, not results: they are computed one by one. Counted are variants by what went wrong.
+    """
+
+    outcomes: list[Outcome]
+    faults: Mapping[str, int] = field(default_factory=dict)
+
+
+class Worker:
+    """Computes variants of a plan in this process: together where that is possible, else one by one.
+
+    Raises SweepError if this process has another version of Pinjoint, or other mods, than the plan is of.
+    """
+
+    def __init__(self, plan: Plan, threads: int = 1) -> None:
+        plan.software.require()
+        self._plan = plan
+        self._runner: VariantRunner | None = None
+        self._batches: Batches | None = None
+        self._fault = ""  # why nothing is computed together
+        try:
+            self._batches = Batches(VariantRunner(plan), plan, threads)
+        except Exception as error:
+            self._fault = _told(error)
+
+    @property
+    def at_a_time(self) -> int:
+        """How many variants are computed together; 1: none."""
+        return self._batches.size if self._batches is not None else 1
+
+    def compute(self, numbers: Sequence[int]) -> Computed:
+        """Compute some variants; one that cannot be computed is a record that says why."""
+        together: Mapping[int, list[Record]] = {}
+        faults = Counter({self._fault: len(numbers)} if self._fault else {})
+        if len(numbers) > 1:
+            try:
+                together = self.together(numbers)
+            except Exception as error:
+                faults[_told(error)] += len(numbers)
+        return Computed([(n, together[n]) if n in together else self._alone(n) for n in numbers], faults)
+
+    def together(self, numbers: Sequence[int]) -> dict[int, list[Record]]:
+        """What variants come to, of those that can be computed together."""
+        return self._batches.records(numbers) if self._batches is not None else {}
+
+    def _alone(self, number: int) -> Outcome:
+        try:
+            self._runner = self._runner or VariantRunner(self._plan)
+            return number, self._runner.records(number)
+        except Exception as error:  # one bad variant of thousands must not end the others
+            self._runner = None
+            return self._plan.failure(number, str(error) if isinstance(error, ValueError) else _told(error))
+
+
+def _told(error: Exception) -> str:
+    return f"{type(error).__name__}: {error}"
+
+
+def compute(plan: Plan, numbers: Sequence[int]) -> Computed:
+    """Compute some variants of a plan, here and by this thread; see Worker.compute."""
+    return Worker(plan).compute(numbers)
+
+
 def suitable_workers(plan: Plan, variants: int, together: int) -> int:
     """All cores that this process may use where there is much to do one by one, by a rule; else 1."""
     if together > 1 or variants * max(len(plan.document.get("rods", ())), LIGHT) < LARGE:
@@ -25,9 +94,9 @@ def suitable_workers(plan: Plan, variants: int, together: int) -> int:
     return cores()
 
 
-def outcomes(
+def compute_all(
     plan: Plan, numbers: Sequence[int], workers: int | None, scheduler: str | None
-) -> Iterator[list[Outcome]]:
+) -> Iterator[Computed]:
     """Compute these variants, some at a time, in whatever order they get ready.
 
     workers: 1 computes in this process; more start that many on this machine; None: as many as suit.
@@ -82,7 +151,7 @@ def _client_of(distributed: Any, scheduler: str) -> Any:
 
 def _distributed(
     distributed: Any, client: Any, plan: Plan, numbers: Sequence[int], together: int
-) -> Iterator[list[Outcome]]:
+) -> Iterator[Computed]:
     shared = client.submit(_same, plan, pure=False)  # unlike scattered data, survives the death of its workers
 
     def submit(task: Sequence[int]) -> Any:
@@ -100,13 +169,14 @@ def _distributed(
             yield found
     for number in sorted(suspects):  # one at a time, so that only what kills a worker is blamed for it
         found = _result(distributed, submit([number]))
-        yield found or [plan.failure(number, "Every worker that computed it died; perhaps memory ran out.")]
+        why = "Every worker that computed it died; perhaps memory ran out."
+        yield found or Computed([plan.failure(number, why)])
 
 
-def _result(distributed: Any, future: Any) -> list[Outcome] | None:
+def _result(distributed: Any, future: Any) -> Computed | None:
     """What a task came to; None if its workers died."""
     try:
-        found: list[Outcome] = future.result()
+        found: Computed = future.result()
     except distributed.KilledWorker:
         return None
     except Exception as error:

@@ -1,20 +1,36 @@
-"""Plan: all variants of a sweep in a fixed order, and what is asked of each."""
+"""Plan: all variants of a sweep in a fixed order, what is asked of each, and the software that computes them."""
 
 from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import msgspec
 import numpy as np
 
+from game import __version__
 from game.commands.reports.report import Analysis
-from game.sweeps.installation import Installation
-from game.sweeps.measure import Measure
-from game.sweeps.variation import Random, Value, Values, Variation, as_text
+from game.documents import models
+from game.documents.open_documents import file_of
+from game.mods import MODS, load
+from game.mods.mod import INCLUDED
+from game.paths.overrides import apply_override
+from game.sweeps.measure import Measure, read_measures
+from game.sweeps.variation import (
+    FORMS,
+    MOST_VARIANTS,
+    Random,
+    SweepError,
+    Value,
+    Values,
+    Variation,
+    as_text,
+    read_variations,
+)
 
 FAILED = "failed"  # the status of a variant that could not be computed
 
@@ -24,13 +40,56 @@ Outcome = tuple[int, list[Record]]  # the number of a variant, and a record of e
 
 
 @dataclass(frozen=True)
+class NeededMod:
+    """A mod of a sweep. folder: where it was found, "" if in an installed package."""
+
+    name: str
+    version: str
+    folder: str
+
+
+@dataclass(frozen=True)
+class SoftwareEnvironment:
+    """What a sweep is of, and its workers need. version: of Pinjoint. mods: loaded besides those that come with it."""
+
+    version: str
+    mods: tuple[NeededMod, ...]
+
+    @classmethod
+    def present(cls) -> SoftwareEnvironment:
+        """That of this process, as it is now."""
+        mods = (mod for mod in MODS if mod.loaded and mod.source != INCLUDED)
+        return cls(
+            __version__,
+            tuple(
+                NeededMod(mod.name, mod.version, "" if mod.source.startswith("package ") else str(mod.folder))
+                for mod in mods
+            ),
+        )
+
+    def require(self) -> None:
+        """Load the mods that this process lacks. Raises SweepError if its version or mods differ even then."""
+        if self.version != __version__:
+            raise SweepError(f"it has Pinjoint {__version__}, the sweep is of {self.version}")
+        missing = set(self.mods) - set(SoftwareEnvironment.present().mods)
+        if missing:
+            folders = [mod.folder for mod in self.mods if mod in missing and mod.folder]
+            load(map(Path, folders), installed=len(folders) < len(missing))
+            missing -= set(SoftwareEnvironment.present().mods)
+        for mod in sorted(missing, key=lambda mod: mod.name):
+            raise SweepError(
+                f"it lacks the mod '{mod.name}' {mod.version}{' in ' if mod.folder else ''}{mod.folder}"
+            )
+
+
+@dataclass(frozen=True)
 class Plan:
     """What a sweep computes; the same plan gives the same bits, whoever computes which part of it.
 
     Variants are numbered: every combination of the values of all variations, those of the last varying
     fastest; if something is drawn, `samples` of each, the same draws for every combination.
 
-    name, document: of the model. overrides: what is changed in every variant. installation: what it is of.
+    name, document: of the model. overrides: what is changed in every variant. software: what it is of.
     """
 
     name: str
@@ -41,7 +100,7 @@ class Plan:
     seed: int
     measures: tuple[Measure, ...]
     analysis: Analysis
-    installation: Installation
+    software: SoftwareEnvironment
 
     @property
     def size(self) -> int:
@@ -84,3 +143,50 @@ class Plan:
         """Tells plans apart: model, variations, seed, what is asked and measured, versions."""
         everything = msgspec.json.encode([msgspec.to_builtins(self), np.__version__], order="deterministic")
         return hashlib.sha256(everything).hexdigest()
+
+
+def plan_of(
+    source: str | Path | Mapping[str, Any],
+    vary: Iterable[str] | Mapping[str, Sequence[Value]],
+    measure: Iterable[str],
+    analysis: Analysis,
+    overrides: Iterable[str],
+    samples: int | None,
+    seed: int,
+) -> Plan:
+    """The plan that the arguments of `sweep` describe, checked. Raises SweepError, ModelError, OverrideError."""
+    model = models.load(source)
+    document = models.document(model)
+    overrides = tuple(overrides)
+    for override in overrides:
+        apply_override(model, override)
+    variations = read_variations(model, vary)
+    drawn = any(isinstance(variation, Random) for variation in variations)
+    if not variations:
+        raise SweepError(f"Nothing is varied; {FORMS}.")
+    if drawn and samples is None:
+        raise SweepError("What is drawn (~) needs the number of samples; say --samples 1000.")
+    if not drawn and samples is not None:
+        raise SweepError(
+            "--samples goes with a distribution; write PATH~normal(MEAN,DEVIATION), or leave it out."
+        )
+    if samples is not None and samples < 1:
+        raise SweepError(f"--samples {samples}: draw at least 1.")
+    if seed < 0:
+        raise SweepError(f"--seed {seed}: write a whole number from 0 on.")
+    plan = Plan(
+        file_of(source).name,
+        document,
+        overrides,
+        variations,
+        samples or 1,
+        seed,
+        read_measures(model, measure),
+        analysis,
+        SoftwareEnvironment.present(),
+    )
+    if plan.size > MOST_VARIANTS:
+        raise SweepError(
+            f"These are {plan.size} variants; vary in fewer steps, at most {MOST_VARIANTS} together."
+        )
+    return plan

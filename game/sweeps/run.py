@@ -1,24 +1,26 @@
-"""A sweep: many variants of one model, and what was measured of each."""
+"""A sweep: many variants of one model, what was measured of each, and a file that keeps it against a kill."""
 
 from __future__ import annotations
 
+import os
+import time
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO, TextIO
+
+import msgspec
 
 from game.commands.reports.report import Analysis
-from game.documents import models
-from game.documents.open_documents import file_of
-from game.paths.overrides import apply_override
-from game.sweeps.execution import outcomes
-from game.sweeps.installation import Installation
-from game.sweeps.journal import Journal
-from game.sweeps.measure import read_measures
-from game.sweeps.plan import FAILED, Plan
+from game.sweeps.execution import compute_all
+from game.sweeps.plan import FAILED, Outcome, Plan, plan_of
 from game.sweeps.results import Results, check_output
-from game.sweeps.variation import FORMS, MOST_VARIANTS, Random, SweepError, Value, read_variations
+from game.sweeps.variation import SweepError, Value
 
 Progress = Callable[[int, int, int], None]  # done, of how many, failed
+
+_WIDTH = 30
+_EVERY = 0.2  # s
 
 
 def sweep(
@@ -60,11 +62,13 @@ def sweep(
     failed = sum(map(_is_failure, journal.finished.values()))
     missing = [number for number in range(plan.size) if number not in journal.finished]
     progress(len(journal.finished), plan.size, failed)
-    for found in outcomes(plan, missing, workers, scheduler) if missing else ():
-        journal.add(found)
-        failed += sum(_is_failure(records) for _, records in found)
+    faults: Counter[str] = Counter()
+    for part in compute_all(plan, missing, workers, scheduler) if missing else ():
+        journal.add(part.outcomes)
+        faults.update(part.faults)
+        failed += sum(_is_failure(records) for _, records in part.outcomes)
         progress(len(journal.finished), plan.size, failed)
-    results = Results(plan, journal.finished)
+    results = Results(plan, journal.finished, faults)
     if path is not None:
         results.write(path)
         journal.remove()
@@ -75,48 +79,92 @@ def _is_failure(records: Sequence[Sequence[Any]]) -> bool:
     return bool(records[-1][0] == FAILED)
 
 
-def plan_of(
-    source: str | Path | Mapping[str, Any],
-    vary: Iterable[str] | Mapping[str, Sequence[Value]],
-    measure: Iterable[str],
-    analysis: Analysis,
-    overrides: Iterable[str],
-    samples: int | None,
-    seed: int,
-) -> Plan:
-    """What is to be computed, read and checked; see `sweep`. Raises SweepError, ModelError, OverrideError."""
-    model = models.load(source)
-    document = models.document(model)
-    overrides = tuple(overrides)
-    for override in overrides:
-        apply_override(model, override)
-    variations = read_variations(model, vary)
-    drawn = any(isinstance(variation, Random) for variation in variations)
-    if not variations:
-        raise SweepError(f"Nothing is varied; {FORMS}.")
-    if drawn and samples is None:
-        raise SweepError("What is drawn (~) needs the number of samples; say --samples 1000.")
-    if not drawn and samples is not None:
-        raise SweepError(
-            "--samples goes with a distribution; write PATH~normal(MEAN,DEVIATION), or leave it out."
-        )
-    if samples is not None and samples < 1:
-        raise SweepError(f"--samples {samples}: draw at least 1.")
-    if seed < 0:
-        raise SweepError(f"--seed {seed}: write a whole number from 0 on.")
-    plan = Plan(
-        file_of(source).name,
-        document,
-        overrides,
-        variations,
-        samples or 1,
-        seed,
-        read_measures(model, measure),
-        analysis,
-        Installation.present(),
+class Journal:
+    """A file beside the output: one line says which sweep it is of, each other line what some variants came to.
+
+    Lines are only ever added, each in one write; what a kill left of a line is dropped when it is read.
+    Without an output it is kept in memory only.
+    """
+
+    def __init__(self, output: Path | None, plan: Plan) -> None:
+        self.path = None if output is None else output.with_name(output.name + ".journal")
+        self._plan = plan
+        self.finished: dict[int, list[Any]] = {}  # records by number of variant
+
+    def open(self) -> None:
+        """Read what is finished already; begin the file if there is none. Raises SweepError, OSError."""
+        if self.path is None:
+            return
+        title = msgspec.json.encode({"pinjoint sweep": self._plan.fingerprint()})
+        with open(self.path, "a+b") as file:
+            file.seek(0)
+            lines = file.read().split(b"\n")[:-1]  # what follows the last line end is part of a line
+            if len(lines) <= 1:
+                file.truncate(0)
+                _append(file, title)
+                return
+            if lines[0] != title:
+                raise SweepError(
+                    f"{self.path} keeps an unfinished sweep of another model, variation, seed or version."
+                    " Repeat its command to finish it, or delete that file, or choose another --output."
+                )
+            file.truncate(sum(len(line) + 1 for line in lines))
+        for line in lines[1:]:
+            self.finished.update((number, records) for number, records in msgspec.json.decode(line))
+
+    def add(self, outcomes: Sequence[Outcome]) -> None:
+        """Keep what some variants came to; it survives a kill from now on."""
+        if self.path is not None:
+            with open(self.path, "ab") as file:
+                _append(file, msgspec.json.encode(outcomes))
+        self.finished.update(outcomes)
+
+    def remove(self) -> None:
+        """The results are written; nothing is left to keep."""
+        if self.path is not None:
+            self.path.unlink(missing_ok=True)
+
+
+def _append(file: BinaryIO, line: bytes) -> None:
+    file.write(line + b"\n")
+    file.flush()
+    os.fsync(file.fileno())
+
+
+class ProgressBar:
+    """A bar on a terminal; elsewhere, such as in the log of a cluster, a line for every tenth."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._began: tuple[float, int] | None = None
+        self._shown = 0.0
+        self._tenths = 0
+
+    def __call__(self, done: int, total: int, failed: int) -> None:
+        """Show that so many variants are done, of which so many failed."""
+        now = time.monotonic()
+        began, first = self._began = self._began or (now, done)
+        left = (now - began) / (done - first) * (total - done) if done > first else None
+        text = f"{done}/{total} variants" + (f", {failed} failed" if failed else "")
+        text += f", {_duration(left)} left" if left is not None and done < total else ""
+        if self._stream.isatty():
+            if now - self._shown >= _EVERY or done == total:
+                self._shown = now
+                filled = "█" * (_WIDTH * done // total)
+                self._stream.write(f"\r\x1b[K{filled:░<{_WIDTH}} {text}" + ("\n" if done == total else ""))
+        elif 10 * done // total > self._tenths:
+            self._tenths = 10 * done // total
+            self._stream.write(text + "\n")
+        self._stream.flush()
+
+
+def _duration(seconds: float) -> str:
+    minutes, seconds = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return (
+        f"{hours:d} h {minutes:02d} min"
+        if hours
+        else f"{minutes:d} min {seconds:02d} s"
+        if minutes
+        else f"{seconds:d} s"
     )
-    if plan.size > MOST_VARIANTS:
-        raise SweepError(
-            f"These are {plan.size} variants; vary in fewer steps, at most {MOST_VARIANTS} together."
-        )
-    return plan

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -13,29 +13,30 @@ from numpy.typing import NDArray
 from components.collision_state import PersistentContacts
 from components.model import Model
 from components.obstacles import any_obstacles, obstacles
-from systems.base import Driver, Law, StepSystem
+from systems.base import Integrator, Law, StepSystem
 from systems.broad_phase import nearest
 
 REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
-PULLED_PARTICLES = 8  # up to which an integrator follows a hand's force within a step
 
 
 class Collision(StepSystem):
     """Impacts between discs, detected at their exact times.
 
-    The system brings no kernel of its own: it makes the plan detect impacts (`detects_impacts`). Steps of an integrator
-    then end at impacts (driven/stepper.py); a plan of nothing else flies from impact to impact (free/flight.py).
+    The system brings no kernel of its own: it declares that it acts at instants (`impulsive`). Steps of an integrator
+    then end at impacts (driven/stepper.py); a plan whose systems all leave flight exact needs none (free/flight.py).
     """
 
     name = "collision.discs"
     unneeded = "no two particles, and no particle and obstacle, can meet; or settings.collisions is off"
     reads = ("particles.radius", "particles.mobility", "settings.restitution")
     writes = ("particles.velocity", "clock.collisions", "clock.dissipated_impact")
-    detects_impacts = True
-    allows_free_flight = True
+    impulsive = True
 
     def needs(self, model: Model) -> bool:
         return model.settings.collisions and can_touch(model)
+
+    def leaves_flight_exact(self, model: Model) -> bool:
+        return True
 
 
 def can_touch(model: Model) -> bool:
@@ -52,17 +53,6 @@ def can_touch(model: Model) -> bool:
     between = model.rods.between
     joined = movable[between[:, 0]] | movable[between[:, 1]]
     return pairs > int(joined.sum())
-
-
-def detects_impacts(plan: Sequence[StepSystem]) -> bool:
-    """True if particles of this plan collide."""
-    return any(system.detects_impacts for system in plan)
-
-
-def flies_free(plan: Sequence[StepSystem], model: Model) -> bool:
-    """True if the particles of this plan move on exact paths between impacts, and need no integrator."""
-    few = len(plan) > 1 and model.particles.count <= PULLED_PARTICLES
-    return detects_impacts(plan) and all(system.allows_free_flight for system in plan) and not few
 
 
 class Support(Law):
@@ -125,11 +115,12 @@ def support_forces(
     return total
 
 
-class FreeFlight(Driver):
-    """Exact: particles fly on parabolas from impact to impact; the step size does not matter."""
+class FreeFlight(Integrator):
+    """Exact: particles fly on parabolas from impact to impact, whatever the step."""
 
     name = "collision.free_flight"
     controlled = True
+    exact = True
 
     @staticmethod
     def stable_step(frequency: float, decay: float) -> float:

@@ -18,6 +18,7 @@ from systems.base import Law
 from systems.edit.arrows import COMFORTABLE, usual_force
 
 FOLLOWS_WITHIN = 0.5  # s shown, the period of a free particle on the spring
+FOLLOWED_CLOSELY = 8  # particles without rods, among which the hand's force is followed within a step
 STEPS_PER_RADIAN = 5.0  # at least, so that the spring does not upset the integration
 
 
@@ -45,7 +46,6 @@ class Pull(Law):
     reads = ("particles.displacement", "particles.velocity")
     adds = ("particles.force",)
     account = "work"
-    allows_free_flight = True  # the force may be constant during a step
 
     def __init__(self) -> None:
         self.hand: Hand | None = None
@@ -53,6 +53,10 @@ class Pull(Law):
 
     def needs(self, model: Model) -> bool:
         return self.hand is not None and self.hand.particle.exists
+
+    def leaves_flight_exact(self, model: Model) -> bool:
+        """Among many particles the force may be taken to be constant during a step."""
+        return model.particles.count > FOLLOWED_CLOSELY
 
     def take(self, hand: Hand | None) -> None:
         """Pull by this hand from now on, or let go. The step program must be bound anew."""

@@ -1,6 +1,6 @@
-"""Drivers: the integrators, how accurate each is, up to which step it is stable, and when to choose it.
+"""Integrators: how accurate each is, up to which step it is stable, and when to choose it.
 
-Their kernels are source, in fixed_steps.py, runge_kutta.py and implicit.py.
+Their functions are templates: fixed_steps.py, runge_kutta.py and implicit.py in systems/program/templates.
 """
 
 from __future__ import annotations
@@ -8,43 +8,19 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from systems.base import Driver
+from components import settings
+from systems.base import Integrator
 from systems.physics.tableaus import CLASSICAL, DORMAND_PRINCE_8, KENNEDY_CARPENTER_4, Tableau
 
-_RUNGE_KUTTA = "systems.physics.runge_kutta"
-_IMPLICIT = "systems.physics.implicit"
-_FIXED_STEPS = "systems.physics.fixed_steps"
+_RUNGE_KUTTA = "systems.program.templates.runge_kutta"
+_IMPLICIT = "systems.program.templates.implicit"
+_FIXED_STEPS = "systems.program.templates.fixed_steps"
 
 _CHECKS = (f"{_FIXED_STEPS}:is_check_due", f"{_FIXED_STEPS}:steps_to_check")
 _PLAIN = (*_CHECKS, f"{_FIXED_STEPS}:push")
-_CONTROLLED = (
-    *_CHECKS,
-    *(
-        f"{_RUNGE_KUTTA}:{part}"
-        for part in (
-            "extrapolate",
-            "accelerate",
-            "error_of",
-            "combine",
-            "begin_search",
-            "narrow",
-            "aim",
-            "follow",
-        )
-    ),
-)
-
-_CONTROL = ("TIME", "STEP", "ERROR", "LARGEST_X", "LARGEST_V")
-_SEARCH = ("NEAR", "FAR", "NEAR_GAP", "FAR_GAP", "MOVED", "ENDED", "LENGTH", "TRIAL_X", "TRIAL_V", "LONGEST")
-SEARCH = len(_SEARCH)
-_PLACES = {name: place for names in (_CONTROL, _SEARCH) for place, name in enumerate(names)}
-
-
-class Integrator(Driver):
-    """What all integrators read and write."""
-
-    reads = ("particles.mobility",)
-    writes = ("particles.displacement", "particles.velocity", "clock.time")
+_SEARCHED = ("extrapolate", "accelerate", "error_of", "combine", "begin_search", "narrow", "aim", "follow")
+_CONTROLLED = (*_CHECKS, *(f"{_RUNGE_KUTTA}:{part}" for part in _SEARCHED))
+_SOLVED = ("relax", "precondition", "multiply", "correct", "size_of", "implicit_stages=stages")
 
 
 class VelocityVerlet(Integrator):
@@ -56,7 +32,6 @@ class VelocityVerlet(Integrator):
 
     name = "physics.velocity_verlet"
     parts = _PLAIN
-    side_by_side = f"{_FIXED_STEPS}_lanes"
     begins = f"{_FIXED_STEPS}:verlet_begins"
     ends = f"{_FIXED_STEPS}:verlet_ends"
     order: ClassVar[int] = 2
@@ -77,7 +52,6 @@ class SemiImplicitEuler(Integrator):
     name = "physics.semi_implicit_euler"
     guard = 2.0
     parts = _PLAIN
-    side_by_side = f"{_FIXED_STEPS}_lanes"
     begins = f"{_FIXED_STEPS}:euler_begins"
     ends = f"{_FIXED_STEPS}:euler_ends"
     order: ClassVar[int] = 1
@@ -96,7 +70,6 @@ class ThesisTaylor(Integrator):
 
     name = "physics.taylor2"
     parts = _PLAIN
-    side_by_side = f"{_FIXED_STEPS}_lanes"
     begins = f"{_FIXED_STEPS}:taylor2_begins"
     ends = f"{_FIXED_STEPS}:taylor2_ends"
     order: ClassVar[int] = 1
@@ -116,27 +89,23 @@ class ThesisTaylor(Integrator):
 
 
 def runge_kutta_constants(tableau: Tableau, proportional: float = 0.0, lengthen: float = 6.0) -> dict[str, Any]:
-    """A tableau's constants and those of the loop around it.
+    """A tableau's constants and those of the loop in runge_kutta.py.
 
     proportional: how much the next step follows the change of the error (0: not at all).
     """
-    return (
-        tableau.constants
-        | _PLACES
-        | {
-            "SHORTEN": 0.2,  # least and
-            "LENGTHEN": lengthen,  # most that a step is multiplied by to get the next
-            "LEAST_ERROR": 1e-4,  # smaller ones say nothing about the next
-            "BEYOND": 1e300,  # the error of a step that has no result
-            "PROPORTIONAL": proportional,
-            "ROUND_OFF_X": 1e-15,  # of the largest displacement: errors below it are not chased
-            "ROUND_OFF_V": 1e-13,  # the same per longest step, for velocities
-            "FIXED_TOLERANCE": 1e-10,  # of implicit stages where nothing else says how exact they must be
-            "SMALLEST_SHARE": 1e-12,  # of the step to try, below which the run is given up
-            "EVENT_FLOOR": 1e-11,  # share of a strength within which an event is located
-            "EVENT_WIDTH": 1e-10,  # share of a step within which it is
-        }
-    )
+    return tableau.constants | {
+        "SHORTEN": 0.2,  # least and
+        "LENGTHEN": lengthen,  # most that a step is multiplied by to get the next
+        "LEAST_ERROR": 1e-4,  # smaller ones say nothing about the next
+        "BEYOND": 1e300,  # the error of a step that has no result
+        "PROPORTIONAL": proportional,
+        "ROUND_OFF_X": 1e-15,  # of the largest displacement: errors below it are not chased
+        "ROUND_OFF_V": 1e-13,  # the same per longest step, for velocities
+        "FIXED_TOLERANCE": 1e-10,  # of implicit stages where nothing else says how exact they must be
+        "SMALLEST_SHARE": 1e-12,  # of the step to try, below which the run is given up
+        "EVENT_FLOOR": 1e-11,  # share of a strength within which an event is located
+        "EVENT_WIDTH": 1e-10,  # share of a step within which it is
+    }
 
 
 class RungeKutta4(Integrator):
@@ -154,7 +123,6 @@ class RungeKutta4(Integrator):
         f"{_RUNGE_KUTTA}:explicit_stages=stages",
         f"{_RUNGE_KUTTA}:attempt",
     )
-    side_by_side = f"{_RUNGE_KUTTA}_lanes"
     order: ClassVar[int] = 4
     controlled = True
     guard = -1.0
@@ -197,12 +165,7 @@ class ImplicitRungeKutta4(Integrator):
     entry = f"{_RUNGE_KUTTA}:advance"
     parts = (
         *_CONTROLLED,
-        f"{_IMPLICIT}:relax",
-        f"{_IMPLICIT}:precondition",
-        f"{_IMPLICIT}:multiply",
-        f"{_IMPLICIT}:correct",
-        f"{_IMPLICIT}:before_size",
-        f"{_IMPLICIT}:implicit_stages=stages",
+        *(f"{_IMPLICIT}:{part}" for part in _SOLVED),
         f"{_RUNGE_KUTTA}:attempt",
     )
     order: ClassVar[int] = 4
@@ -224,3 +187,29 @@ class ImplicitRungeKutta4(Integrator):
     def stable_step(frequency: float, decay: float) -> float:
         """Infinite."""
         return math.inf
+
+
+INTEGRATORS: dict[str, Integrator] = {}  # by the name that models use; components.settings describes them
+
+
+def register_integrator(integrator: Integrator) -> None:
+    """Make an integrator known to models, the command line and the properties."""
+    key = integrator.name.rpartition(".")[2]
+    INTEGRATORS[key] = integrator
+    settings.INTEGRATORS[key] = (integrator.__doc__ or "").strip().partition("\n")[0]
+
+
+def remove_integrator(key: str) -> None:
+    """Let models no longer know an integrator."""
+    del INTEGRATORS[key], settings.INTEGRATORS[key]
+
+
+for _kind in (
+    VelocityVerlet,
+    DormandPrince853,
+    ImplicitRungeKutta4,
+    RungeKutta4,
+    SemiImplicitEuler,
+    ThesisTaylor,
+):
+    register_integrator(_kind())

@@ -2,6 +2,8 @@
 
 import math
 
+from systems.base import StopReason
+from systems.entries import Account, Measure
 from systems.kernels import compiled, part
 
 REST_RESIDUAL = 2e-9  # of the largest force, so that sums of residuals are within 1e-8; larger: rests sooner
@@ -78,53 +80,56 @@ def conserved(measures, account, dt, shadow):
     kinetic + (h/2) f·v + (h²/8) fᵀM⁻¹f, of which the last term cancels.
     What dampers take is left out: near the largest stable step it is known too coarsely.
     """
-    kinetic, power_norm, elastic, potential = measures[0], measures[1], measures[2], measures[3]
-    supplied = account[0] + potential - account[5]
-    lost = account[2] + account[3]
+    kinetic, elastic = measures[Measure.KINETIC], measures[Measure.ELASTIC]
+    supplied = account[Account.WORK] + measures[Measure.POTENTIAL] - account[Account.POTENTIAL_REFERENCE]
+    lost = account[Account.DISSIPATED_PLASTIC] + account[Account.DISSIPATED_IMPACT]
     if shadow == 2.0:
-        return kinetic + 0.5 * dt * measures[7] + elastic + lost - supplied
-    return kinetic + elastic - max(shadow, 0.0) * dt * dt / 8.0 * power_norm + lost - supplied
+        return kinetic + 0.5 * dt * measures[Measure.POWER] + elastic + lost - supplied
+    missing = max(shadow, 0.0) * dt * dt / 8.0 * measures[Measure.POWER_NORM]
+    return kinetic + elastic - missing + lost - supplied
 
 
 @part()
 def judge(measures, account, dt, shadow, ahead, loads_are_over):
-    """Decide from the measures of a state whether the run stops: 0 go on, 2 rest, 3 diverged.
+    """The StopReason that follows from the measures of a state: DONE (go on), REST or DIVERGED.
 
-    measures: kinetic energy, Σ fᵀM⁻¹f, elastic energy, potential of constant forces (all J), residual,
-        largest force and round-off of the forces (kN), power f·v of all forces (W).
-    account: the accounts, then initial energy, potential reference, force scale, energy scale, guard energy.
+    measures, account: see Measure and Account in systems/entries.py; the scales in `account` are kept up to date.
     shadow: 1 if the integrator conserves kinetic − (h²/8) fᵀM⁻¹f + elastic, 2 if it does with velocities
-        half a step earlier, -1 if it is as exact as its tolerance, else 0. ahead: what varying loads will
-        supply in the next step (J); after a jump they have moved the mass but done no work yet.
+        half a step earlier, -1 if it is as exact as its tolerance, else 0.
+    ahead: energy that varying loads will supply in the next step (J); after a jump they have moved the mass but
+        done no work yet.
 
     Diverged: energy came from nowhere, more than a share of all that was supplied (or, where nothing is
     conserved, of what one step can move) and of what yielding took. Beyond the stable step Verlet conserves
     its energy too, while the second term grows past the elastic energy, and both past all that was supplied.
-    Rest: REQUIREMENTS' residual and a kinetic energy to match it, relative to the present forces or, in a
-    model that swings out to nothing, to a small part of the largest ever.
+    Rest: the largest residual and the kinetic energy are small relative to the present forces or, in a model that
+    swings out to nothing, to a small part of the largest ever.
     """
-    kinetic, power_norm, elastic, potential = measures[0], measures[1], measures[2], measures[3]
-    residual, largest, round_off = measures[4], measures[5], measures[6]
-    supplied = account[0] + potential - account[5]
+    kinetic, elastic = measures[Measure.KINETIC], measures[Measure.ELASTIC]
+    power_norm, largest = measures[Measure.POWER_NORM], measures[Measure.LARGEST_FORCE]
+    work, begun = account[Account.WORK], account[Account.INITIAL_ENERGY]
+    supplied = work + measures[Measure.POTENTIAL] - account[Account.POTENTIAL_REFERENCE]
     deficit = min(max(shadow, 0.0), 1.0) * dt * dt / 8.0 * power_norm
-    swinging = kinetic + 0.5 * dt * measures[7] + deficit if shadow == 2.0 else kinetic
-    created = conserved(measures, account, dt, shadow) - account[8]
+    swinging = kinetic + 0.5 * dt * measures[Measure.POWER] + deficit if shadow == 2.0 else kinetic
+    created = conserved(measures, account, dt, shadow) - account[Account.GUARD_ENERGY]
     if shadow < 0.0:
-        created = min(created, kinetic + elastic - supplied - account[4])
-    account[6] = max(account[6], largest)
-    supply = max(abs(account[4]), abs(account[0]), abs(supplied), ahead)
+        created = min(created, kinetic + elastic - supplied - begun)
+    account[Account.FORCE_SCALE] = max(account[Account.FORCE_SCALE], largest)
+    supply = max(abs(begun), abs(work), abs(supplied), ahead)
     wobble = min(dt * dt * power_norm, WOBBLE_SHARE * supply) if shadow == 0.0 else 0.0
-    account[7] = max(account[7], supply, wobble)
-    bound = DIVERGENCE_SHARE * account[7] + YIELDING_SHARE * account[2] + SMALLEST_ENERGY
+    account[Account.ENERGY_SCALE] = max(account[Account.ENERGY_SCALE], supply, wobble)
+    scale = account[Account.ENERGY_SCALE]
+    bound = DIVERGENCE_SHARE * scale + YIELDING_SHARE * account[Account.DISSIPATED_PLASTIC] + SMALLEST_ENERGY
     if not created <= bound:
-        return 3
-    if min(max(swinging, elastic), deficit - elastic) > INSTABILITY_SHARE * account[7] + SMALLEST_ENERGY:
-        return 3
-    still_force = max(REST_RESIDUAL * max(largest, SMALL_SHARE * account[6]), 8.0 * round_off)
-    still_energy = REST_RESIDUAL**2 * max(elastic, SMALL_SHARE**2 * account[7])
-    if loads_are_over and residual <= still_force and kinetic <= still_energy:
-        return 2
-    return 0
+        return StopReason.DIVERGED
+    if min(max(swinging, elastic), deficit - elastic) > INSTABILITY_SHARE * scale + SMALLEST_ENERGY:
+        return StopReason.DIVERGED
+    still_force = REST_RESIDUAL * max(largest, SMALL_SHARE * account[Account.FORCE_SCALE])
+    still_energy = REST_RESIDUAL**2 * max(elastic, SMALL_SHARE**2 * scale)
+    is_still = measures[Measure.RESIDUAL] <= max(still_force, 8.0 * measures[Measure.ROUND_OFF])
+    if loads_are_over and is_still and kinetic <= still_energy:
+        return StopReason.REST
+    return StopReason.DONE
 
 
 @part()

@@ -1,4 +1,4 @@
-"""Rest: the rule by which a run ends, judge() of kernels.py, applied to each island of a model by itself."""
+"""Rest: the rule by which a run ends, judge() in kernels.py, for each island of a model by itself."""
 
 from __future__ import annotations
 
@@ -8,17 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.model import Model
+from systems.entries import MEASURED, Measure
 from systems.islands import Rows
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-_BEYOND = np.errstate(over="ignore", invalid="ignore")  # what is no finite number is not at rest
+_BEYOND = np.errstate(over="ignore", invalid="ignore")  # a number that is not finite is not at rest
 
 
 @dataclass(frozen=True)
-class Stillness:
-    """What tells how still the particles and rods of a model are, row by row.
+class RestMeasure:
+    """How near to rest the particles and rods of a model are, row by row.
 
     residual: unbalanced force on particles where they are free (kN). kinetic: energy of particles (J). load, pull:
     largest force on particles, and in rods (kN). elastic: energy of rods (J). round_off: of forces in rods (kN).
@@ -33,8 +34,8 @@ class Stillness:
 
     @classmethod
     @_BEYOND
-    def of(cls, model: Model, unbalanced: Array) -> Stillness:
-        """That of the state last observed, by the forces on the particles but those of dampers and drag (kN)."""
+    def of(cls, model: Model, unbalanced: Array) -> RestMeasure:
+        """That of the state last observed. unbalanced: force on each particle without dampers and drag (kN)."""
         particles, rods = model.particles, model.rods
         pull, flexibility = np.abs(rods.axial_force), rods.rest_length / rods.stiffness
         moved = np.abs(particles.displacement).max(axis=1, initial=0.0)
@@ -51,7 +52,11 @@ class Stillness:
     def at_rest(
         self, of_particle: Rows, of_rod: Rows, force_scale: Array | float, energy_scale: Array | float
     ) -> Mask:
-        """Which islands are at rest, given those of the particles and rods, and what clocks say of all or of each."""
+        """Which islands are at rest.
+
+        of_particle, of_rod: the island of each. force_scale (kN), energy_scale (J): of the clock, one for all islands
+        or one for each.
+        """
         from systems.physics.kernels import (
             REST_RESIDUAL,
             SMALL_SHARE,
@@ -71,20 +76,20 @@ class Stillness:
         return rest
 
     def measures(self, model: Model, particles: Mask, rods: Mask) -> Array:
-        """What a step program measures, of these particles and rods at rest, shape (8,)."""
-        at_rest, constant = model.particles.displacement[particles], model.particles.constant_force[particles]
-        return np.array(
-            [
-                0.0,
-                0.0,
-                self.elastic[rods].sum(),
-                1000.0 * (constant * at_rest).sum(),
-                self.residual[particles].max(initial=0.0),
-                max(self.load[particles].max(initial=0.0), self.pull[rods].max(initial=0.0)),
-                self.round_off[rods].max(initial=0.0),
-                0.0,
-            ]
+        """The measures of these particles and rods at rest, shape (8,)."""
+        displacement, constant = (
+            model.particles.displacement[particles],
+            model.particles.constant_force[particles],
         )
+        measures = np.zeros(len(Measure))
+        measures[Measure.ELASTIC] = self.elastic[rods].sum()
+        measures[Measure.POTENTIAL] = 1000.0 * (constant * displacement).sum()
+        measures[Measure.RESIDUAL] = self.residual[particles].max(initial=0.0)
+        measures[Measure.LARGEST_FORCE] = max(
+            self.load[particles].max(initial=0.0), self.pull[rods].max(initial=0.0)
+        )
+        measures[Measure.ROUND_OFF] = self.round_off[rods].max(initial=0.0)
+        return measures[MEASURED]
 
 
 def _largest(count: int, *values: tuple[Rows, Array]) -> Array:

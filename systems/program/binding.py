@@ -6,13 +6,14 @@ import importlib
 import inspect
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from enum import Enum
 from typing import Any
 
 from numpy.typing import NDArray
 
 from components.field import Role
 from components.model import Model
-from systems.base import ACCOUNTS, Commit, Driver, Law, StepSystem
+from systems.base import ACCOUNTS, Commit, Integrator, Law, StepSystem
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
 PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for
@@ -38,6 +39,22 @@ class ProgramError(ValueError):
     """A step system that cannot join the program; the message names it, the reason and the remedy."""
 
     system: StepSystem | None = None
+
+
+class StepRole(Enum):
+    """How the result of a kernel enters a step, in the order in which the kernels follow from each other."""
+
+    PARTICLE_FORCE = "adds to the force on a particle"
+    RESISTANCE = "adds to the force that resists a particle's motion"
+    LOAD = "is the factor of a load"
+    HISTORY = "is the history of a rod"
+    SUMMED = "adds to the axial force of a rod"
+    REPLACING = "replaces the axial force of a rod, which it is given"
+    LATE_HISTORY = "is the history of a rod, by its axial force"
+    RATE = "adds to the force of a rod's dampers"
+
+
+HISTORIES = (StepRole.HISTORY, StepRole.LATE_HISTORY)
 
 
 @dataclass(frozen=True)
@@ -71,11 +88,6 @@ class Bound:
         return self.system.account if isinstance(self.system, Law | Commit) else ACCOUNTS[0]
 
     @property
-    def slot(self) -> int:
-        """The place of its account among all."""
-        return ACCOUNTS.index(self.account)
-
-    @property
     def follows_time(self) -> bool:
         """Whether what it does changes while nothing moves; of loads their histories know when that ends."""
         times = ("time",) if self.each else ("time", "dt")
@@ -88,9 +100,35 @@ class Bound:
         return self.each == "loads" or not (told or self.follows_time)
 
     @property
-    def replaces(self) -> bool:
-        """Whether a law of rods is given the sum of the others, and its result replaces it."""
-        return "axial_force" in self.parameters and "rate" not in self.parameters
+    def role(self) -> StepRole:
+        """How the result of its kernel enters a step; the kernel's parameters tell."""
+        given = set(self.parameters)
+        if self.each == "loads":
+            return StepRole.LOAD
+        if self.each == "particles":
+            return StepRole.RESISTANCE if "particles_velocity" in given else StepRole.PARTICLE_FORCE
+        if self.each == "":
+            return StepRole.LATE_HISTORY if "axial_force" in given else StepRole.HISTORY
+        if "rate" in given:
+            return StepRole.RATE
+        return StepRole.REPLACING if "axial_force" in given else StepRole.SUMMED
+
+
+def by_role(bound: Iterable[Bound]) -> dict[StepRole, list[Bound]]:
+    """The laws and commits of each role, in the order of a step.
+
+    Laws whose results add up go by name. The others, of which each takes the result of the one before, keep their
+    order, the schedule's.
+    """
+    keep_order = (*HISTORIES, StepRole.REPLACING)
+    found: dict[StepRole, list[Bound]] = {role: [] for role in StepRole}
+    for b in bound:
+        if isinstance(b.system, Law | Commit):
+            found[b.role].append(b)
+    return {
+        role: some if role in keep_order else sorted(some, key=lambda b: b.system.name)
+        for role, some in found.items()
+    }
 
 
 def bind(system: StepSystem, model: Model, kernel: str = "kernel") -> Bound:
@@ -213,7 +251,7 @@ def _is_column(name: str, model: Model) -> bool:
     return table in model.tables and column in model.tables[table].fields
 
 
-def explain(bound: Iterable[Bound], driver: Driver, model: Model, error: Exception) -> ProgramError:
+def explain(bound: Iterable[Bound], integrator: Integrator, model: Model, error: Exception) -> ProgramError:
     """Why a program did not compile: the first kernel that fails by itself or returns the wrong thing."""
     for b in bound:
         problem = problem_of(b, model)
@@ -221,8 +259,8 @@ def explain(bound: Iterable[Bound], driver: Driver, model: Model, error: Excepti
             found = ProgramError(problem)
             found.system = b.system
             return found
-    found = ProgramError(f"The step program of {driver.name} does not compile: {_brief(error)}")
-    found.system = driver
+    found = ProgramError(f"The step program of {integrator.name} does not compile: {_brief(error)}")
+    found.system = integrator
     return found
 
 

@@ -1,4 +1,4 @@
-"""Compiling the source of a step program, with a cache on disk."""
+"""Compiling generated modules, step programs above all, with a cache on disk that processes share."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Mapping
-from enum import Enum, EnumType
-from functools import cache
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import cache, cached_property
 from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any
@@ -24,7 +25,7 @@ from platformdirs import user_cache_path
 def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
     """All that decides what these compiled functions compute: code, options, what they refer to or call.
 
-    Taken from the functions as they are in memory, for their files may have changed since, or be none.
+    Read from the functions in memory: their files may have changed since they were imported.
     """
     parts: list[str] = []
     pending, seen = list(functions), set[Callable[..., Any]]()
@@ -33,6 +34,9 @@ def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
         if function in seen:
             continue
         seen.add(function)
+        if isinstance(function, type):
+            parts.append(_constant(function))
+            continue
         plain = getattr(function, "py_func", function)
         parts += [
             f"{plain.__module__}.{plain.__qualname__}",
@@ -47,7 +51,7 @@ def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
 
 
 def _used_by(plain: Callable[..., Any]) -> dict[str, Any]:
-    """What a function takes from around it: closure, globals, and attributes of modules among these."""
+    """The names that a function takes from outside: closure, globals, and attributes of modules among these."""
     outside = inspect.getclosurevars(plain)
     used: dict[str, Any] = {**outside.globals, **outside.nonlocals}
     for name, value in list(used.items()):
@@ -65,9 +69,8 @@ def _described(code: CodeType) -> str:
 def _constant(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return repr((value.dtype.str, value.shape, value.tobytes()))
-    if isinstance(value, EnumType):  # named columns
-        members: Mapping[str, Enum] = value.__members__
-        return repr([(name, member.value) for name, member in members.items()])
+    if isinstance(value, type) and issubclass(value, IntEnum):
+        return repr((value.__name__, [(member.name, member.value) for member in value]))
     plain = isinstance(value, bool | int | float | complex | str | tuple | None | np.generic)
     return repr(value) if plain else type(value).__name__
 
@@ -76,7 +79,7 @@ def _constant(value: Any) -> str:
 def cache_folder() -> Path:
     """A folder for generated modules that can be written to: the user's cache, or a temporary one.
 
-    What lies there is run, so a temporary folder that somebody else may have made is not used.
+    Modules in it are run: a folder of another owner is not used.
     """
     owner = os.getuid() if hasattr(os, "getuid") else 0
     shared = Path(tempfile.gettempdir()) / f"pinjoint-programs-{owner}"
@@ -93,7 +96,7 @@ def cache_folder() -> Path:
 
 
 _modules: dict[str, ModuleType] = {}
-_compiled = set[str]()  # of these, those of which this process has called all
+_compiled = set[str]()  # names of modules all functions of which this process has called
 
 
 def compile_module(source: str, kernels: Mapping[str, Callable[..., Any]]) -> ModuleType:
@@ -121,14 +124,50 @@ def _name_of(source: str, kernels: Mapping[str, Callable[..., Any]]) -> str:
     import numba
     from numba.core.registry import cpu_target
 
+    from systems.kernels import PLAIN
+
     processor = repr(cpu_target.target_context.codegen().magic_tuple())
     meaning = _meaning_of(kernels[name] for name in sorted(kernels))
-    everything = "\n".join([source, meaning, numba.__version__, sys.version, processor])
+    everything = "\n".join([source, meaning, numba.__version__, sys.version, processor, f"plain: {PLAIN}"])
     return "pinjoint_program_" + hashlib.sha256(everything.encode()).hexdigest()[:24]
 
 
+@dataclass(frozen=True)
+class CompiledUnit:
+    """A generated module that is the same for every model: the drawing, or one of the engines of collisions.
+
+    name: by which a process that compiles ahead of need knows it. contents: gives its source, and the kernels by the
+    names that the source calls them; imports these. warm_up: calls all its functions, whereby numba compiles them or
+    loads them from the cache; not needed where their types are declared.
+    """
+
+    name: str
+    contents: Callable[[], tuple[str, Mapping[str, Callable[..., Any]]]]
+    warm_up: Callable[[], None] = lambda: None
+
+    @cached_property
+    def module(self) -> ModuleType:
+        """The module; what was not called yet may still have to be compiled."""
+        return compile_module(*self.contents())
+
+    @cached_property
+    def _module_name(self) -> str:
+        return _name_of(*self.contents())
+
+    def is_compiled(self) -> bool:
+        """True if it need only be loaded."""
+        return _is_noted(self._module_name)
+
+    def load(self) -> ModuleType:
+        """The module with all its functions ready; compiled first, if nobody has."""
+        if self._module_name not in _compiled:
+            self.warm_up()
+            note_compiled(self.module)
+        return self.module
+
+
 def load_compiler() -> None:
-    """Import the compiler and let it get ready, which takes longer than to load what it once compiled."""
+    """Import and start up the compiler, which takes longer than loading a compiled module."""
     from numba import njit
 
     njit("int64(int64)")(lambda number: number)
@@ -136,24 +175,27 @@ def load_compiler() -> None:
 
 def is_compiled(source: str, kernels: Mapping[str, Callable[..., Any]]) -> bool:
     """True if another process, or an earlier one, has compiled all of this module."""
-    name = _name_of(source, kernels)
+    return _is_noted(_name_of(source, kernels))
+
+
+def _is_noted(name: str) -> bool:
     return name in _compiled or (cache_folder() / f"{name}.done").exists()
 
 
 def is_blank() -> bool:
-    """True if nothing at all is compiled yet, as when the program is started for the first time."""
+    """True if nothing at all is compiled yet: the program is started for the first time."""
     return next(cache_folder().glob("*.done"), None) is None
 
 
 def note_compiled(module: ModuleType) -> None:
-    """Let other processes know that all of a module is compiled, and later ones that it is in use."""
+    """Note on disk that all of a module is compiled, and when it was last used."""
     _compiled.add(module.__name__)
     with contextlib.suppress(OSError):
         (cache_folder() / f"{module.__name__}.done").touch()
 
 
 def forget_unused(days: float = 60.0) -> None:
-    """Delete modules that no program has used for so many days, of former versions mostly."""
+    """Delete modules unused for so many days, mostly of former versions."""
     folder = cache_folder()
     for done in folder.glob("pinjoint_program_*.done"):
         with contextlib.suppress(OSError):
@@ -163,7 +205,7 @@ def forget_unused(days: float = 60.0) -> None:
 
 
 def _write_once(path: Path, text: str) -> None:
-    """Write a file unless it is there with this text; other processes never see a part of it."""
+    """Write a file unless it is there with this text, in one go: no other process reads a part of it."""
     if path.exists() and path.read_text(encoding="utf-8") == text:
         return
     handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")

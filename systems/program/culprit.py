@@ -12,7 +12,7 @@ from components.snapshot import Snapshot
 from systems.base import Mod, StepSystem
 from systems.program.binding import ProgramError, bind
 from systems.program.program import Program
-from systems.program.rows import in_turn
+from systems.program.reference_laws import in_turn
 from systems.program.writer import REVIEW_INTERVAL
 
 STATE = ("particles.displacement", "particles.velocity")
@@ -37,7 +37,7 @@ def find_culprit(program: Program, safe: Snapshot) -> Mod | None:
     model = program.model
     if not any(system.mod for system in program.systems):
         return None
-    if _finite(model):  # as a driver that controls its steps leaves it
+    if _finite(model):  # as a integrator that controls its steps leaves it
         good = Snapshot.take(model)
         _move_ahead(model)
     else:

@@ -8,8 +8,10 @@ What one stage leaves for the next is in one scratch array; the loop that comput
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+
+from systems.program.pasting import indented
 
 CHUNK = 64  # rods that go through the stages together: what they need stays in the nearest cache
 _APART = 7  # columns that LLVM makes sure at run time not to overlap scratch; more, and it does not vectorise
@@ -111,8 +113,3 @@ class RodLoop:
 def _entry(element: tuple[str, str]) -> str:
     name, part = element
     return f"{name}_[k, {part}]" if part else f"{name}_[k]"
-
-
-def indented(lines: Iterable[str], levels: int = 1) -> list[str]:
-    """The lines, so many levels deeper."""
-    return ["    " * levels + line for line in lines]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from components.field import Column
 from components.model import Model
-from systems.base import Driver, StepSystem
+from systems.base import Integrator, StepSystem
 from systems.program.blocks import Layout
 from systems.program.cores import cores
 from systems.program.program import Program
@@ -26,7 +26,7 @@ _WORTHWHILE = 100_000  # rods from which another, that takes 50 of them, is wort
 def make_program(
     model: Model,
     systems: Sequence[StepSystem],
-    driver: Driver,
+    integrator: Integrator,
     form: str = "",
     moving: NDArray[np.bool_] | None = None,
 ) -> Program:
@@ -34,12 +34,12 @@ def make_program(
 
     moving: which particles it moves, as in ArrangedProgram; None: all.
     """
-    form = form or form_of(model, driver)
+    form = form or form_of(model, integrator)
     if form == VERY_MANY:
-        return BlockProgram(model, systems, driver, form, moving)
+        return BlockProgram(model, systems, integrator, form, moving)
     if moving is not None:
-        return ArrangedProgram(model, systems, driver, form, moving)
-    return Program(model, systems, driver, form)
+        return ArrangedProgram(model, systems, integrator, form, moving)
+    return Program(model, systems, integrator, form)
 
 
 class BlockProgram(ArrangedProgram):

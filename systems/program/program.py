@@ -1,7 +1,8 @@
-"""Step programs: laws, commits and a driver, compiled into one and bound to the columns of a model."""
+"""Step programs: laws, commits and an integrator, compiled into one and bound to the columns of a model."""
 
 from __future__ import annotations
 
+import inspect
 import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -12,23 +13,14 @@ import numpy as np
 from components.field import Column, Role
 from components.load import load_breaks, loads_end
 from components.model import Model
-from systems.base import ACCOUNTS, Driver, StepSystem, StopReason
-from systems.physics.integrators import SEARCH
+from systems.base import Integrator, StepSystem, StopReason
+from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search
 from systems.program.binding import bind, explain
 from systems.program.block_writer import BlockWriter
 from systems.program.compiler import compile_module, is_compiled, note_compiled
-from systems.program.controlled_writer import MARKS, ControlledWriter
-from systems.program.writer import VERY_MANY, Writer, form_of
+from systems.program.controlled_writer import ControlledWriter
+from systems.program.writer import STATE, VERY_MANY, Writer, form_of
 
-ACCOUNT = (
-    *ACCOUNTS,
-    "initial_energy",
-    "potential_reference",
-    "force_scale",
-    "energy_scale",
-    "guard_energy",
-)
-CONTROL = ("time", "step_size", "step_error", "largest_displacement", "largest_speed")
 _ORIGIN = ("origin", "step_limit")
 _COUNTS = ("steps", "origin_steps")
 _OF_PARTICLES = ("displacement", "velocity")
@@ -36,40 +28,40 @@ OBSERVED = {
     "particles": ("applied_force", "reaction"),
     "rods": ("axial_force", "length", "strain", "yielding"),
 }
-_GIVEN = ("particles.fixed", "rods.tension_limit", "rods.compression_limit")
+_GIVEN = {"fixed": "particles.fixed", "tension": "rods.tension_limit", "compression": "rods.compression_limit"}
 _REASONS = tuple(StopReason)
 
 
-def _writer(model: Model, systems: Sequence[StepSystem], driver: Driver, form: str) -> Writer:
+def _writer(model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> Writer:
     joining = [system for system in systems if system.kernel]
     plain = BlockWriter if form == VERY_MANY else Writer
-    return (ControlledWriter if driver.controlled else plain)(model, joining, driver, form)
+    return (ControlledWriter if integrator.controlled else plain)(model, joining, integrator, form)
 
 
-def has_program(model: Model, systems: Sequence[StepSystem], driver: Driver, form: str = "") -> bool:
+def has_program(model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str = "") -> bool:
     """True if the program of this plan, in the form that suits the model or another, need only be loaded."""
-    writer = _writer(model, systems, driver, form or form_of(model, driver))
-    return is_compiled(writer.source(), writer.kernels)
+    writer = _writer(model, systems, integrator, form or form_of(model, integrator))
+    return is_compiled(writer.source(), writer.names)
 
 
 class Program:
     """A compiled step program, bound to the columns of one model.
 
-    measures: kinetic, fᵀM⁻¹f, elastic, potential energy (J), residual, largest force, round-off (kN) and power
-        (W) of the state last observed; then those of what it does not move, which are in them.
-    follows_state: loads apart, what is at rest stays so, for forces follow from nothing but the state.
-    module: what is compiled. tolerance: of each step; 0 where the error is not controlled.
-    compile_seconds: what writing and compiling it took, or loading it from the cache.
+    source: the whole program as plain Python; to understand a step, read that of a small model first.
+    measures: entries of Measure, of the state last observed.
+    follows_state: forces follow from nothing but the state, loads apart, so that what is at rest stays at rest.
+    module: the compiled functions. tolerance: of each step; 0 where the error is not controlled.
+    compile_seconds: time that writing and compiling it took, or loading it from the cache.
     """
 
-    def __init__(self, model: Model, systems: Sequence[StepSystem], driver: Driver, form: str) -> None:
+    def __init__(self, model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> None:
         started = time.perf_counter()
         self.model = model
         self.systems = tuple(system for system in systems if system.kernel)
-        self.driver = driver
-        self._writer = _writer(model, systems, driver, form)
-        self.module = compile_module(self._writer.source(), self._writer.kernels)
-        self.measures = np.zeros(16)
+        self.integrator = integrator
+        self._writer = _writer(model, systems, integrator, form)
+        self.module = compile_module(self._writer.source(), self._writer.names)
+        self.measures = np.zeros(len(Measure))
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self._state_revision = -1
         self.bind()
@@ -77,17 +69,17 @@ class Program:
         self.compile_seconds = time.perf_counter() - started
 
     def _compile(self) -> None:
-        """Call everything once, which makes numba compile it, or load it from the cache."""
+        """Call every function once, which makes numba compile it, or load it from the cache."""
         from numba.core.errors import NumbaError
 
         try:
             self.advance(0)
             self.observe()
-            if self._writer.commits:  # of no rods, since a commit at all changes history
-                state = [array[:0] for array in self._state]
+            if self._writer.commits:  # with no rods: a commit changes history
+                state = [self._arrays[name][:0] for name in STATE]
                 self.module.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
         except NumbaError as error:
-            raise explain(self._writer.bound, self.driver, self.model, error) from error
+            raise explain(self._writer.bound, self.integrator, self.model, error) from error
         note_compiled(self.module)
 
     def _of_no_rods(self) -> list[Column]:
@@ -100,13 +92,13 @@ class Program:
 
     @property
     def source(self) -> str:
-        """What it is compiled from."""
+        """The Python that it is compiled from."""
         return self._writer.source()
 
     @property
-    def kernels(self) -> Mapping[str, Callable[..., Any]]:
-        """What its source calls, by name."""
-        return self._writer.kernels
+    def names(self) -> Mapping[str, Callable[..., Any]]:
+        """What its source refers to: kernels, and enumerations of entries."""
+        return self._writer.names
 
     @property
     def written(self) -> tuple[str, ...]:
@@ -114,13 +106,8 @@ class Program:
         return tuple(path.replace(".", "_", 1) for b in self._writer.commits for path in b.system.writes)
 
     @property
-    def marks(self) -> int:
-        """How many numbers it notes of each rod to locate events."""
-        return MARKS * len(self._writer.branching)
-
-    @property
     def form(self) -> str:
-        """Which of the forms of writer.py it has."""
+        """FEW, MANY or VERY_MANY: see writer.py."""
         return self._writer.form
 
     @property
@@ -136,7 +123,6 @@ class Program:
     def bind(self) -> None:
         """Take hold of the model's columns; needed after every change of its document."""
         model = self.model
-        particles, rods = self._rows("particles"), self._rows("rods")
         extra: dict[str, Any] = {}
         for system in self.systems:
             extra.update(bind(system, model).arrays)
@@ -148,21 +134,15 @@ class Program:
         ]
         self._changes = _by_table_and_role(model, written.values())
         self._bind_clock()
-        self._displacement, self._velocity = (self._storage(f"particles.{name}") for name in _OF_PARTICLES)
-        self._force, self._resisting, self._predicted = (np.zeros((particles, 2)) for _ in range(3))
-        self._direction = np.zeros((rods, 2))
-        self._state = (self._displacement, self._velocity, self._force, self._resisting, self._direction)
-        self._power, self._gained = np.zeros(len(ACCOUNTS)), np.zeros(len(ACCOUNTS))
         self.changes_end = math.inf if self.lasting else loads_end(model)
         self._breaks = np.array([*load_breaks(model), math.inf])
-        self._work = np.zeros((self.driver.particle_rows, particles, 2))
-        self._rod_work = np.zeros((self.driver.rod_rows, rods))
-        self._marks = np.zeros((rods, self.marks))
-        self._stage_power = np.zeros(len(ACCOUNTS))
+        self._arrays = {name: np.zeros(shape) for name, shape in self.scratch.items()}
+        self._arrays |= {name: self._storage(f"particles.{name}") for name in _OF_PARTICLES}
+        self._arrays |= {"control": self._control, "account": self._account, "measures": self.measures}
         self._bind_arguments()
         self._bind_observed()
         settings = model.settings
-        controls = self.driver.estimates_error and settings.time_step is None
+        controls = self.integrator.estimates_error and settings.time_step is None
         self.tolerance = settings.tolerance if controls else 0.0
         self._state_revision = -1
 
@@ -172,7 +152,7 @@ class Program:
         return self._unbalanced
 
     def _rows(self, table: str) -> int:
-        """How many of a table it holds."""
+        """How many elements of a table it holds."""
         return self.model.tables[table].count
 
     def _column(self, path: str) -> Any:
@@ -180,7 +160,7 @@ class Program:
         return self.model.column(path)
 
     def _storage(self, path: str) -> Column:
-        """A column, "table.field", to write to; it is marked as changed whenever that was done."""
+        """A column, "table.field", to write to; after doing so, _mark_changes()."""
         table, _, name = path.partition(".")
         return self.model.tables[table].storage(name)
 
@@ -189,43 +169,56 @@ class Program:
         self._account, self._control = clock.together(ACCOUNT), clock.together(CONTROL)
         self._origin = clock.together(_ORIGIN)
         self._counts = clock.together(_COUNTS)
-        self._search = np.zeros(SEARCH)
+
+    @property
+    def scratch(self) -> dict[str, tuple[int, ...]]:
+        """Shapes of the arrays that its functions write to and nobody reads afterwards, by name."""
+        particles, rods = self._rows("particles"), self._rows("rods")
+        return {
+            **dict.fromkeys(("force", "resisting", "predicted"), (particles, 2)),
+            "direction": (rods, 2),
+            **dict.fromkeys(("power", "gained", "stage_power"), (len(ACCOUNTS),)),
+            "work": (self.integrator.particle_rows, particles, 2),
+            "rod_work": (self.integrator.rod_rows, rods),
+            "marks": (rods, len(Mark) * len(self._writer.branching)),
+            "search": (len(Search),),
+        }
+
+    def _after(self, first: str, entry: str, **given: Any) -> tuple[Any, ...]:
+        """The arguments of a compiled function, bound by name, between its parameter `first` and the columns."""
+        known = self._arrays | given
+        names = list(inspect.signature(getattr(self.module, entry).py_func).parameters)
+        return tuple(known[name] for name in names[names.index(first) + 1 : -len(self._columns)])
 
     def _bind_arguments(self) -> None:
-        """What advance() takes from the end of loads on."""
-        own = [*self._state, self._predicted, self._power, self._gained]
-        if self.driver.controlled:
-            own = [self._control, self._search, *self._state, self._work, self._rod_work, self._marks]
-            own += [self._power, self._gained, self._stage_power]
-        self._arguments = (*own, self._account, self.measures, *self._columns)
+        self._arguments = (*self._after("loads_end", "advance"), *self._columns)
 
     def _bind_observed(self) -> None:
-        """What observe() takes from the end of the state on."""
-        model, zeros = self.model, np.zeros_like
-        applied, reaction, *of_rods = (
-            self._storage(f"{table}.{name}") for table, names in OBSERVED.items() for name in names
-        )
-        for path in _GIVEN:
-            model.column(path)  # up to date
-        self._unbalanced = zeros(self._force)
-        self._observed = (
-            applied,
-            reaction,
-            self._unbalanced,
-            *(zeros(array) for array in (self._resisting, self._direction, self._power)),
-            self.measures,
-            *of_rods,
-            *(self._storage(path) for path in _GIVEN),
-            model.settings.plasticity,
+        derived = {name: f"{table}.{name}" for table, names in OBSERVED.items() for name in names}
+        for path in _GIVEN.values():
+            self.model.column(path)  # brings it up to date
+        storage = {name: self._storage(path) for name, path in (derived | _GIVEN).items()}
+        storage |= {f"rods_{name}": storage[name] for name in ("axial_force", "length", "strain")}
+        apart = {
+            name: np.zeros_like(self._arrays[name]) for name in ("force", "resisting", "direction", "power")
+        }
+        self._unbalanced = apart["force"]
+        self._observed = self._after(
+            "dt",
+            "observe",
+            applied=storage["applied_force"],
+            yields=self.model.settings.plasticity,
+            **storage,
+            **apart,
         )
 
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
         """Take up to `steps` steps; returns how many, and why it stopped.
 
-        A driver that controls its steps takes none that would end after `until` (s), and one that would
+        An integrator that controls its steps takes none that would end after `until` (s), and one that would
         pass `landing` (s) is cut to end there; for others the steps are clock.step_size long.
         """
-        if self.driver.controlled:
+        if self.integrator.controlled:
             return self._advance_controlled(steps, until, landing)
         time, size = self._control[:2].tolist()
         if until < math.inf:
@@ -290,27 +283,28 @@ class Program:
             self.model.tables[table].mark(names, role)
 
     def commit(self) -> None:
-        """Let history take note of a state that no step has led to, outside the energy account."""
+        """Bring history up to date in a state that no step has led to, outside the energy account."""
         if self._writer.commits:
             time = float(self._control[0])
-            self.module.commit(time, 0.0, *self._state, np.zeros(len(ACCOUNT)), *self._columns)
+            outside = self._after("dt", "commit", account=np.zeros(len(ACCOUNT)))
+            self.module.commit(time, 0.0, *outside, *self._columns)
             self._mark_changes()
 
     def observe(self) -> None:
         """Bring the derived columns of rods and particles, and the measures, up to date."""
         time, size = self._control[:2].tolist()
-        self.module.observe(time, size, self._displacement, self._velocity, *self._observed, *self._columns)
+        self.module.observe(time, size, *self._observed, *self._columns)
         for table, names in OBSERVED.items():
             self.model.tables[table].mark(names, Role.DERIVED)
 
     def conserved_energy(self) -> float:
-        """What the integrator conserves, less the work done so far (J), in the state last observed."""
+        """The energy that the integrator conserves, less the work done so far (J), in the state last observed."""
         conserved = self.module.conserved.py_func  # by itself it would have to be compiled in every process
         return float(conserved(self.measures, self._account, float(self._control[1]), self.module.SHADOW))
 
 
 def _by_table_and_role(model: Model, written: Iterable[str]) -> list[tuple[str, list[str], Role]]:
-    """What steps change, besides what commits write: arrays of one table and role, by a column in each."""
+    """Table, arrays and role of the columns that steps change, those of commits included."""
     paths = [f"clock.{name}" for name in (*CONTROL, *_ORIGIN, *_COUNTS, *ACCOUNT)]
     paths += [*(f"particles.{name}" for name in _OF_PARTICLES), *written]
     found: dict[tuple[str, Role], list[str]] = {}

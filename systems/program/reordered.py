@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from components.field import Column, Role
 from components.model import Model
-from systems.base import Driver, StepSystem, StopReason
+from systems.base import Integrator, StepSystem, StopReason
 from systems.program.binding import bind, read_only
 from systems.program.blocks import Layout, Numbers
 from systems.program.program import OBSERVED, Program
@@ -29,12 +29,12 @@ class ArrangedProgram(Program):
         self,
         model: Model,
         systems: Sequence[StepSystem],
-        driver: Driver,
+        integrator: Integrator,
         form: str,
         moving: NDArray[np.bool_] | None = None,
     ) -> None:
         self.moving = moving
-        super().__init__(model, systems, driver, form)
+        super().__init__(model, systems, integrator, form)
 
     def move(self, moving: NDArray[np.bool_]) -> None:
         """Move these particles from now on."""
@@ -50,7 +50,7 @@ class ArrangedProgram(Program):
         super().bind()
         written = [path for b in self._writer.commits for path in b.system.writes]
         self._of_state = [self._held[path] for path in (*_STATE, *written)]
-        self._told = [self._held[f"{table}.{name}"] for table, names in OBSERVED.items() for name in names]
+        self._derived = [self._held[f"{table}.{name}"] for table, names in OBSERVED.items() for name in names]
         arranged = self.columns | self._of_layout()
         arranged |= self._of_systems(arranged)
         to_write = {path.replace(".", "_", 1) for path in written}
@@ -88,7 +88,7 @@ class ArrangedProgram(Program):
     def _of_systems(self, columns: Mapping[str, Any]) -> dict[str, Any]:
         """The arrays of the systems, arranged."""
         arranged: dict[str, Any] = {}
-        self._arrays: list[tuple[Column, Numbers, Column]] = []
+        self._of_kernels: list[tuple[Column, Numbers, Column]] = []
         for system in self.systems:
             bound = bind(system, self.model)
             if bound.each == "loads":
@@ -98,7 +98,7 @@ class ArrangedProgram(Program):
             for name, array in bound.arrays.items():
                 if name in columns:
                     arranged[name] = array[rows]
-                    self._arrays.append((array, rows, arranged[name]))
+                    self._of_kernels.append((array, rows, arranged[name]))
         return arranged
 
     def _loads(self, prefix: str, arranged: Mapping[str, Any]) -> dict[str, Any]:
@@ -122,7 +122,7 @@ class ArrangedProgram(Program):
     def _load(self) -> None:
         """Bring what is held up to date, if anything else changed the state, and systems' own arrays."""
         changed = self._held_revision != self.model.newest(Role.STATE)
-        for own, rows, held in (*self._arrays, *(self._of_state if changed else ())):
+        for own, rows, held in (*self._of_kernels, *(self._of_state if changed else ())):
             np.take(own, rows, axis=0, out=held)
 
     def _store(self) -> None:
@@ -140,7 +140,7 @@ class ArrangedProgram(Program):
         return taken, reason
 
     def commit(self) -> None:
-        """Let history take note of a state that no step has led to, outside the energy account."""
+        """Bring history up to date in a state that no step has led to, outside the energy account."""
         self._load()
         super().commit()
         self._store()
@@ -149,5 +149,5 @@ class ArrangedProgram(Program):
         """Bring the derived columns of rods and particles, and the measures, up to date."""
         self._load()
         super().observe()
-        for own, rows, held in self._told:
+        for own, rows, held in self._derived:
             own[rows] = held

@@ -1,4 +1,4 @@
-"""Moment: a point in a run that one can return to and go on from, bit for bit."""
+"""Checkpoint: a point in a run that one can return to and go on from, bit for bit."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from components.snapshot import Snapshot
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class Checkpoint:
     """The state at a fixed step, and how far edits are accounted for in it. The document is not part of it.
 
-    state: all of it, or of the clock only where nothing else can have changed since.
+    state: all of it, or only the clock's where nothing else can have changed since.
     armed: the energy account and the step size fit the document.
     before_edit: measures of the state before edits that are not accounted for yet.
     stable_step, warning: of the simulation then. binding: which of its programs it ran by.

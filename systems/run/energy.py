@@ -4,9 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from typing import Any
 
 from components.field import Column
 from components.model import Model
+from systems.entries import Measure
+
+ENERGIES = (Measure.KINETIC, Measure.ELASTIC, Measure.POTENTIAL)  # what the account takes of the measures
+DISSIPATED = ("dissipated_damping", "dissipated_plastic", "dissipated_impact")
+ENTRIES = ("initial_energy", "work", "potential_reference")  # of the clock; as `opened` returns them
+
+Clock = Callable[[str], Any]  # a value of a clock by name, or an array of those of several
 
 
 @dataclass(frozen=True)
@@ -32,6 +40,23 @@ class Energy:
         return asdict(self) | {"imbalance": self.imbalance}
 
 
+def opened(measures: Any, clock: Clock) -> tuple[Any, Any, Any]:
+    """ENTRIES of an account that a run begins with: what energy there is, is its initial one.
+
+    measures: as of Dynamics, along the first axis.
+    """
+    kinetic, elastic, potential = (measures[entry] for entry in ENERGIES)
+    damping, plastic, impact = map(clock, DISSIPATED)
+    return kinetic + elastic + (damping + plastic + impact) - clock("work"), clock("work"), potential
+
+
+def energy_of(measures: Any, clock: Clock, entries: tuple[Any, Any, Any]) -> Energy:
+    """The account in the state that was measured, given ENTRIES."""
+    kinetic, elastic, potential = (measures[entry] for entry in ENERGIES)
+    initial, work, reference = entries
+    return Energy(initial, work + potential - reference, kinetic, elastic, *map(clock, DISSIPATED))
+
+
 class Account:
     """The energy account of one model's run; its entries are columns of the clock.
 
@@ -41,6 +66,7 @@ class Account:
 
     def __init__(self, model: Model, measure: Callable[[], Column]) -> None:
         self._model = model
+        self._clock: Clock = lambda name: getattr(model.clock, name)
         self._measure = measure
         self.before_edit: Column | None = None
 
@@ -50,38 +76,26 @@ class Account:
 
     def close(self) -> None:
         """Enter what was edited."""
-        for name, value in zip(("initial_energy", "work", "potential_reference"), self._edited(), strict=True):
+        for name, value in zip(ENTRIES, self._edited(self._measure().tolist()), strict=True):
             self._model.writable(f"clock.{name}")[0] = value
         self.before_edit = None
 
     def energy(self, *, edited: bool) -> Energy:
         """The account now; edited: something was, since it was closed."""
-        clock = self._model.clock
-        kinetic, _, elastic, potential = self._measure()[:4].tolist()
-        initial, work, reference = clock.initial_energy, clock.work, clock.potential_reference
-        if edited:
-            initial, work, reference = self._edited()
-        return Energy(
-            initial=initial,
-            work=work + potential - reference,
-            kinetic=kinetic,
-            elastic=elastic,
-            dissipated_damping=clock.dissipated_damping,
-            dissipated_plastic=clock.dissipated_plastic,
-            dissipated_impact=clock.dissipated_impact,
-        )
+        measures = self._measure().tolist()
+        initial, work, reference = self._edited(measures) if edited else tuple(map(self._clock, ENTRIES))
+        return energy_of(measures, self._clock, (initial, work, reference))
 
-    def _edited(self) -> tuple[float, float, float]:
-        """(initial energy, work, potential reference) in J, with the edits since it was closed.
+    def _edited(self, measures: list[float]) -> tuple[float, float, float]:
+        """ENTRIES with the edits since the account was closed.
 
         What an edit adds to the energy counts as work; the energy that a run begins with is its initial one.
         """
-        clock = self._model.clock
-        kinetic, _, elastic, potential = self._measure()[:4].tolist()
         if self.before_edit is None:
-            dissipated = clock.dissipated_damping + clock.dissipated_plastic + clock.dissipated_impact
-            return kinetic + elastic + dissipated - clock.work, clock.work, potential
-        kinetic_before, _, elastic_before, potential_before = self.before_edit[:4].tolist()
+            return opened(measures, self._clock)
+        clock = self._model.clock
+        kinetic, elastic, potential = (measures[entry] for entry in ENERGIES)
+        kinetic_before, elastic_before, potential_before = self.before_edit[list(ENERGIES)].tolist()
         work = potential_before - clock.potential_reference
         work += kinetic + elastic - kinetic_before - elastic_before
         return clock.initial_energy, clock.work + work, potential

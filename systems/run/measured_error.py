@@ -46,11 +46,12 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     step, leaves order 1. There is none where particles met (the slightest difference grows from impact to
     impact), and none that is below what numbers can tell.
     """
-    model, program = simulation.model, simulation.program
+    model = simulation.model
     clock, then = model.clock, beginning.columns
     met = clock.collisions > then["clock.collisions"][0] or clock.collision_state is not None
-    if met or not isinstance(program, Program) or not clock.time > then["clock.time"][0]:
+    if met or simulation.driver.exact or not clock.time > then["clock.time"][0]:
         return None
+    program = simulation.step_program
     reached, size, target = model.particles.displacement.copy(), clock.step_size, simulation.moved_until
     yielded = clock.dissipated_plastic > then["clock.dissipated_plastic"][0]
     with simulation.aside(beginning):
@@ -58,7 +59,7 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
             largest, factor = _by_tolerance(program, target), 1.0
         else:
             largest = _by_steps(simulation, program, target, size)
-            order = 1 if yielded and not program.driver.controlled else program.driver.order
+            order = 1 if yielded and not program.integrator.controlled else program.integrator.order
             factor = 2.0**order / (2.0**order - 1.0)
         again = model.particles.displacement.copy()
     largest = max(largest, _size(reached))
@@ -89,7 +90,7 @@ def _by_steps(simulation: Simulation, program: Program, target: float, size: flo
     clock = program.model.clock
     steps = math.ceil(2.0 * (target - clock.time) / size * (1.0 - 1e-9))
     simulation.begin_step_size((target - clock.time) / steps)
-    if program.driver.controlled:
+    if program.integrator.controlled:
         return _pieces(program, target)
     largest, piece = 0.0, -(-steps // PIECES)
     while steps > 0:

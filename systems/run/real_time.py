@@ -1,20 +1,73 @@
-"""Live: a simulation that is watched, advanced frame by frame at a pace that suits a person."""
+"""Real time: a simulation that is watched, advanced frame by frame at a pace that suits a person."""
 
 from __future__ import annotations
 
 from systems.physics.pace import natural_pace
-from systems.run.frame_clock import FrameClock
 from systems.run.simulation import Simulation
 
+LONGEST_FRAME = 0.1  # s of real time that one frame may catch up
+BUDGET = 0.012  # s of a frame that steps may take
+FIRST_STEPS = 1000  # that the first frame may take, when their cost is not known yet
+FASTEST, SLOWEST = 1e3, 1e-5  # simulated seconds per second shown, times the natural pace at 1
 MANY, SHARE = 2000, 0.1  # elements from which on a change by a smaller share leaves the pace as it is
 
 
-class Live:
-    """A simulation and the clock of its frames."""
+class TimeScale:
+    """Turns elapsed real time into simulated time, and remembers what whole steps leave of it.
+
+    natural: simulated seconds per second shown that suit the model; factor: a person's choice on top.
+    lagging: True while the machine cannot keep the pace; the picture then shows less time per second.
+    ahead: simulated time (s) that has passed for the person since the end of the last step.
+    """
+
+    def __init__(self) -> None:
+        self.natural = 1.0
+        self.factor = 1.0
+        self.lagging = False
+        self.shown_pace = 1.0
+        self.ahead = 0.0
+        self._seconds_per_step = 0.0
+
+    @property
+    def pace(self) -> float:
+        """Simulated seconds per second shown that is wanted."""
+        return self.natural * self.factor
+
+    def faster(self, times: float) -> None:
+        """Multiply the pace, within limits."""
+        self.factor = min(max(self.factor * times, SLOWEST), FASTEST)
+
+    def due(self, elapsed: float) -> float:
+        """Simulated time (s) to let pass in a frame that took `elapsed` seconds."""
+        return min(elapsed, LONGEST_FRAME) * self.pace
+
+    @property
+    def affordable(self) -> int:
+        """Steps that the machine can take in a frame."""
+        known = self._seconds_per_step
+        return max(int(BUDGET / known), 1) if known > 0.0 else FIRST_STEPS
+
+    def took(self, due: float, passed: float, steps: int, seconds: float) -> None:
+        """Learn from a frame: time that was due and that passed in whole steps (s), and what these cost (s)."""
+        self.lagging = steps >= self.affordable
+        wanted = self.ahead + due
+        self.ahead = 0.0 if self.lagging else max(wanted - passed, 0.0)
+        self.shown_pace = self.pace * passed / wanted if self.lagging else self.pace
+        if steps > 0:
+            cost, known = seconds / steps, self._seconds_per_step
+            self._seconds_per_step = cost if known == 0.0 else 0.8 * known + 0.2 * cost
+
+
+class RealTimeRunner:
+    """Advances a simulation by the time of each frame; `clock` says how fast.
+
+    Whatever takes long in a large model (getting ready after an edit, finding the pace) has a frame to itself, so that
+    pictures go on between.
+    """
 
     def __init__(self, simulation: Simulation) -> None:
         self.simulation = simulation
-        self.clock = FrameClock()
+        self.clock = TimeScale()
         self._pace_revision = -1
         self._pace_size = 0
         self._waited = False  # for a picture

@@ -15,13 +15,14 @@ import numpy as np
 from components.field import Role
 from components.load import load_ends
 from components.model import Model
+from systems.entries import ASLEEP
 from systems.islands import IMMOVABLE, Rows, islands
-from systems.physics.rest import Array, Mask, Stillness
+from systems.physics.rest import Array, Mask, RestMeasure
 from systems.program.parallel import make_program
 from systems.program.program import Program
 from systems.program.reordered import ArrangedProgram
-
-INTERVAL = 1024  # steps between reviews; fewer: asleep sooner, but a review costs as much as some ten steps
+from systems.program.stepper import Dynamics
+from systems.run.policy import steps_to_sleep_review
 
 
 class Sleep:
@@ -29,7 +30,7 @@ class Sleep:
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        self._asked: tuple[Program, int] | None = None
+        self._asked: tuple[Dynamics, int] | None = None
         self._versions: tuple[int, int] | None = None
         self._looked_at = -1  # the version of who is asleep that any_asleep is about
         self._parts: dict[Program, ArrangedProgram] = {}
@@ -38,7 +39,7 @@ class Sleep:
 
     # --- who may sleep, and who does -------------------------------------------------------------------
 
-    def may_happen(self, program: Program) -> bool:
+    def may_happen(self, program: Dynamics) -> bool:
         """True if islands may sleep under this program, and there is more than one."""
         asked = program, self.model.newest(Role.DOCUMENT)
         if asked != self._asked:
@@ -57,14 +58,11 @@ class Sleep:
             self._looked_at, self._any_asleep = version, bool(np.count_nonzero(asleep))
         return self._any_asleep
 
-    def steps_to_review(self, program: Program) -> int:
+    def steps_to_review(self, program: Dynamics) -> int:
         """After how many steps a run is to be reviewed again."""
-        return INTERVAL - self.model.clock.steps % INTERVAL if self.may_happen(program) else sys.maxsize
-
-    @staticmethod
-    def is_due(steps: int) -> bool:
-        """True if a run is to be reviewed after so many steps."""
-        return steps % INTERVAL == 0
+        if not self.may_happen(program):
+            return sys.maxsize
+        return int(steps_to_sleep_review(self.model.clock.steps))
 
     def _look_up(self) -> None:
         """Find the islands anew where that changed which they follow from."""
@@ -76,15 +74,15 @@ class Sleep:
             self._of_rod: Rows = self._of_particle[model.rods.between].max(axis=1, initial=IMMOVABLE)
             self._count = int(self._of_particle.max(initial=IMMOVABLE))
 
-    def review(self, program: Program) -> bool:
+    def review(self, program: Dynamics) -> bool:
         """Let those islands sleep, and no others, that are at rest; True if others do than before."""
         if not self.may_happen(program):
             return self._wake()
-        stillness = self._observed(program)
+        measure = self._observed(program)
         clock = self.model.clock
-        rest = stillness.at_rest(self._of_particle, self._of_rod, clock.force_scale, clock.energy_scale)
+        rest = measure.at_rest(self._of_particle, self._of_rod, clock.force_scale, clock.energy_scale)
         rest[self._under_varying_loads] = rest[IMMOVABLE] = False
-        return self._let_sleep(rest[self._of_particle], stillness.kinetic)
+        return self._let_sleep(rest[self._of_particle], measure.kinetic)
 
     def disturb(self, program: Program) -> bool:
         """Wake the islands that something has struck, all if none may sleep any more; True if any woke."""
@@ -94,9 +92,9 @@ class Sleep:
         struck = np.asarray(particles.asleep & particles.velocity.any(axis=1))
         return bool(struck.any()) and self._wake(struck)
 
-    def _observed(self, program: Program) -> Stillness:
+    def _observed(self, program: Dynamics) -> RestMeasure:
         program.observe()
-        return Stillness.of(self.model, program.unbalanced)
+        return RestMeasure.of(self.model, program.unbalanced)
 
     @property
     def _under_varying_loads(self) -> Rows:
@@ -148,10 +146,10 @@ class Sleep:
         moving = ~asleep & (self._of_particle != IMMOVABLE)
         part = self._parts.get(program)
         if part is None:
-            made = make_program(self.model, program.systems, program.driver, program.form, moving)
+            made = make_program(self.model, program.systems, program.integrator, program.form, moving)
             assert isinstance(made, ArrangedProgram)
             part = self._parts[program] = made
         else:
             part.move(moving)
-        part.measures[8:] = self._observed(program).measures(self.model, *part.left_out)
+        part.measures[ASLEEP] = self._observed(program).measures(self.model, *part.left_out)
         return part

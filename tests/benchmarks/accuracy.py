@@ -98,7 +98,7 @@ def ours(problem: Problem, method: str) -> Run:
         simulation = session.simulation
         simulation.smooth = False  # nobody watches
         simulation.advance(0)
-        beginning = simulation.moment()
+        beginning = simulation.checkpoint()
 
         def once() -> Array:
             simulation.run_to(problem.time)

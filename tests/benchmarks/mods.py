@@ -17,7 +17,8 @@ from game.documents.document import document
 from game.mods import Mod
 from game.mods.guard import guarded_system
 from systems.base import StepSystem, System
-from systems.catalogue import DRIVERS, step_systems
+from systems.catalogue import step_systems
+from systems.physics.integrators import INTEGRATORS
 from systems.physics.system import Drag
 from systems.program.parallel import make_program
 from systems.program.program import Program
@@ -48,7 +49,7 @@ def _program(model: Model, law: System) -> Program:
     plan = Schedule([*systems, law]).step_plan("simulation", model)
     assert any(isinstance(system, Drag) for system in plan)
     model.writable("clock.step_size")[0] = STEP
-    return make_program(model, plan, DRIVERS["velocity_verlet"])
+    return make_program(model, plan, INTEGRATORS["velocity_verlet"])
 
 
 def kernels(*, quick: bool) -> list[Row]:

@@ -19,6 +19,7 @@ from typing import Any
 
 from game import Session
 from game.preparation import AHEAD
+from systems.collision.driven.stepper import DRIVEN
 from systems.program.writer import form_of
 
 Row = dict[str, Any]
@@ -40,9 +41,7 @@ def report(*, quick: bool) -> dict[str, list[Row]]:
     names = list(JOURNEYS)[:2] if quick else list(JOURNEYS)
     return {
         "window": [row for name in names for row in journeys(name)],
-        "compiling": compiling(
-            ("encounters",) if quick else ("isostatic", "ball_on_truss", *map(" ".join, AHEAD))
-        ),
+        "compiling": compiling((DRIVEN.name,) if quick else ("isostatic", "ball_on_truss", *_ahead())),
         "commands": commands(),
     }
 
@@ -70,7 +69,7 @@ def _environment(folder: Path) -> dict[str, str]:
 
 def compiling(whats: Sequence[str]) -> list[Row]:
     """Processor seconds, with an empty cache, of processes that compile ahead of need: programs of models, or parts."""
-    rows, ahead = [], {" ".join(job): job for job in AHEAD}
+    rows, ahead = [], _ahead()
     for what in whats:
         job = ahead.get(what) or _job(Session.open(what))
         with tempfile.TemporaryDirectory() as folder:
@@ -79,6 +78,11 @@ def compiling(whats: Sequence[str]) -> list[Row]:
             subprocess.run(words, env=_environment(Path(folder)), check=True, stdout=subprocess.DEVNULL)
             rows.append({"what": what, "cpu_s": resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - cpu})
     return rows
+
+
+def _ahead() -> dict[str, list[str]]:
+    """The names of the units that each process compiles ahead of need."""
+    return {" ".join(unit.name for unit in units): [unit.name for unit in units] for units in AHEAD}
 
 
 def _job(session: Session) -> list[str]:

@@ -9,12 +9,10 @@ from typing import Any
 
 from game.commands.reports.report import Analysis
 from game.session import Session
-from game.sweeps.batches import MANY
-from game.sweeps.execution import outcomes
-from game.sweeps.plan import Plan
-from game.sweeps.run import plan_of, sweep
-from game.sweeps.specimen import Specimen
-from game.sweeps.worker import Worker
+from game.sweeps.execution import Worker, compute_all
+from game.sweeps.plan import Plan, plan_of
+from game.sweeps.run import sweep
+from game.sweeps.variant_runner import VariantRunner
 from systems.program.cores import cores
 from tests.benchmarks.models import lattice
 
@@ -42,14 +40,14 @@ def variants(count: int) -> list[Row]:
 
 def _variant(name: str, analysis: Analysis, count: int) -> Row:
     plan, numbers = _plan(analysis, count), range(count)
-    worker, specimen = Worker(plan), Specimen(plan)
+    worker, runner = Worker(plan), VariantRunner(plan)
     together = _cpu(lambda: worker.together(numbers)) * 1e3 / count
     return {
         "analysis": name,
         "variants": count,
         "together_cpu_ms": together if worker.at_a_time > 1 else "–",
-        "one_by_one_cpu_ms": _cpu(lambda: [specimen.records(n) for n in numbers]) * 1e3 / count,
-        "opened_anew_cpu_ms": _cpu(lambda: [Specimen(plan).records(n) for n in numbers]) * 1e3 / count,
+        "one_by_one_cpu_ms": _cpu(lambda: [runner.records(n) for n in numbers]) * 1e3 / count,
+        "opened_anew_cpu_ms": _cpu(lambda: [VariantRunner(plan).records(n) for n in numbers]) * 1e3 / count,
     }
 
 
@@ -88,7 +86,7 @@ def _together(worker: Worker, count: int) -> None:
 def whole(count: int) -> list[Row]:
     """A Monte Carlo sweep of the triangle until at rest, from the beginning to the table."""
     vary, measures = ["rods.*.stiffness~normal(164640,5%)"], ["rods.*.axial_force"]
-    sweep("isostatic", vary, measures, samples=min(count, MANY // 3))  # compiles
+    sweep("isostatic", vary, measures, samples=min(count, 10_000))  # compiles
     began, cpu = time.perf_counter(), time.process_time()
     sweep("isostatic", vary, measures, samples=count)
     seconds = time.perf_counter() - began
@@ -101,10 +99,10 @@ def workers(count: int) -> list[Row]:
     rows = []
     for processes in (1, os.cpu_count() or 1):
         started = time.perf_counter()
-        arriving = outcomes(plan, range(count), processes, None)
-        done = len(next(arriving))
+        arriving = compute_all(plan, range(count), processes, None)
+        done = len(next(arriving).outcomes)
         first = time.perf_counter()
-        done += sum(map(len, arriving))
+        done += sum(len(part.outcomes) for part in arriving)
         assert done == count
         rows.append(
             {

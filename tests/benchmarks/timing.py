@@ -10,7 +10,8 @@ from contextlib import contextmanager
 import numpy as np
 
 from components.model import Model
-from systems.catalogue import DRIVERS, step_systems
+from systems.catalogue import step_systems
+from systems.physics.integrators import INTEGRATORS
 from systems.program.cores import VARIABLE
 from systems.program.parallel import make_program
 from systems.schedule import Schedule
@@ -21,7 +22,7 @@ STEP = 1e-6  # s, stable in all models of benchmarks
 def program_runner(model: Model, steps: int, *, on: int = 1, form: str = "") -> Callable[[], None]:
     """Takes so many steps, on so many cores."""
     program = make_program(
-        model, Schedule(step_systems()).step_plan("simulation", model), DRIVERS["velocity_verlet"], form
+        model, Schedule(step_systems()).step_plan("simulation", model), INTEGRATORS["velocity_verlet"], form
     )
     model.writable("clock.step_size")[0] = STEP
 

@@ -22,13 +22,13 @@ from game.included.probes import Sampling
 from game.preparation import Preparation
 from game.registry import SYSTEMS
 from systems.base import Law, Phase, StepSystem, System
-from systems.catalogue import DRIVERS, step_systems
+from systems.catalogue import step_systems
 from systems.collision.system import Collision, Support
 from systems.edit.hover import Hover
 from systems.edit.pull import Hand, Pull
 from systems.input.pygame_input import PygameInput
 from systems.kernels import compiled
-from systems.physics.integrators import VelocityVerlet
+from systems.physics.integrators import INTEGRATORS, VelocityVerlet
 from systems.render.pygame_render import PygameRender
 from tests.mods.conftest import Write
 
@@ -52,9 +52,9 @@ def test_our_step_systems_pass(name: str) -> None:
     assert 0.0 < checked.cost < 1e6
 
 
-@pytest.mark.parametrize("name", DRIVERS)
+@pytest.mark.parametrize("name", INTEGRATORS)
 def test_our_integrators_pass(name: str) -> None:
-    assert check_system(type(DRIVERS[name]), ["isostatic"]).needed == 1
+    assert check_system(type(INTEGRATORS[name]), ["isostatic"]).needed == 1
 
 
 def test_collisions_pass_in_free_flight_and_with_a_wall_that_steps_end_at() -> None:
@@ -163,7 +163,7 @@ def test_an_integrator_that_depends_on_chance_is_found_out() -> None:
 
     with pytest.raises(SystemCheckError, match=r"test\.moody: run twice, it gives different"):
         check_system(Moody, ["isostatic"])
-    assert "moody" not in DRIVERS
+    assert "moody" not in INTEGRATORS
 
 
 @compiled

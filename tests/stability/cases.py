@@ -18,7 +18,7 @@ from scipy.integrate import solve_ivp
 from components.field import Role
 from components.settings import AUTOMATIC
 from game import Session
-from systems.catalogue import DRIVERS
+from systems.physics.integrators import INTEGRATORS
 from tests.reference import closed_forms
 from tests.reference.elements import Model
 from tests.reference.models import model, oscillator, particle, pendulum, rod, von_mises_truss
@@ -153,7 +153,9 @@ def damped(zeta: float) -> Case:
 def stepping(integrator: str, share: float) -> Case:
     """The mass with ζ = 0.1, by a share of the integrator's stable step (of 2/ω where it has no limit)."""
     zeta, moved = 0.1, 0.1
-    driver = DRIVERS["velocity_verlet" if integrator == AUTOMATIC else integrator]  # a fixed step makes it that
+    driver = INTEGRATORS[
+        "velocity_verlet" if integrator == AUTOMATIC else integrator
+    ]  # a fixed step makes it that
     limit = driver.stable_step(OMEGA, zeta * OMEGA)
     if limit == math.inf:
         limit = 2 / OMEGA

@@ -6,7 +6,7 @@ import pytest
 
 from components.settings import AUTOMATIC, INTEGRATORS
 from game import Session
-from systems.catalogue import DRIVERS
+from systems.physics import integrators
 from tests.reference.models import model, particle, rod
 from tests.stability.cases import SHARES, Case, cases, follow, stepping
 
@@ -36,14 +36,14 @@ def test_right_or_explained(case: Case) -> None:
             assert found.error <= ALLOWED[integrator], (integrator, found)
 
 
-@pytest.mark.parametrize("integrator", list(DRIVERS))
+@pytest.mark.parametrize("integrator", list(integrators.INTEGRATORS))
 @pytest.mark.parametrize("share", SHARES)
 def test_steps_below_and_above_the_limit(integrator: str, share: float) -> None:
     """A stable step is never stopped; an unstable one is, after whatever number of steps, and named."""
     case = stepping(integrator, share)
     found = follow(case, integrator)
     assert found.finite
-    limited = DRIVERS[integrator].stable_step(1.0, 1.0) < float("inf")
+    limited = integrators.INTEGRATORS[integrator].stable_step(1.0, 1.0) < float("inf")
     if share < 1.0:
         assert found.status in ("time reached", "at rest"), found
         assert found.error < (1e-3 if share < 0.01 else 0.5)

@@ -5,7 +5,8 @@ import pytest
 
 from game.documents import models
 from game.session import Session
-from systems.catalogue import DRIVERS, step_systems
+from systems.catalogue import step_systems
+from systems.physics.integrators import INTEGRATORS
 from systems.program import blocks as layout
 from systems.program import parallel as in_blocks
 from systems.program import writer
@@ -40,7 +41,7 @@ def test_a_part_moves_with_the_bits_of_the_whole(form: str, monkeypatch: pytest.
     monkeypatch.setattr(layout, "BLOCK", 12)
     monkeypatch.setattr(in_blocks, "_WORTHWHILE", 0)
     both, one = (Session.open(two_nets()).model for _ in range(2))
-    systems, driver = Schedule(step_systems()).step_plan("simulation", both), DRIVERS["velocity_verlet"]
+    systems, driver = Schedule(step_systems()).step_plan("simulation", both), INTEGRATORS["velocity_verlet"]
     moving = np.array([not name.endswith("'") for name in one.particles.column("name")])
     whole, part = make_program(both, systems, driver, form), make_program(one, systems, driver, form, moving)
     assert isinstance(part, ArrangedProgram)

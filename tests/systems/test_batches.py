@@ -8,13 +8,10 @@ import numpy as np
 import pytest
 
 from game.commands.reports.report import Analysis
-from game.sweeps import batch_program, batches
-from game.sweeps.lane_program import LaneProgram
-from game.sweeps.plan import Plan, Record
-from game.sweeps.run import plan_of
-from game.sweeps.specimen import Specimen
-from game.sweeps.stack import Stack
-from game.sweeps.worker import Worker
+from game.sweeps.batched_model import BatchedModel
+from game.sweeps.execution import Worker
+from game.sweeps.plan import Plan, Record, plan_of
+from game.sweeps.variant_runner import VariantRunner
 from systems.physics.automatic import choose, stiffnesses, suited_to
 from systems.physics.spectrum import spectra, spectrum
 from tests.reference.models import square, triangle
@@ -47,26 +44,12 @@ def loaded_cables() -> dict[str, Any]:
     return loaded() | {"rods": rods}
 
 
-class Counted:
-    """Counts the steps that variants take side by side."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.steps = 0
-        own = LaneProgram.advance
-
-        def advance(program: LaneProgram, blocks: Any, arguments: Any, taken: Any, reason: Any) -> None:
-            own(program, blocks, arguments, taken, reason)
-            self.steps += int(taken[blocks].sum())
-
-        monkeypatch.setattr(LaneProgram, "advance", advance)
-
-
 def planned(source: Any, vary: list[str], analysis: Analysis, samples: int | None = None) -> Plan:
     return plan_of(source, vary, MEASURES, analysis, (), samples, 1)
 
 
 def alone(plan: Plan, number: int) -> list[Record]:
-    return Specimen(plan).records(number)
+    return VariantRunner(plan).records(number)
 
 
 CASES: dict[str, tuple[Any, list[str], Analysis, int | None]] = {
@@ -120,7 +103,7 @@ def test_together_they_have_the_bits_of_single_runs(name: str) -> None:
     assert together == {number: alone(plan, number) for number in range(plan.size)}
 
 
-SIDE_BY_SIDE: dict[str, tuple[Any, list[str], Analysis]] = {
+BY_INTEGRATOR: dict[str, tuple[Any, list[str], Analysis]] = {
     "dop853": (TRIANGLE, ["rods.BC.compressive_strength=150:215:11"], Analysis()),
     "rk4": (loaded_cables(), ["environment.drag=0.5,10", "rods.AB.stiffness=1e5:2e5:5"], TIMES),
     "velocity_verlet": (TRIANGLE, ["rods.BC.compressive_strength=150:215:11"], Analysis()),
@@ -129,18 +112,12 @@ SIDE_BY_SIDE: dict[str, tuple[Any, list[str], Analysis]] = {
 }
 
 
-@pytest.mark.parametrize("integrator", SIDE_BY_SIDE)
-def test_side_by_side_they_have_the_bits_of_single_runs(
-    integrator: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Four at a time: some steps are rejected or end at events, some lanes end early or are empty."""
-    monkeypatch.setattr(batch_program, "lanes_for", lambda particles: 4)
-    monkeypatch.setattr(batches, "MANY", 1)
-    side_by_side = Counted(monkeypatch)
-    source, vary, analysis = SIDE_BY_SIDE[integrator]
+@pytest.mark.parametrize("integrator", BY_INTEGRATOR)
+def test_by_every_integrator_they_have_the_bits_of_single_runs(integrator: str) -> None:
+    """Some steps are rejected or end at events, some variants end early."""
+    source, vary, analysis = BY_INTEGRATOR[integrator]
     plan = plan_of(source, vary, MEASURES, analysis, (f"settings.integrator={integrator}",), None, 1)
     together = Worker(plan).together(range(plan.size))
-    assert side_by_side.steps > 0
     assert together == {number: alone(plan, number) for number in range(plan.size)}
 
 
@@ -170,7 +147,7 @@ def test_what_cannot_be_computed_together_is_left_to_single_runs() -> None:
     worker = Worker(plan)
     together = worker.together(range(plan.size))
     assert set(together) == {plan.size - 1}
-    statuses = {records[-1][0] for _, records in worker.compute(range(plan.size))}
+    statuses = {records[-1][0] for _, records in worker.compute(range(plan.size)).outcomes}
     assert statuses == {"failed", "diverged", "limit reached", "at rest"}
 
 
@@ -250,17 +227,17 @@ def test_structures_whose_particles_can_meet_are_single_runs() -> None:
 )
 def test_limits_of_a_block_are_those_of_its_model(source: Any) -> None:
     plan = planned(source, ["rods.*.stiffness~normal(164640,30%)"], TIMES, 3)
-    specimen = Specimen(plan)
-    stack = Stack.of(specimen.model, 3)
+    runner = VariantRunner(plan)
+    batched = BatchedModel.of(runner.model, 3)
     expected = []
     for number in range(3):
-        with specimen.taken_back():
-            specimen.override(plan.overrides_of(number))
-            stack["rods.stiffness"][number] = specimen.model.rods.stiffness
-            found = spectrum(specimen.model, specimen.model.rods.axial_force)
-            expected.append((found.frequency, found.decay, choose(specimen.model)))
-            stack["rods.axial_force"][number] = specimen.model.rods.axial_force
+        with runner.taken_back():
+            runner.override(plan.overrides_of(number))
+            batched["rods.stiffness"][number] = runner.model.rods.stiffness
+            found = spectrum(runner.model, runner.model.rods.axial_force)
+            expected.append((found.frequency, found.decay, choose(runner.model)))
+            batched["rods.axial_force"][number] = runner.model.rods.axial_force
     drag = np.zeros(3)
-    frequency, decay = spectra(stack.as_model(), stack.rods.axial_force, drag)
-    chosen = [suited_to(stiffness) for stiffness in stiffnesses(stack.as_model(), drag).tolist()]
+    frequency, decay = spectra(batched.as_model(), batched.rods.axial_force, drag)
+    chosen = [suited_to(stiffness) for stiffness in stiffnesses(batched.as_model(), drag).tolist()]
     assert list(zip(frequency.tolist(), decay.tolist(), chosen, strict=True)) == expected

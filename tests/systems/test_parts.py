@@ -1,5 +1,9 @@
 """Parts: kernels that only other kernels call."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from numba import njit
@@ -38,3 +42,37 @@ def test_a_part_that_is_called_from_python_says_so() -> None:
     entry(np.ones(2))
     with pytest.raises(TypeError, match="double is a part of programs"):
         double(1.5)
+
+
+DIGEST = """
+import hashlib
+import sys
+
+from game import Session
+from systems.kernels import PLAIN
+
+session = Session.open("hyperstatic_yield")
+session.settings.integrator = sys.argv[1]
+session.run(steps=40)
+state = [session.model.particles.displacement, session.model.particles.velocity, session.model.rods.plastic_strain]
+print(PLAIN, hashlib.sha256(b"".join(column.tobytes() for column in state)).hexdigest())
+print(session.simulation.program.module.__name__)
+"""
+
+
+@pytest.mark.parametrize("integrator", ["velocity_verlet", "rk4"])
+def test_plain_numba_computes_the_same_bits(integrator: str) -> None:
+    """And its programs go by other names, so that neither way takes what the other one cached."""
+    plain, own = (
+        subprocess.run(
+            [sys.executable, "-c", DIGEST, integrator],
+            env={**os.environ, "PINJOINT_PLAIN_NUMBA": switch},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.split()
+        for switch in ("1", "")
+    )
+    assert (plain[0], own[0]) == ("True", "False")
+    assert plain[1] == own[1]
+    assert plain[2] != own[2]

@@ -12,14 +12,12 @@ import numpy as np
 import pytest
 from numba import njit
 
-from components.settings import INTEGRATORS
 from game import Session
 from game.commands.command_line import main
 from game.editor.scenes import PHYSICS, Scene
 from game.registry import SCENES
 from systems.base import Commit, Law, Phase, System
-from systems.catalogue import DRIVERS, register_driver
-from systems.physics.integrators import SemiImplicitEuler
+from systems.physics.integrators import SemiImplicitEuler, register_integrator, remove_integrator
 from tests.reference.models import model, particle
 
 BALL = model([particle("A", 0.0, 0.0)], [])
@@ -246,7 +244,7 @@ def test_an_integrator_acts_in_its_scenes_and_another_elsewhere(
         name = "test.mine"
         scenes = ("arcade",)
 
-    register_driver(Mine())
+    register_integrator(Mine())
     try:
         document = {**BALL, "environment": {"drag": 1.0}, "settings": {"integrator": "mine"}}
         session = arcade(document)
@@ -256,5 +254,4 @@ def test_an_integrator_acts_in_its_scenes_and_another_elsewhere(
         assert session.simulation.integrator == "mine"
         assert np.isfinite(session.particles.displacement).all()
     finally:
-        DRIVERS.pop("mine")
-        INTEGRATORS.pop("mine")
+        remove_integrator("mine")

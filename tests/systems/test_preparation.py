@@ -27,6 +27,7 @@ from game.session import Session
 from systems.collision.driven import compiled as driven_kernels
 from systems.input import pygame_input
 from systems.program import compiler as cache
+from systems.program.compiler import CompiledUnit
 from systems.program.program import _writer
 from systems.program.writer import FEW, form_of
 
@@ -52,10 +53,9 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
     found = Compiler()
     monkeypatch.setattr(preparation, "_started", found.start)
     monkeypatch.setattr(preparation, "has_program", lambda *plan: False)
-    monkeypatch.setattr(preparation, "has_raster", lambda: False)
-    monkeypatch.setattr(preparation, "has_driven_collisions", lambda: False)
+    monkeypatch.setattr(CompiledUnit, "is_compiled", lambda unit: False)
     monkeypatch.setattr(preparation, "is_blank", lambda: False)
-    monkeypatch.setattr(preparation, "AHEAD", {})
+    monkeypatch.setattr(preparation, "AHEAD", ())
     return found
 
 
@@ -100,7 +100,7 @@ def test_where_particles_may_meet_that_is_waited_for_too(app: App, compiler: Com
     frames(app, 1)
     program, driven, resting = compiler.jobs[1:]
     assert program[0] == session.simulation.integrator
-    assert driven == ("driven",)
+    assert driven == ("driven_collisions",)
     assert resting == (*program, "collision.support")  # from when on the ball lies on the truss
     session.press("space")
     frames(app, 3)
@@ -118,16 +118,16 @@ def test_a_model_in_which_nothing_is_loose_does_not_wait_for_what_may_rest_on_it
 ) -> None:
     app.session.open_here("warren_bridge")
     frames(app, 1)
-    assert ("driven",) in compiler.jobs
+    assert ("driven_collisions",) in compiler.jobs
     assert not any("collision.support" in job for job in compiler.jobs)
 
 
 def test_what_other_models_may_need_comes_when_nothing_else_is_compiled(
     monkeypatch: pytest.MonkeyPatch, app: App, compiler: Compiler
 ) -> None:
-    monkeypatch.setattr(
-        preparation, "AHEAD", {("one",): lambda: False, ("two",): lambda: True, ("three",): lambda: False}
-    )
+    units = tuple((CompiledUnit(name, lambda: ("", {})),) for name in ("one", "two", "three"))
+    monkeypatch.setattr(preparation, "AHEAD", units)
+    monkeypatch.setattr(CompiledUnit, "is_compiled", lambda unit: unit.name == "two")
     frames(app, 2)
     assert len(compiler.jobs) == 1
     compiler.status = 0
@@ -225,13 +225,13 @@ def test_what_another_process_compiles_is_what_the_model_needs(name: str, warmth
     there = _writer(example.model, same_plan, driver, form)
     here = _writer(session.model, plan, simulation.driver, form_of(session.model, simulation.driver))
     assert there.source() == here.source()
-    assert there.kernels == here.kernels
+    assert there.names == here.names
 
 
 def test_free_particles_have_their_program_loaded_too(
     app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(preparation, "has_parts", lambda *parts: True)
+    monkeypatch.setattr(CompiledUnit, "is_compiled", lambda unit: True)
     app.session.adopt(models.load("collision_i"))
     compiler.status = 0
     frames(app, 3)
@@ -242,10 +242,10 @@ def test_what_free_particles_need_is_compiled_by_two_processes_at_once(
     app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     compiled = set[str]()
-    monkeypatch.setattr(preparation, "has_parts", lambda *parts: compiled.issuperset(parts))
+    monkeypatch.setattr(CompiledUnit, "is_compiled", lambda unit: unit.name in compiled)
     app.session.adopt(models.load("collision_i"))
     frames(app, 2)
-    assert compiler.jobs[1:] == [("free_flight", "fly"), ("free_flight", "open_horizon")]
+    assert compiler.jobs[1:] == [("fly",), ("open_horizon",)]
     compiled.add("fly")
     app.session.press("space")
     frames(app, 2)
@@ -258,7 +258,7 @@ def test_what_free_particles_need_is_compiled_by_two_processes_at_once(
 def test_what_piles_need_is_waited_for_once_something_pulls(
     app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(preparation, "has_parts", lambda *parts: "take_steps" not in parts)
+    monkeypatch.setattr(CompiledUnit, "is_compiled", lambda unit: unit.name != "take_steps")
     app.session.adopt(models.load("collision_i"))
     app.session.press("space")
     frames(app, 4)
@@ -266,7 +266,7 @@ def test_what_piles_need_is_waited_for_once_something_pulls(
     assert steps > 0
     app.session.environment.acceleration = (0.0, -9.81)
     frames(app, 3)
-    assert compiler.jobs[1:] == [("free_flight", "open_horizon", "take_steps")]
+    assert compiler.jobs[1:] == [("open_horizon", "take_steps")]
     assert app.session.model.clock.steps == steps
     compiler.status = 0
     frames(app, 3)
@@ -320,7 +320,7 @@ CHECK = f"""
 from game import Session
 session = Session.open({ALONE})
 session.simulation.program
-module = session.simulation.program.module
+module = session.simulation.step_program.module
 for entry in (module.advance, module.observe):
     print(sum(entry.stats.cache_hits.values()), sum(entry.stats.cache_misses.values()))
 """
@@ -389,10 +389,10 @@ def test_a_folder_of_somebody_else_is_not_used(tmp_path: Path, monkeypatch: pyte
 
 
 PARTS = """
-from systems.collision.free.compiled import EVENTS, PILES, HORIZONS, engine, has_parts
+from systems.collision.free.compiled import EVENTS, PILES, HORIZONS, engine
 
 engine()
-print(*(has_parts(part) for part in (EVENTS, HORIZONS, PILES)))
+print(*(unit.is_compiled() for unit in (EVENTS, HORIZONS, PILES)))
 """
 
 

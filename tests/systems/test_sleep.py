@@ -12,8 +12,8 @@ from game import Session
 from game.documents import models
 from systems.edit.pull import Hand
 from systems.islands import islands
-from systems.physics.rest import Stillness
-from systems.run import sleep
+from systems.physics.rest import RestMeasure
+from systems.run import policy
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import model, particle, rod
@@ -25,7 +25,7 @@ AGREE = 1e-7  # of the largest displacement: what freezing at a residual of 2e-9
 @pytest.fixture(autouse=True)
 def often(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reviews after few steps, for small models."""
-    monkeypatch.setattr(sleep, "INTERVAL", 64)
+    monkeypatch.setattr(policy, "SLEEP_INTERVAL", 64)
 
 
 def vee(name: str, x: float, damping: float, force: tuple[float, float] = (10.0, -80.0)) -> Model:
@@ -197,9 +197,9 @@ def test_what_is_beyond_all_numbers_stays_awake_without_a_warning(beyond: float)
     state, of_particle = session.model, islands(session.model)
     unbalanced = np.zeros((session.particles.count, 2))
     unbalanced[:3] = state.writable("particles.velocity")[:3] = beyond
-    stillness = Stillness.of(state, unbalanced)
+    measure = RestMeasure.of(state, unbalanced)
     of_rod = of_particle[state.rods.between].max(axis=1)
-    rests = stillness.at_rest(of_particle, of_rod, state.clock.force_scale, state.clock.energy_scale)
+    rests = measure.at_rest(of_particle, of_rod, state.clock.force_scale, state.clock.energy_scale)
     assert rests[1:].tolist() == [False, True]
 
 

@@ -18,11 +18,10 @@ from game.commands.reports.report import Analysis
 from game.documents import models
 from game.paths.overrides import apply_override
 from game.sweeps import SweepError, sweep
-from game.sweeps.execution import outcomes
+from game.sweeps.execution import compute, compute_all
+from game.sweeps.plan import plan_of
 from game.sweeps.results import Results
-from game.sweeps.run import plan_of
-from game.sweeps.specimen import Specimen
-from game.sweeps.worker import compute
+from game.sweeps.variant_runner import VariantRunner
 from tests.reference.models import square, triangle
 
 MODEL = triangle(damping=100, density=6.15, tensile_strength=215, compressive_strength=215)
@@ -112,9 +111,9 @@ def test_variants_leave_nothing_behind(name: str) -> None:
         "energy.work,energy.imbalance",
     ]
     plan = plan_of(source() if callable(source) else source, vary, measures, analysis, (), None, 0)
-    alone = [compute(plan, [number])[0] for number in range(plan.size)]
-    assert compute(plan, range(plan.size)) == alone
-    assert compute(plan, range(plan.size)[::-1]) == alone[::-1]
+    alone = [compute(plan, [number]).outcomes[0] for number in range(plan.size)]
+    assert compute(plan, range(plan.size)).outcomes == alone
+    assert compute(plan, range(plan.size)[::-1]).outcomes == alone[::-1]
 
 
 def test_load_factors_are_rows_of_a_variant() -> None:
@@ -212,13 +211,13 @@ def interrupted(output: Path, **options: Any) -> None:
 def computed(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The numbers of the variants that are computed."""
     numbers: list[int] = []
-    records = Specimen.records
+    records = VariantRunner.records
 
-    def noted(self: Specimen, number: int) -> Any:
+    def noted(self: VariantRunner, number: int) -> Any:
         numbers.append(number)
         return records(self, number)
 
-    monkeypatch.setattr(Specimen, "records", noted)
+    monkeypatch.setattr(VariantRunner, "records", noted)
     return numbers
 
 
@@ -384,7 +383,7 @@ def test_an_installation_that_differs_does_not_compute() -> None:
 
     plan = plan_of(MODEL, [FORCE_Y], MEASURES, STATIC, (), None, 0)
     with pytest.raises(SweepError, match=r"the sweep is of 9\.9"):
-        list(outcomes(replace(plan, installation=replace(plan.installation, version="9.9")), [0], 1, None))
+        list(compute_all(replace(plan, software=replace(plan.software, version="9.9")), [0], 1, None))
 
 
 # --- the command -------------------------------------------------------------------------------------------

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from game import Session
-from systems.catalogue import DRIVERS
+from systems.physics.integrators import INTEGRATORS
 from tests.benchmarks import accuracy, problems
 from tests.reference.closed_forms import free_vibration
 from tests.reference.elements import Model
 from tests.reference.models import oscillator
 
 OMEGA, ZETA, SPEED = 2 * math.pi, 0.3, 0.1
-ADAPTIVE = [name for name, driver in DRIVERS.items() if driver.estimates_error]
+ADAPTIVE = [name for name, driver in INTEGRATORS.items() if driver.estimates_error]
 # Steps in one period: coarse enough that the error is above round-off, fine enough that its first term leads.
 COARSEST = {"dop853": 4, "esdirk4": 16, "rk4": 16}
 
@@ -25,7 +25,7 @@ def run(document: Model, end: float, **settings: object) -> Session:
     return session
 
 
-@pytest.mark.parametrize("integrator", list(DRIVERS))
+@pytest.mark.parametrize("integrator", list(INTEGRATORS))
 def test_the_error_falls_with_the_order_that_is_stated(integrator: str) -> None:
     exact, _ = free_vibration(1.0, OMEGA, ZETA, 0.0, SPEED)
     fewest = COARSEST.get(integrator, 64)
@@ -35,7 +35,7 @@ def test_the_error_falls_with_the_order_that_is_stated(integrator: str) -> None:
         session = run(document, 1.0, integrator=integrator, time_step=1.0 / steps)
         errors.append(abs(session.particles["B"].displacement[0] - exact))
     observed = math.log2(errors[1] / errors[2])
-    assert observed == pytest.approx(DRIVERS[integrator].order, abs=0.35), errors
+    assert observed == pytest.approx(INTEGRATORS[integrator].order, abs=0.35), errors
 
 
 @pytest.mark.parametrize("integrator", ADAPTIVE)
@@ -77,7 +77,7 @@ def yielding_damped() -> Model:
     return document | {"environment": {"drag": 0.1}}
 
 
-@pytest.mark.parametrize("integrator", list(DRIVERS))
+@pytest.mark.parametrize("integrator", list(INTEGRATORS))
 def test_the_energy_account_closes_with_the_step(integrator: str) -> None:
     """By half the step the imbalance falls at least by half; with error control it is as small as the tolerance."""
     imbalances = []

@@ -1,1 +1,1 @@
-"""The past of a session: undo and redo, and the moments of a run to go back to."""
+"""The past of a session: undo and redo, and the checkpoints of a run to go back to."""

@@ -9,12 +9,11 @@ from dataclasses import replace
 from components.commands import Assign, Command, Group
 from components.field import Role
 from components.model import Model
-from game.documents.history.log import Edit, Entry, Log, Run
-from game.documents.history.shelf import Shelf
-from systems.run.checkpoint import Moment
+from game.documents.history.log import DiskStore, Edit, Entry, Log, Run
+from systems.run.checkpoint import Checkpoint
 from systems.run.simulation import Simulation
 
-MEMORY = 256 * 2**20  # bytes that the states before runs may take; older ones are put on a shelf
+MEMORY = 256 * 2**20  # bytes that the states before runs may take; older ones go to the disk
 
 
 class History:
@@ -30,15 +29,15 @@ class History:
         on_change: Callable[[Entry], None],
         memory: int = MEMORY,
     ) -> None:
-        shelf = Shelf()
-        self._done, self._undone = Log(shelf, memory), Log(shelf, memory)
+        store = DiskStore()
+        self._done, self._undone = Log(store, memory), Log(store, memory)
         self._model = model
         self._simulation = simulation
         self._on_change = on_change
         self._run: Run | None = None
         self._run_revision = -1
         self._key: Hashable | None = None
-        self._clock: Moment | None = None  # before the command that is being executed
+        self._clock: Checkpoint | None = None  # before the command that is being executed
         model.before_change = self._before_change
         model.on_command = self._record
 
@@ -47,7 +46,7 @@ class History:
     def _before_change(self) -> None:
         # A transaction consists of several changes, of which only the first finds all edits accounted for.
         if self._clock is None or self._simulation.armed:
-            self._clock = self._simulation.moment("clock")
+            self._clock = self._simulation.checkpoint("clock")
         self._simulation.before_change()
 
     def _record(self, inverse: Command) -> None:
@@ -87,7 +86,7 @@ class History:
     def begin_run(self, *, single: bool = False) -> None:
         """Time begins to pass."""
         if self._run is None:
-            self._run = Run(self._simulation.moment(), single)
+            self._run = Run(self._simulation.checkpoint(), single)
             self._run_revision = self._model.newest(Role.STATE)
 
     def end_run(self) -> None:
@@ -145,12 +144,12 @@ class History:
             return ""
         entry = source.pop()
         if isinstance(entry, Run):
-            target.push(Run(self._simulation.moment(), entry.single))
+            target.push(Run(self._simulation.checkpoint(), entry.single))
             self._simulation.resume(entry.before)
             title = "run"
         else:
             # Where a run went before that no time passed in, but that moved discs apart, all of the state counts.
-            now = self._simulation.moment(*(() if entry.clock.whole else ("clock",)))
+            now = self._simulation.checkpoint(*(() if entry.clock.whole else ("clock",)))
             target.push(Edit(self._model.apply(entry.inverse), now, entry.key))
             self._simulation.resume(entry.clock)
             title = _title(entry.inverse)

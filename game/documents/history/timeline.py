@@ -1,4 +1,4 @@
-"""Timeline: the moments of a run since the last edit, to step back through; those not kept are run again."""
+"""Timeline: checkpoints of a run since the last edit, to step back through; the steps between are run again."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from systems.edit.pull import Hand, Pull
-from systems.run.checkpoint import Moment
+from systems.run.checkpoint import Checkpoint
 from systems.run.simulation import Simulation
 
-MEMORY = 256 * 2**20  # bytes that kept moments may take; less: going back takes longer
-MOST_MOMENTS = 512
-FIRST_INTERVAL = 128  # steps between kept moments; doubled whenever there are too many
-RUN_UP = 64  # steps before the one gone back to, where a moment is kept for going back further
+MEMORY = 256 * 2**20  # bytes that checkpoints may take; less: going back takes longer
+MOST_CHECKPOINTS = 512
+FIRST_INTERVAL = 128  # steps between checkpoints; doubled whenever there are too many
+RUN_UP = 64  # steps before the one gone back to, where a checkpoint is kept for going back further
 
 
 class Timeline:
-    """Keeps moments at fixed step counts, so that what is kept does not depend on the frames.
+    """Keeps checkpoints at fixed step counts, so that what is kept does not depend on the frames.
 
     Between them a run is a function of the step only, but for the hand that pulls a particle; what it did
     is noted, and done again when a stretch of time is run again.
@@ -30,7 +30,7 @@ class Timeline:
 
     def clear(self) -> None:
         """Something was edited: what ran before cannot be run again as it was."""
-        self._moments: dict[int, Moment] = {}
+        self._checkpoints: dict[int, Checkpoint] = {}
         self._hands: list[tuple[int, Hand | None]] = []  # the step at which the hand changed, and to what
         self._interval = FIRST_INTERVAL
         self._went_back = False
@@ -42,12 +42,12 @@ class Timeline:
     @property
     def first(self) -> int:
         """The earliest step that one can go back to."""
-        return min(self._moments, default=self._now)
+        return min(self._checkpoints, default=self._now)
 
     @property
     def kept(self) -> int:
-        """How many moments are kept."""
-        return len(self._moments)
+        """How many checkpoints are kept."""
+        return len(self._checkpoints)
 
     # --- recording -------------------------------------------------------------------------------------
 
@@ -57,13 +57,13 @@ class Timeline:
             self._went_back = False
             if any(at >= self._now for at, _ in self._hands):
                 self._hands = [(at, hand) for at, hand in self._hands if at < self._now]
-                self._moments = {at: moment for at, moment in self._moments.items() if at <= self._now}
-        if not self._moments:
+                self._checkpoints = {at: point for at, point in self._checkpoints.items() if at <= self._now}
+        if not self._checkpoints:
             self._keep()
 
     @contextmanager
     def recording(self) -> Iterator[None]:
-        """Keep moments of the time that passes inside."""
+        """Keep checkpoints of the time that passes inside."""
         self.begin()
         self._simulation.watch = self._watch
         try:
@@ -73,20 +73,22 @@ class Timeline:
 
     def _watch(self) -> int:
         beyond = self._now % self._interval
-        if beyond == 0 or self._now in self._moments:
+        if beyond == 0 or self._now in self._checkpoints:
             self._keep()
         return self._interval - beyond
 
     def _keep(self) -> None:
         now = self._now
-        if now in self._moments and self._moments[now].armed:
+        if now in self._checkpoints and self._checkpoints[now].armed:
             return
-        moment = self._moments[now] = self._simulation.moment()
-        if len(self._moments) > max(min(MOST_MOMENTS, self._memory // max(moment.state.size, 1)), 2):
+        checkpoint = self._checkpoints[now] = self._simulation.checkpoint()
+        if len(self._checkpoints) > max(
+            min(MOST_CHECKPOINTS, self._memory // max(checkpoint.state.size, 1)), 2
+        ):
             self._interval *= 2
             kept = {self.first, now}
-            self._moments = {
-                at: moment for at, moment in self._moments.items() if at % self._interval == 0 or at in kept
+            self._checkpoints = {
+                at: point for at, point in self._checkpoints.items() if at % self._interval == 0 or at in kept
             }
 
     def hold(self, hand: Hand | None) -> None:
@@ -94,8 +96,8 @@ class Timeline:
         self.begin()
         anew = self._change_hand(hand)
         self._hands.append((self._now, hand))
-        if anew or self._now in self._moments:  # what is kept of a step is what follows from the hand there
-            self._moments[self._now] = self._simulation.moment()
+        if anew or self._now in self._checkpoints:  # what is kept of a step is what follows from the hand there
+            self._checkpoints[self._now] = self._simulation.checkpoint()
 
     def _change_hand(self, hand: Hand | None) -> bool:
         """True if the run goes on by another program, which takes longer to get ready than many steps do."""
@@ -112,9 +114,9 @@ class Timeline:
 
     def go_to(self, steps: int) -> bool:
         """Return to a step between the first and the last that was run; False if it cannot be reached."""
-        if not self._moments or steps < self.first:
+        if not self._checkpoints or steps < self.first:
             return False
-        start = max(at for at in self._moments if at <= steps)
+        start = max(at for at in self._checkpoints if at <= steps)
         self._resume(start)
         for at, hand in self._hands:
             if start < at < steps:
@@ -134,7 +136,7 @@ class Timeline:
         if hand is not self._pull.hand:
             self._simulation.before_change()  # it runs by another program now
             self._pull.take(hand)
-        self._simulation.resume(self._moments[at])
+        self._simulation.resume(self._checkpoints[at])
 
     def _run_to(self, steps: int) -> None:
         self._simulation.advance(max(steps - self._now, 0))

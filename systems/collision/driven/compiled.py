@@ -7,7 +7,7 @@ from functools import cache
 from types import ModuleType
 from typing import Any
 
-from systems.program.compiler import compile_module, is_compiled, note_compiled
+from systems.program.compiler import compile_module
 
 _SOURCE = '''\
 """Driven collisions. Generated; safe to delete."""
@@ -61,7 +61,8 @@ def part(first, second, position, displacement, radius, inverse_mass, span, slac
 '''
 
 
-def _kernels() -> dict[str, Callable[..., Any]]:
+def contents() -> tuple[str, dict[str, Callable[..., Any]]]:
+    """The source, and the kernels by the names that it calls them."""
     from systems.collision.kernels import driven, pairs
     from systems.collision.kernels.complementarity import complementary
     from systems.collision.kernels.overlap import separate
@@ -77,20 +78,10 @@ def _kernels() -> dict[str, Callable[..., Any]]:
         complementary,
         separate,
     )
-    return {part.py_func.__name__: part for part in parts}
-
-
-def has_driven_collisions() -> bool:
-    """True if the kernels need not be compiled any more, only loaded."""
-    return is_compiled(_SOURCE, _kernels())
-
-
-def note_driven_collisions() -> None:
-    """All kernels have been called, and so compiled."""
-    note_compiled(kernels())
+    return _SOURCE, {part.py_func.__name__: part for part in parts}
 
 
 @cache
 def kernels() -> ModuleType:
     """The kernels by name; compiled at the first call of each, or loaded from the cache."""
-    return compile_module(_SOURCE, _kernels())
+    return compile_module(*contents())

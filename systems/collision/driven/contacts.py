@@ -82,7 +82,7 @@ class ContactStepper:
             h = trial.duration
             if h == 0.0 or reason is StopReason.DIVERGED:
                 return reason, turn == 0  # contact forces that were tried are not to blame
-            if trial.program.driver.controlled:
+            if trial.program.integrator.controlled:
                 end = self.model.clock.time
             gap, last = near.gaps(pairs, near.displacement)
             gap -= least

@@ -85,7 +85,7 @@ class CrowdStepper:
             if clock.time == trial.start or reason is StopReason.DIVERGED:
                 trial.take_back()
                 return reason
-            if trial.program.driver.controlled:
+            if trial.program.integrator.controlled:
                 end = clock.time
             if problem.holds(forces, near.displacement - origin):
                 break

@@ -8,7 +8,7 @@ there, and after the impact forces are evaluated anew.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 
@@ -19,16 +19,18 @@ from components.particle import Particle
 from components.snapshot import Snapshot
 from systems.base import StopReason
 from systems.collision.columns import PairKind
-from systems.collision.driven.compiled import note_driven_collisions
+from systems.collision.driven.compiled import contents
 from systems.collision.driven.contacts import ContactStepper, complementary
 from systems.collision.driven.crowds import ContactProblem, CrowdStepper
 from systems.collision.driven.impact import TOUCHING_GAP, ImpactResolver
 from systems.collision.driven.neighbours import NeighbourList
-from systems.collision.driven.trial import Land, TrialStep
+from systems.collision.driven.trial import TrialStep
 from systems.collision.impacts import Impacts
 from systems.collision.overlaps import part_overlaps
 from systems.collision.system import persistent_contacts
+from systems.program.compiler import CompiledUnit
 from systems.program.program import Program
+from systems.program.stepper import Stepper
 
 FEWEST_CLEAR_STEPS = 4  # a time without impacts that is shorter is not worth a search for it
 UNKNOWN_FORCE_STEPS = 16  # steps taken at once without examination where laws of mods decide the forces
@@ -36,23 +38,31 @@ UNKNOWN_FORCE_SHARE = 8.0  # or as many steps as end within this part (1/8) of t
 MOST_IMPACT_TRIES = 60  # of the length of a step that ends at an impact
 
 
+class Steps(Stepper, Protocol):
+    """The steps of a program, which end at no impact."""
+
+    @property
+    def program(self) -> Program:
+        """What takes the next steps."""
+
+    def rebound(self) -> Program:
+        """What takes the next steps, now that an impact changed the plan."""
+
+
 class DrivenCollisions:
-    """Takes the steps of a program of one model, and ends steps at impacts.
+    """The stepper that takes the steps of a program of one model, and ends steps at impacts."""
 
-    land: takes a short step to a time (s). rebind: returns the program for the plan after that changed.
-    """
-
-    def __init__(self, model: Model, impacts: Impacts, land: Land, rebind: Callable[[], Program]) -> None:
+    def __init__(self, model: Model, impacts: Impacts, steps: Steps) -> None:
         self.model = model
-        self._land = land
-        self._rebind = rebind
+        self._steps = steps
         self._neighbours = NeighbourList(model)
         self._contacts = ContactStepper(model, self._neighbours)
         self._impacts = ImpactResolver(model, impacts, self._neighbours)
         self._crowds = CrowdStepper(model, self._neighbours, self._impacts)
 
-    def advance(self, program: Program, steps: int, until: float) -> tuple[int, StopReason]:
-        """Take up to `steps` steps that end by `until` (s); returns how many, and why it stopped."""
+    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
+        """Take up to `steps` steps that end by `until` (s), as every stepper does; none is cut at `landing`."""
+        program = self._steps.program
         self._neighbours.look_up()
         clock = self.model.clock
         first = clock.steps
@@ -64,8 +74,9 @@ class DrivenCollisions:
                 return clock.steps - first, reason
         return clock.steps - first, StopReason.DONE
 
-    def land(self, program: Program, target: float) -> StopReason:
+    def land(self, target: float) -> StopReason:
         """Take the last, short step to a time (s): in parts if there are impacts, or if steps are shorter."""
+        program = self._steps.program
         self._neighbours.look_up()
         self._neighbours.clear_time(0.0)
         clock, reason = self.model.clock, StopReason.DONE
@@ -103,7 +114,7 @@ class DrivenCollisions:
         Returns the number of steps taken, why it stopped, and the program for the next step.
         """
         clock, steps = self.model.clock, self.model.clock.steps
-        trial = TrialStep(self.model, program, until, self._land)
+        trial = TrialStep(self.model, program, until, self._steps.land)
         problem = self._crowds.problem(until, landing)
         if problem is not None:
             reason = self._crowd_step(problem, trial, landing)
@@ -114,7 +125,7 @@ class DrivenCollisions:
             return clock.steps - steps, reason, program
         reason, persists = self._resolve(trial, held, reason, impact)
         if persists or (held is not None and persistent_contacts(self.model) is None):
-            program = self._rebind()
+            program = self._steps.rebound()
         return max(clock.steps - steps, 1), reason, program
 
     def _crowd_step(self, problem: ContactProblem, trial: TrialStep, landing: bool) -> StopReason:
@@ -122,10 +133,10 @@ class DrivenCollisions:
         if persistent_contacts(self.model) is None:
             none = PersistentContacts(problem.pairs, np.zeros(len(problem.pairs)))
             self.model.writable("clock.collision_state")[0] = none
-            trial.program = self._rebind()
+            trial.program = self._steps.rebound()
         reason = self._crowds.step(problem, trial, landing)
         if persistent_contacts(self.model) is None:
-            trial.program = self._rebind()
+            trial.program = self._steps.rebound()
         return reason
 
     def _step_to_impact(
@@ -192,23 +203,20 @@ class DrivenCollisions:
         return reason
 
 
-def load_driven_collisions() -> None:
-    """Call every compiled kernel once, so that it is compiled, or loaded from the cache."""
+def _warm_up() -> None:
+    """Call every compiled function once."""
     model = Model()
     model.create(Particle, 2, position=[(0.0, 0.0), (0.09, 0.0)], velocity=[(1.0, 0.0), (0.0, 0.0)])
     part_overlaps(model)
-    collisions = DrivenCollisions(model, Impacts(model), lambda target: StopReason.DONE, _nothing_to_bind)
-    near = collisions._neighbours
+    near = NeighbourList(model)
+    before = Snapshot.take(model)
     near.look_up()
     near.clear_time()
-    before = Snapshot.take(model)
     model.writable("clock.time")[0] = 1e-3
     near.time_of_impact(before, None)
     gap, normal = near.gaps(near.pairs, near.displacement)
     complementary(near.compliance(near.pairs, normal, normal), gap, np.zeros(len(gap)))
-    collisions._impacts.resolve(before)
-    note_driven_collisions()
+    ImpactResolver(model, Impacts(model), near).resolve(before)
 
 
-def _nothing_to_bind() -> Program:
-    raise NotImplementedError("two discs that only load the kernels have no program")
+DRIVEN = CompiledUnit("driven_collisions", contents, _warm_up)

@@ -1,22 +1,19 @@
-"""The compiled parts of the engine of flight: each is a program of its own, so that two are compiled at once.
+"""The compiled units of free flight; each is a module of its own, so that two processes can compile two at once.
 
-`fly` lets events happen, `open_horizon` finds the impacts to come, `take_steps` moves piles (formed only
-by particles under forces).
+EVENTS lets events happen, HORIZONS finds the impacts to come, PILES takes the steps of piles, which only a hand that
+pulls, or gravity, forms.
 """
 
 from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from functools import cache
-from types import ModuleType
+from functools import cache, partial
 from typing import Any
 
 from systems.collision.columns import Count
 from systems.collision.free.discs import Discs
-from systems.program.compiler import compile_module, is_compiled, note_compiled
-
-EVENTS, HORIZONS, PILES = "fly", "open_horizon", "take_steps"
+from systems.program.compiler import CompiledUnit
 
 _SOURCE = '''\
 """A part of the engine of collisions. Generated; safe to delete."""
@@ -32,40 +29,36 @@ def {part}({arguments}):
 '''
 
 
-def _program(part: str) -> tuple[str, dict[str, Callable[..., int]]]:
-    """Source of a part, and what it calls."""
+def _contents(name: str) -> tuple[str, dict[str, Callable[..., int]]]:
     from systems.collision.kernels.flight import fly, take_steps
     from systems.collision.kernels.horizon import open_horizon
 
-    kernel = {EVENTS: fly, HORIZONS: open_horizon, PILES: take_steps}[part]
+    kernel = {"fly": fly, "open_horizon": open_horizon, "take_steps": take_steps}[name]
     arguments = ", ".join(inspect.signature(kernel.py_func).parameters)
-    return _SOURCE.format(part=part, arguments=arguments), {"kernel": kernel}
+    return _SOURCE.format(part=name, arguments=arguments), {"kernel": kernel}
 
 
-@cache
-def _module(part: str) -> ModuleType:
-    return compile_module(*_program(part))
-
-
-def has_parts(*parts: str) -> bool:
-    """True if these parts need not be compiled any more, only loaded."""
-    return all(is_compiled(*_program(part)) for part in parts)
-
-
-@cache
-def load_part(part: str) -> None:
-    """Have a part called once: it is compiled then, or loaded from the cache."""
+def _warm_up(name: str) -> None:
     discs = engine()([[0.0, 0.0]], [[0.0, 0.0]], [1.0], [[1.0, 1.0]])
-    if part == HORIZONS:
+    if name == "open_horizon":
         discs.open_horizon(discs.rows, discs.grid, discs.constraints, discs.queue, discs.numbers, discs.counts)
     else:
-        discs.counts[Count.RENEW], discs.counts[Count.STEPPING] = 0, part == PILES
-        discs.advance(discs.now - float(part == PILES))  # before the first step of a pile
-    note_compiled(_module(part))
+        steps = name == "take_steps"
+        discs.counts[Count.RENEW], discs.counts[Count.STEPPING] = 0, steps
+        discs.advance(discs.now - float(steps))  # before the first step of a pile
+
+
+def _unit(name: str) -> CompiledUnit:
+    return CompiledUnit(name, partial(_contents, name), partial(_warm_up, name))
+
+
+EVENTS, HORIZONS, PILES = _unit("fly"), _unit("open_horizon"), _unit("take_steps")
 
 
 @cache
 def engine() -> type[Discs]:
-    """Discs whose parts are compiled once and for all; each by its first call, unless it is loaded before."""
-    kernels: dict[str, Any] = {part: _module(part) for part in (EVENTS, HORIZONS, PILES)}
-    return type("Compiled", (Discs,), {part: staticmethod(getattr(kernels[part], part)) for part in kernels})
+    """Discs whose kernels are compiled; each by its first call, unless its unit was loaded before."""
+    kernels: dict[str, Any] = {
+        unit.name: staticmethod(getattr(unit.module, unit.name)) for unit in (EVENTS, HORIZONS, PILES)
+    }
+    return type("Compiled", (Discs,), kernels)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 import time
 from typing import Protocol
 
@@ -11,13 +12,15 @@ from numpy.typing import NDArray
 
 from components.collision_state import FreeFlightState
 from components.field import Role
+from components.load import loads_end
 from components.model import Model
 from components.obstacles import obstacles
 from systems.base import StopReason
 from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc
-from systems.collision.free.compiled import EVENTS, HORIZONS, PILES, engine, has_parts, load_part
+from systems.collision.free.compiled import EVENTS, HORIZONS, PILES, engine
 from systems.collision.free.discs import Discs
 from systems.collision.impacts import Impacts
+from systems.entries import Measure
 
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
 
@@ -37,7 +40,7 @@ class PullingHand(Protocol):
 class Flight:
     """The particles of one model on their exact paths from impact to impact.
 
-    measures: as of a step program. compile_seconds: time for compiling the kernels, or loading them from the cache.
+    measures, compile_seconds, follows_state: as of Dynamics. unbalanced: force on each particle as last observed (kN).
     The paths are part of the model's state: clock.collision_state. pull: a hand's force, constant during a step, so that
     paths are exact within it.
     """
@@ -45,15 +48,27 @@ class Flight:
     def __init__(self, model: Model, impacts: Impacts, pull: PullingHand | None = None) -> None:
         started = time.perf_counter()
         self.model = model
-        self.measures = np.zeros(8)
+        self.measures = np.zeros(len(Measure))
+        self.unbalanced = np.zeros((model.particles.count, 2))
+        self.follows_state = False  # contacts keep particles at rest, too
         self._impacts = impacts
         self._pull = pull
-        for part in (EVENTS, HORIZONS):
-            load_part(part)
-        if has_parts(PILES):
-            load_part(PILES)  # now, so that an edit that needs it does not wait
+        for unit in (EVENTS, HORIZONS):
+            unit.load()
+        if PILES.is_compiled():
+            PILES.load()  # now, so that an edit that needs it does not wait
         self.bind()
         self.compile_seconds = time.perf_counter() - started
+
+    @property
+    def changes_end(self) -> float:
+        """The time (s) at which the last load history ends."""
+        return loads_end(self.model)
+
+    @property
+    def lasting(self) -> str:
+        """Nothing changes with time for ever."""
+        return ""
 
     @property
     def resists_motion(self) -> bool:
@@ -64,7 +79,7 @@ class Flight:
     def bind(self) -> None:
         """The document changed: paths are found anew."""
         if may_pile(self.model, self._pull is not None):
-            load_part(PILES)
+            PILES.load()
         self._flying: Discs | None = None
         self._state_revision = -1
 
@@ -111,11 +126,21 @@ class Flight:
     # --- running -----------------------------------------------------------------------------------
 
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
-        """Let the time of up to `steps` steps pass; returns how many, and why it stopped.
+        """Let the time of up to `steps` steps pass, none of which ends after `until` (s), as every stepper does.
 
-        No step ends after `until` (s); one that would pass `landing` (s) is cut to end there. Steps are only
-        where one looks: what happens does not depend on them, unless a hand pulls.
+        None is cut at `landing`: steps are only where one looks. What happens does not depend on them, unless a
+        hand pulls.
         """
+        return self._take(steps, until, math.inf)
+
+    def land(self, target: float) -> StopReason:
+        """Let time pass to exactly `target` (s)."""
+        clock, reason = self.model.clock, StopReason.DONE
+        while clock.time < target and reason is StopReason.DONE:
+            _, reason = self._take(sys.maxsize, target, target)
+        return reason
+
+    def _take(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         if self._pull is None:
             return self._pass(steps, until, landing)
         taken, reason = 0, StopReason.DONE
@@ -207,16 +232,14 @@ class Flight:
         self.model.writable("particles.applied_force")[...] = force
         self.model.writable("particles.reaction")[...] = np.where(fixed, 0.0 - force, 0.0)
         free: NDArray[np.float64] = np.where(fixed, 0.0, force)
-        self.measures[:] = (
-            0.5 * float((particles.mass[:, None] * velocity * velocity).sum()),
-            1000.0 * float((free * particles.mobility * free).sum()),
-            0.0,
-            1000.0 * float((constant * particles.displacement).sum()),
-            float(np.abs(free).max(initial=0.0)),
-            float(np.abs(constant).max(initial=0.0)),
-            0.0,
-            1000.0 * float((free * velocity).sum()),
-        )
+        self.unbalanced = force
+        measures = self.measures
+        measures[Measure.KINETIC] = 0.5 * (particles.mass[:, None] * velocity * velocity).sum()
+        measures[Measure.POWER_NORM] = 1000.0 * (free * particles.mobility * free).sum()
+        measures[Measure.POTENTIAL] = 1000.0 * (constant * particles.displacement).sum()
+        measures[Measure.RESIDUAL] = np.abs(free).max(initial=0.0)
+        measures[Measure.LARGEST_FORCE] = np.abs(constant).max(initial=0.0)
+        measures[Measure.POWER] = 1000.0 * (free * velocity).sum()
 
     def conserved_energy(self) -> float:
         """Energy is exact to round-off: nothing guards it."""

@@ -8,9 +8,8 @@ import pytest
 
 from components.collision_state import PersistentContacts
 from game import Session
-from systems.collision.driven.compiled import has_driven_collisions
 from systems.collision.driven.neighbours import NeighbourList
-from systems.collision.driven.stepper import load_driven_collisions
+from systems.collision.driven.stepper import DRIVEN
 from systems.collision.system import persistent_contacts
 from systems.edit.pull import hand_on
 
@@ -37,8 +36,8 @@ def truss(ball: dict[str, Any], restitution: float = 0.5, **settings: Any) -> di
 
 def test_what_a_window_loads_ahead_of_need_can_be_called() -> None:
     """Here, not in the process that compiles it, nor in the frame in which the window calls it."""
-    load_driven_collisions()
-    assert has_driven_collisions()
+    DRIVEN.load()
+    assert DRIVEN.is_compiled()
 
 
 def state(session: Session) -> bytes:

@@ -1,4 +1,4 @@
-"""Specimen: the model of a sweep in this process, brought back to its beginning after each variant."""
+"""Variant runner: the one model by which a process runs variants one by one, brought back after each."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from systems.run.simulation import Simulation
 from systems.schedule import Schedule
 
 
-class Specimen:
-    """One model for many variants: opening one and loading its step program takes longer than most runs.
+class VariantRunner:
+    """Runs variants of a plan by one model: opening one and loading its step program takes longer than most runs.
 
     A variant is edited and run inside a transaction that is taken back: commands have exact inverses, and
     all that time changes is in the snapshot, so that the next one begins with the same bits as the first.

@@ -1,37 +1,16 @@
-"""Implicit stages as source, for the driver of runge_kutta.py.
+"""Implicit stages, for the loop of runge_kutta.py.
 
 Each stage solves  M a = f(x̂ + (γh)² a, v̂ + γh a)  for its acceleration by Newton's method. The matrix
 M + γh C + (γh)² K is never formed: a product with it is one pass over the rods, and conjugate gradients,
-preconditioned by the 2 × 2 blocks of the particles, solve with it. The program provides
-
-    tangent(time, dt, by_x, by_v, displacement, velocity, direction, along, across, diagonal, beside, *columns)
-        direction ← unit vectors of the rods; along, across ← stiffness of each rod along and across its
-        axis (kN per m/s²), by_x and by_v being what an acceleration adds to displacement and velocity;
-        diagonal, beside ← the particles' own 2 × 2 blocks: mass, and what particle laws add
-
-Everything is summed in a fixed order and iterated to fixed tolerances, so that the same input gives the same
-bits.
+preconditioned by the 2 × 2 blocks of the particles, solve with it. Sums have a fixed order and iterations fixed
+tolerances: the same input gives the same bits.
 """
 
-# ruff: noqa: F821
+# ruff: noqa: F821, F841
 # mypy: ignore-errors
 
 
-def implicit_stages(
-    time,
-    dt,
-    allowed,
-    displacement,
-    velocity,
-    force,
-    resisting,
-    direction,
-    work,
-    rod_work,
-    gained,
-    stage_power,
-    *columns,
-):
+def implicit_stages(time, dt, allowed, state, scratch, *columns):
     """Accelerations of the stages after the first; False if Newton's method does not converge."""
     trial, speed = work[STAGES], work[STAGES + 1]
     known_x, known_v = work[STAGES + 2], work[STAGES + 3]
@@ -50,7 +29,7 @@ def implicit_stages(
                 for d in range(2):
                     speed[i, d] = known_v[i, d] + by_v * acceleration[i, d]
                     trial[i, d] = known_x[i, d] + by_x * acceleration[i, d]
-            evaluate(time + NODES[s] * dt, dt, trial, speed, force, resisting, direction, stage_power, *columns)
+            evaluate(time + NODES[s] * dt, dt, trial, speed, *forces, stage_power, *columns)
             if not correct(
                 time + NODES[s] * dt,
                 dt,
@@ -58,9 +37,7 @@ def implicit_stages(
                 by_v,
                 trial,
                 speed,
-                force,
-                resisting,
-                direction,
+                *forces,
                 acceleration,
                 correction,
                 work,
@@ -76,7 +53,7 @@ def implicit_stages(
             change = by_v * math.sqrt(change)
             if not change < math.inf or (iteration > 1 and change > 2.0 * before):
                 return False
-            if change <= NEWTON_SHARE * allowed or change <= NEWTON_FLOOR * before_size(by_v, acceleration):
+            if change <= NEWTON_SHARE * allowed or change <= NEWTON_FLOOR * size_of(by_v, acceleration):
                 break
             if iteration == MOST_CORRECTIONS:
                 return False
@@ -87,31 +64,89 @@ def implicit_stages(
     return True
 
 
-def before_size(by_v, acceleration):
-    """Change of velocity that an acceleration stands for (m/s), Euclidean."""
+def size_of(by_v, acceleration):
+    """Change of velocity that an acceleration makes (m/s), Euclidean norm."""
     size = 0.0
     for i in range(acceleration.shape[0]):
         size += acceleration[i, 0] * acceleration[i, 0] + acceleration[i, 1] * acceleration[i, 1]
     return by_v * math.sqrt(size)
 
 
-def correct(
-    time,
-    dt,
-    by_x,
-    by_v,
-    trial,
-    speed,
-    force,
-    resisting,
-    direction,
-    acceleration,
-    correction,
-    work,
-    rod_work,
-    *columns,
-):
-    """Newton's correction of the acceleration by conjugate gradients; False if the matrix is not positive."""
+def tangent(time, dt, by_x, by_v, displacement, velocity, direction, along, across, diagonal, beside, *columns):
+    """How forces follow an acceleration that adds by_x × itself to displacements, by_v × itself to velocities.
+
+    direction ← unit vectors of the rods; along, across ← stiffness of each rod along and across its axis (kN per
+    m/s²); diagonal, beside ← the particles' own 2 × 2 blocks: mass, and the laws that resist their motion.
+    Derivatives of the laws are central differences, wide enough for round-off and exact where a law is linear.
+    """
+    for i in range(displacement.shape[0]):
+        diagonal[i, 0] = 0.001 * particles_mass[i]
+        diagonal[i, 1] = 0.001 * particles_mass[i]
+        beside[i, 0] = 0.0
+        insert(particles)
+    insert(rods)
+
+
+def particle_tangent():
+    """Of one law that resists the motion of particle `i`."""
+    vx = velocity[i, 0]
+    vy = velocity[i, 1]
+    small = 1e-6 * (abs(vx) + abs(vy)) + 1e-9
+    share = 0.5 * by_v / small
+    velocity[i, 0] = vx + small
+    fx, fy = insert(force)
+    velocity[i, 0] = vx - small
+    gx, gy = insert(force)
+    velocity[i, 0] = vx
+    diagonal[i, 0] -= share * (fx - gx)
+    beside[i, 0] -= 0.5 * share * (fy - gy)
+    velocity[i, 1] = vy + small
+    fx, fy = insert(force)
+    velocity[i, 1] = vy - small
+    gx, gy = insert(force)
+    velocity[i, 1] = vy
+    diagonal[i, 1] -= share * (fy - gy)
+    beside[i, 0] -= 0.5 * share * (fx - gx)
+
+
+def rod_tangent():
+    """Of the laws of rod `r`, dampers apart."""
+    direction[r, 0] = nx
+    direction[r, 1] = ny
+    insert(rate)
+    insert(axial_force)
+    total = axial_force
+    here = elongation
+    small = 1e-7 * (length + original)
+    elongation = here + small
+    insert(axial_force)
+    more = axial_force
+    elongation = here - small
+    insert(axial_force)
+    stiffness = by_x * (more - axial_force) / (2.0 * small)
+    elongation = here
+    axial_force = total
+    insert(dampers)
+    along[r] = stiffness
+    across[r] = by_x * total * inverse
+
+
+def damper_tangent():
+    """Of the dampers of rod `r`."""
+    insert(damping_force)
+    total += damping_force
+    present = rate
+    small = small / by_v
+    rate = present + small
+    insert(damping_force)
+    more = damping_force
+    rate = present - small
+    insert(damping_force)
+    stiffness += by_v * (more - damping_force) / (2.0 * small)
+
+
+def correct(time, dt, by_x, by_v, trial, speed, forces, acceleration, correction, work, rod_work, *columns):
+    """correction ← Newton's, of the acceleration, by conjugate gradients; False if the matrix is not positive."""
     residual, search = work[STAGES + 5], work[STAGES + 6]
     product, solved = work[STAGES + 7], work[STAGES + 8]
     diagonal, beside = work[STAGES + 9], work[STAGES + 10]
@@ -157,7 +192,7 @@ def correct(
 
 
 def multiply(vector, product, direction, along, across, diagonal, beside, *columns):
-    """product ← (M + γh C + (γh)² K) vector; constrained directions do not take part."""
+    """product ← (M + γh C + (γh)² K) vector; constrained directions are left out."""
     for i in range(vector.shape[0]):
         product[i, 0] = diagonal[i, 0] * vector[i, 0] + beside[i, 0] * vector[i, 1]
         product[i, 1] = diagonal[i, 1] * vector[i, 1] + beside[i, 0] * vector[i, 0]
@@ -210,7 +245,7 @@ def precondition(direction, along, across, diagonal, beside, straight, skew, *co
 
 
 def relax(residual, solved, straight, skew):
-    """solved ← preconditioned residual; returns their product, the square of its size."""
+    """solved ← preconditioned residual; returns their product, the squared norm of the residual."""
     size = 0.0
     for i in range(residual.shape[0]):
         solved[i, 0] = straight[i, 0] * residual[i, 0] + skew[i, 0] * residual[i, 1]

@@ -1,33 +1,16 @@
-"""Drivers with fixed steps, as source: the step program is written around them and compiled as one module.
+"""Integrators with fixed steps.
 
-An integrator of plain steps says what becomes of each particle `i` as a step begins, and as it ends, once there
-are forces at the new displacement and the predicted velocity. It leaves in `velocity` its mean over the step
-until the end. Any other is a function `integrate` and what it calls.
-
-In this source `*columns` stands for the flat list of the model's columns (particles_mobility,
-particles_mass, … can therefore be used by name), which the program writer puts in: arrays in tuples cost
-twice as much per step in small models. Provided by the program are
-
-    forces(time, dt, displacement, velocity, force, resisting, direction, *columns)
-        force ← loads, environment and rods without dampers (kN); resisting ← dampers and drag;
-        direction ← unit vectors of the rods
-    accept(time, dt, displacement, velocity, force, resisting, direction, account, *columns)
-        the same at an accepted state: commits history first
-    resist(time, dt, displacement, velocity, resisting, direction, power, *columns)
-        resisting ← dampers and drag at another velocity; power ← what each account gains (kN·m/s)
-    load_power(time, velocity, *columns)
-        what the varying loads of that time do per second at a velocity (kN·m/s)
-
-and the constants RATES (something depends on velocity), POWERS (some account gains by the step) and LOADS
-(some load varies). `account` holds the accounts of systems.base.ACCOUNTS first, in J. The work of loads is
-their mean force times the displacement of the step: with it the energy that Verlet conserves is exact.
+Such an integrator says what becomes of each particle `i` as a step begins (`…_begins`), and as it ends (`…_ends`), once
+the forces at the new displacement and the predicted velocity are known. In between, `velocity` holds its mean over the
+step: with it the work of loads, mean force times displacement, makes the energy that Verlet conserves exact. Any other
+integrator is a function in place of `integrate`.
 """
 
-# ruff: noqa: F821
+# ruff: noqa: F821, F841
 # mypy: ignore-errors
 
 
-def verlet_begins(i, dt, displacement, velocity, force, resisting, predicted, *columns):
+def verlet_begins(i, dt, state, predicted, *columns):
     """x₊ = x + h v + h²/2 a; v* = v + h a; half of the way to v₊."""
     ax = force[i, 0]
     ay = force[i, 1]
@@ -49,7 +32,7 @@ def verlet_begins(i, dt, displacement, velocity, force, resisting, predicted, *c
         predicted[i, 1] = vy + dt * ay
 
 
-def verlet_ends(i, dt, displacement, velocity, force, resisting, predicted, *columns):
+def verlet_ends(i, dt, state, predicted, *columns):
     """v₊ = v + h/2 (a + a*), a* = a(x₊, v*); dampers and drag are then evaluated at v₊."""
     ax = force[i, 0]
     ay = force[i, 1]
@@ -60,7 +43,7 @@ def verlet_ends(i, dt, displacement, velocity, force, resisting, predicted, *col
     velocity[i, 1] += 0.5 * dt * (ay * particles_mobility[i, 1])
 
 
-def taylor2_begins(i, dt, displacement, velocity, force, resisting, predicted, *columns):
+def taylor2_begins(i, dt, state, predicted, *columns):
     """The thesis' x₊ = x + v h + a h²/2; v₊ = v + a h."""
     ax = force[i, 0]
     ay = force[i, 1]
@@ -77,13 +60,13 @@ def taylor2_begins(i, dt, displacement, velocity, force, resisting, predicted, *
     predicted[i, 1] = velocity[i, 1] + gain_y
 
 
-def taylor2_ends(i, dt, displacement, velocity, force, resisting, predicted, *columns):
+def taylor2_ends(i, dt, state, predicted, *columns):
     """v₊ as predicted; until now v was the mean of the step."""
     velocity[i, 0] = predicted[i, 0]
     velocity[i, 1] = predicted[i, 1]
 
 
-def euler_begins(i, dt, displacement, velocity, force, resisting, predicted, *columns):
+def euler_begins(i, dt, state, predicted, *columns):
     """v₊ = v + h a(x, v); x₊ = x + h v₊."""
     ax = force[i, 0]
     ay = force[i, 1]
@@ -99,12 +82,37 @@ def euler_begins(i, dt, displacement, velocity, force, resisting, predicted, *co
         predicted[i, 1] = velocity[i, 1]
 
 
-def euler_ends(i, dt, displacement, velocity, force, resisting, predicted, *columns):
-    """Nothing is left to do."""
+def euler_ends(i, dt, state, predicted, *columns):
+    """The step is complete."""
+
+
+def integrate(steps, first, origin, dt, state, scratch, account, *columns):
+    """Take so many steps of length dt (s), the first of which begins `first` steps after the time `origin`."""
+    for step in range(1, steps + 1):
+        time = origin + (first + step) * dt
+        insert(displacement)
+        insert(work)
+        insert(velocity)
+    insert(rest)
+
+
+def work():
+    """The work of varying loads in a step: their mean force times the displacement."""
+    began = origin + (first + step - 1) * dt
+    before = load_power(began, velocity, *columns)
+    after = load_power(time, velocity, *columns)
+    account[Account.WORK] += 500.0 * dt * (before + after)
+
+
+def powers():
+    """What each account gains in the step that ends here, by the trapezoidal rule."""
+    for k in range(insert(accounts)):
+        account[k] += 500.0 * dt * (power[k] + gained[k])
+        power[k] = gained[k]
 
 
 def push(dt, velocity, force, resisting, predicted, *columns):
-    """The velocities to which the present forces lead in a step."""
+    """predicted ← the velocities to which the present forces lead in a step."""
     for i in range(velocity.shape[0]):
         for d in range(2):
             total = force[i, d] + resisting[i, d] if RATES else force[i, d]
@@ -127,37 +135,19 @@ def steps_to_check(total, age):
 
 
 def advance(
-    steps,
-    fresh,
-    total,
-    first,
-    origin,
-    dt,
-    breaks,
-    loads_end,
-    displacement,
-    velocity,
-    force,
-    resisting,
-    direction,
-    predicted,
-    power,
-    gained,
-    account,
-    measures,
-    *columns,
+    steps, fresh, total, first, origin, dt, breaks, loads_end, state, scratch, account, measures, *columns
 ):
     """Take up to `steps` steps; returns (steps taken, StopReason).
 
     fresh: the forces are still those of the present state. total: all steps so far. first: steps since
     the time origin. breaks: times at which loads change abruptly, ascending, the last one infinite; a step
-    that would pass one is taken in pieces. Checks happen 1, 2, 4, … steps after the origin, for a step that
-    is much too long makes garbage at once, and whenever the total is a multiple of CHECK_INTERVAL: at counts
-    that do not depend on how the steps are divided into calls.
+    that would pass one is taken in pieces. loads_end: when loads stop to vary (s). The state is checked 1, 2, 4, …
+    steps after the origin, because a step that is much too long makes garbage at once, and whenever the total is
+    a multiple of CHECK_INTERVAL: at counts that do not depend on how the steps are divided into calls.
     """
     time = origin + first * dt
     if not fresh:
-        forces(time, dt, displacement, velocity, force, resisting, direction, *columns)
+        forces(time, dt, *state, *columns)
         if POWERS:
             resist(time, dt, displacement, velocity, resisting, direction, power, *columns)
     taken = 0
@@ -170,7 +160,7 @@ def advance(
         if breaks[coming] < end or time > origin + age * dt:  # a piece of a step, ending at `since`
             now, after, since = 1, -1, min(end, breaks[coming])
             size = since - time
-            while since - size < time:  # by rounding: the piece would seem to begin before a load that jumps
+            while since - size < time:  # rounded, the piece would seem to begin before a load that jumps
                 size -= 2.3e-16 * size
             done = 1 if since == end else 0
         else:
@@ -178,22 +168,7 @@ def advance(
             while now > 1 and origin + (age + now) * dt > breaks[coming]:
                 now //= 2
             done = now
-        integrate(
-            now,
-            after,
-            since,
-            size,
-            displacement,
-            velocity,
-            force,
-            resisting,
-            direction,
-            predicted,
-            power,
-            gained,
-            account,
-            *columns,
-        )
+        integrate(now, after, since, size, *state, *scratch, account, *columns)
         time = since + (after + now) * size
         if done == 0:
             continue
@@ -207,8 +182,8 @@ def advance(
                 push(dt, velocity, force, resisting, predicted, *columns)
                 ahead = 1000.0 * dt * abs(load_power(time, predicted, *columns))
             reason = judge(measures, account, dt, SHADOW, ahead, time >= loads_end)
-            if reason != 0:
-                return taken, reason
+            if reason != StopReason.DONE:
+                return taken, reason.value
         if (total + taken) % REVIEW_INTERVAL == 0:
-            return taken, 1
-    return taken, 0
+            return taken, StopReason.REVIEW.value
+    return taken, StopReason.DONE.value

@@ -1,49 +1,22 @@
-"""Runge–Kutta drivers as source: one loop with error control and events for every tableau.
+"""Runge–Kutta integrators: one loop with error control and events for every tableau.
 
-Written like fixed_steps.py, which says what `*columns` is. Besides, the program provides
-
-    evaluate(time, dt, displacement, velocity, force, resisting, direction, power, *columns)
-        like forces(), and power ← what each account gains per second (kN·m/s)
-    mark(dt, displacement, velocity, marks, *columns)
-        notes for every rod which branch of its law it is on; returns how far the nearest is from leaving
-    passed(dt, displacement, velocity, marks, first, *columns)
-        how far the nearest rod is from leaving its branch at the end of a step; negative: it has left.
-        first: this is the first look at this step, which chooses the rods whose extremes are watched.
-
-and the tableau's constants (see tableaus.py), EVENTS (some rod has branches) and CHECK_INTERVAL.
-
-`work` has rows of shape (particles, 2): the accelerations of the stages, the trial displacement and
-velocity, then what the stages need; `marks` one row per rod. `control` is the state of the controller: time
-(s), step to try next (s), last error (1 is the tolerance), largest ‖displacement‖ (m) and ‖velocity‖ (m/s).
-`search` is that of the search for one step: see narrow(), the largest norms if it is accepted, and how long
-steps may be (s).
+Constants besides those of every template: the tableau's, STAGES, NODES, … (systems/physics/tableaus.py), and the loop's
+(systems/physics/integrators.py). `work` has rows of shape (particles, 2): the accelerations of the stages, the
+displacement and velocity at a stage and then of the result, and what implicit stages need. `marks` has a row for
+each rod. The function that computes the stages is called `stages` in the program.
 """
 
 # ruff: noqa: F821
 # mypy: ignore-errors
 
 
-def explicit_stages(
-    time,
-    dt,
-    allowed,
-    displacement,
-    velocity,
-    force,
-    resisting,
-    direction,
-    work,
-    rod_work,
-    gained,
-    stage_power,
-    *columns,
-):
-    """Accelerations of the stages after the first; True, for it always succeeds."""
+def explicit_stages(time, dt, allowed, state, scratch, *columns):
+    """Accelerations of the stages after the first; returns True: they can always be computed."""
     trial, speed = work[STAGES], work[STAGES + 1]
     for s in range(1, STAGES):
         extrapolate(s, dt, displacement, velocity, work, trial, speed)
         at = time + NODES[s] * dt
-        evaluate(at, dt, trial, speed, force, resisting, direction, stage_power, *columns)
+        evaluate(at, dt, trial, speed, *forces, stage_power, *columns)
         accelerate(force, resisting, work[s], *columns)
         if POWERS or LOADS:
             for k in range(gained.shape[0]):
@@ -52,7 +25,7 @@ def explicit_stages(
 
 
 def extrapolate(s, dt, displacement, velocity, work, trial, speed):
-    """What the stages before stage `s` make of displacement and velocity there."""
+    """trial, speed ← displacement and velocity at stage `s`, from the accelerations of the stages before it."""
     for i in range(displacement.shape[0]):
         for d in range(2):
             p = 0.0
@@ -66,7 +39,7 @@ def extrapolate(s, dt, displacement, velocity, work, trial, speed):
 
 
 def accelerate(force, resisting, acceleration, *columns):
-    """Acceleration (m/s²) under the forces of a state."""
+    """acceleration ← that of the particles under the forces of a state (m/s²)."""
     for i in range(force.shape[0]):
         fx = force[i, 0]
         fy = force[i, 1]
@@ -78,12 +51,13 @@ def accelerate(force, resisting, acceleration, *columns):
 
 
 def combine(dt, tolerance, displacement, velocity, work, control, search):
-    """The result of a step into the trial rows, and its error: 1 is the tolerance, 0 without control.
+    """The result of a step, left in the trial rows of `work`; returns its error: 1 is the tolerance, 0 without control.
 
     The norms are Euclidean over all particles, of displacement and velocity each relative to the largest so
-    far: a driver that kept each component relative to itself would chase the round-off of what stands still.
-    Round-off of displacements x is one of accelerations ω²x, so that in steps shorter than what is stable, some
-    6/ω, velocities have less of it: a force that jumps, as the damper of a cable does, is crossed by such steps.
+    far: an integrator that controlled each component relative to itself would chase the round-off of particles
+    that stand still. Round-off of displacements x causes one of accelerations ω²x: in steps shorter than the
+    longest stable one, some 6/ω, the velocities have less of it. Short steps can therefore cross a force that
+    jumps, such as the damper of a cable.
     """
     trial, speed = work[STAGES], work[STAGES + 1]
     size_x = 0.0
@@ -120,14 +94,14 @@ def combine(dt, tolerance, displacement, velocity, work, control, search):
                     q += RESULT_X[2, j] * work[j, i, d]
                 also_x += q * q
                 also_v += p * p
-    search[TRIAL_X] = max(control[LARGEST_X], math.sqrt(size_x))
-    search[TRIAL_V] = max(control[LARGEST_V], math.sqrt(size_v))
+    search[Search.LARGEST_DISPLACEMENT] = max(control[Control.LARGEST_DISPLACEMENT], math.sqrt(size_x))
+    search[Search.LARGEST_SPEED] = max(control[Control.LARGEST_SPEED], math.sqrt(size_v))
     return error_of(
         dt,
         tolerance,
-        search[LONGEST],
-        search[TRIAL_X],
-        search[TRIAL_V],
+        search[Search.LIMIT],
+        search[Search.LARGEST_DISPLACEMENT],
+        search[Search.LARGEST_SPEED],
         size_x + size_v,
         wrong_x,
         wrong_v,
@@ -157,70 +131,50 @@ def error_of(dt, tolerance, longest, largest_x, largest_v, size, wrong_x, wrong_
 
 
 def narrow(search, h, gap):
-    """One look at the end of a step for an event, by the Illinois method; returns the length to try next.
+    """Look for an event at the end of a step of length h, by the Illinois method; returns the length to try next.
 
-    search: the state of the search – (near, far) with the event between them (far 0: none seen), the gaps
-    there, which of them was moved last, and `ENDED` once the event is at the end of the step. A step that no
-    rod leaves its branch in, or that ends where one does, is returned as it is.
+    gap: the margin there. A step in which no rod leaves its branch, or which ends where one does, is returned as
+    it is.
     """
     if gap < -EVENT_FLOOR:
-        if search[MOVED] < 0.0:
-            search[NEAR_GAP] *= 0.5
-        search[FAR] = h
-        search[FAR_GAP] = gap
-        search[MOVED] = -1.0
-    elif search[FAR] == 0.0 or gap <= EVENT_FLOOR:
-        search[ENDED] = 1.0
+        if search[Search.MOVED] < 0.0:
+            search[Search.NEAR_MARGIN] *= 0.5
+        search[Search.FAR] = h
+        search[Search.FAR_MARGIN] = gap
+        search[Search.MOVED] = -1.0
+    elif search[Search.FAR] == 0.0 or gap <= EVENT_FLOOR:
+        search[Search.ENDED] = 1.0
         return h
     else:
-        if search[MOVED] > 0.0:
-            search[FAR_GAP] *= 0.5
-        search[NEAR] = h
-        search[NEAR_GAP] = gap
-        search[MOVED] = 1.0
-    width = search[FAR] - search[NEAR]
-    if width <= EVENT_WIDTH * search[LENGTH]:
-        search[ENDED] = 1.0
-        return search[FAR] if search[NEAR] > 0.0 else search[LENGTH]
-    share = search[NEAR_GAP] / (search[NEAR_GAP] - search[FAR_GAP])
-    return search[NEAR] + width * min(max(share, 0.02), 0.98)
+        if search[Search.MOVED] > 0.0:
+            search[Search.FAR_MARGIN] *= 0.5
+        search[Search.NEAR] = h
+        search[Search.NEAR_MARGIN] = gap
+        search[Search.MOVED] = 1.0
+    width = search[Search.FAR] - search[Search.NEAR]
+    if width <= EVENT_WIDTH * search[Search.LENGTH]:
+        search[Search.ENDED] = 1.0
+        return search[Search.FAR] if search[Search.NEAR] > 0.0 else search[Search.LENGTH]
+    share = search[Search.NEAR_MARGIN] / (search[Search.NEAR_MARGIN] - search[Search.FAR_MARGIN])
+    return search[Search.NEAR] + width * min(max(share, 0.02), 0.98)
 
 
 def begin_search(search, length, gap):
-    """Look for events anew in a step of this length from a state with this gap."""
-    search[NEAR] = 0.0
-    search[FAR] = 0.0
-    search[NEAR_GAP] = max(gap, 0.0)
-    search[MOVED] = 0.0
-    search[ENDED] = 0.0
-    search[LENGTH] = length
+    """Begin to look for events in a step of this length from a state with this margin."""
+    search[Search.NEAR] = 0.0
+    search[Search.FAR] = 0.0
+    search[Search.NEAR_MARGIN] = max(gap, 0.0)
+    search[Search.MOVED] = 0.0
+    search[Search.ENDED] = 0.0
+    search[Search.LENGTH] = length
 
 
-def attempt(
-    time,
-    end,
-    tolerance,
-    smallest,
-    control,
-    search,
-    displacement,
-    velocity,
-    force,
-    resisting,
-    direction,
-    work,
-    rod_work,
-    marks,
-    power,
-    gained,
-    stage_power,
-    *columns,
-):
+def attempt(time, end, tolerance, smallest, control, state, scratch, *columns):
     """Find a step from `time` that meets the tolerance and passes no event.
 
     Returns (its length, 0 if there is none; the time it ends at; its error; whether a longer one was
-    rejected). Its result is in the trial rows of `work`. A jump of the forces that no break or margin told of
-    is crossed by a step of about the `smallest` length, whatever its error.
+    rejected). Its result is in the trial rows of `work`. A jump of the forces that neither a break nor a margin
+    announces is crossed by a step of about the `smallest` length, whatever its error.
     """
     h = end - time
     gap = 0.0
@@ -235,31 +189,17 @@ def attempt(
             h = ahead - time
         for k in range(gained.shape[0]):
             gained[k] = RESULT_V[0, 0] * power[k]
-        allowed = (tolerance if tolerance > 0.0 else FIXED_TOLERANCE) * control[LARGEST_V]
-        solved = stages(
-            time,
-            h,
-            allowed,
-            displacement,
-            velocity,
-            force,
-            resisting,
-            direction,
-            work,
-            rod_work,
-            gained,
-            stage_power,
-            *columns,
-        )
+        allowed = (tolerance if tolerance > 0.0 else FIXED_TOLERANCE) * control[Control.LARGEST_SPEED]
+        solved = stages(time, h, allowed, *state, *scratch, *columns)
         error = combine(h, tolerance, displacement, velocity, work, control, search)
         if not solved or not error < math.inf:
             error = BEYOND
-        elif EVENTS and search[ENDED] == 0.0:
-            first = search[FAR] == 0.0
+        elif EVENTS and search[Search.ENDED] == 0.0:
+            first = search[Search.FAR] == 0.0
             wanted = narrow(search, h, passed(h, work[STAGES], work[STAGES + 1], marks, first, *columns))
             if wanted < smallest:  # the event is where the step begins
-                search[ENDED] = 1.0
-                wanted = search[LENGTH]
+                search[Search.ENDED] = 1.0
+                wanted = search[Search.LENGTH]
             if wanted != h:
                 h = wanted
                 continue
@@ -272,43 +212,19 @@ def attempt(
     return 0.0, time, 0.0, True
 
 
-def controlled(
-    steps,
-    first,
-    origin,
-    tolerance,
-    limit,
-    breaks,
-    until,
-    landing,
-    control,
-    search,
-    displacement,
-    velocity,
-    force,
-    resisting,
-    direction,
-    work,
-    rod_work,
-    marks,
-    power,
-    gained,
-    stage_power,
-    account,
-    *columns,
-):
+def controlled(steps, first, origin, tolerance, limit, bounds, control, state, scratch, account, *columns):
     """Take up to `steps` steps that end by `until` (s); returns (steps taken, whether it can go on).
 
-    tolerance: relative, of one step; 0: all steps are control[STEP] long. breaks: times that no step passes,
-    ascending, the last one infinite; nor does one pass `landing` (s), where all steps begin anew. A fixed step
-    that is interrupted goes on to its end in pieces.
+    tolerance: relative, of one step; 0: all steps have the length control[Control.STEP_SIZE]. breaks: times that
+    no step passes, ascending, the last one infinite. landing: another such time (s), after which steps of fixed
+    length are counted from there. A fixed step that is interrupted goes on to its end in pieces.
     """
-    time = control[TIME]
-    search[LONGEST] = limit
+    time = control[Control.TIME]
+    search[Search.LIMIT] = limit
     taken = 0
     coming = 0
     while taken < steps:
-        step = control[STEP]
+        step = control[Control.STEP_SIZE]
         goal, reach = aim(time, step, origin, first + taken, tolerance)
         while breaks[coming] <= time:
             coming += 1
@@ -318,28 +234,10 @@ def controlled(
         end = stop if reach >= stop else goal
         if end > until:
             break
-        h, ahead, error, rejected = attempt(
-            time,
-            end,
-            tolerance,
-            max(SMALLEST_SHARE * min(step, end - time), np.nextafter(time, math.inf) - time),
-            control,
-            search,
-            displacement,
-            velocity,
-            force,
-            resisting,
-            direction,
-            work,
-            rod_work,
-            marks,
-            power,
-            gained,
-            stage_power,
-            *columns,
-        )
+        least = max(SMALLEST_SHARE * min(step, end - time), np.nextafter(time, math.inf) - time)
+        h, ahead, error, rejected = attempt(time, end, tolerance, least, control, *state, *scratch, *columns)
         if h == 0.0:
-            control[TIME] = time
+            control[Control.TIME] = time
             return taken, False
         time = ahead
         for i in range(displacement.shape[0]):
@@ -351,21 +249,21 @@ def controlled(
                 account[k] += 1000.0 * h * gained[k]
         if COMMITS:
             remember(time, h, displacement, account, *columns)
-        evaluate(time, h, displacement, velocity, force, resisting, direction, power, *columns)
+        evaluate(time, h, *state, power, *columns)
         accelerate(force, resisting, work[0], *columns)
-        control[LARGEST_X] = search[TRIAL_X]
-        control[LARGEST_V] = search[TRIAL_V]
+        control[Control.LARGEST_DISPLACEMENT] = search[Search.LARGEST_DISPLACEMENT]
+        control[Control.LARGEST_SPEED] = search[Search.LARGEST_SPEED]
         if tolerance > 0.0:
             taken += 1
             follow(control, h, limit, error, rejected)
         elif time >= goal or time == landing:
             taken += 1
-    control[TIME] = time
+    control[Control.TIME] = time
     return taken, True
 
 
 def aim(time, step, origin, age, tolerance):
-    """When a step would end, and up to when a break would end it instead: none is left just behind a step."""
+    """When a step would end, and up to when a break ends it instead: no step of a sliver is left before the break."""
     if tolerance > 0.0:
         goal = time + step
         return goal, goal + 0.01 * step
@@ -375,18 +273,20 @@ def aim(time, step, origin, age, tolerance):
 
 def follow(control, h, limit, error, rejected):
     """Choose the next step: a PI controller (Hairer, Nørsett and Wanner, IV.2 of volume II)."""
-    step = control[STEP]
+    step = control[Control.STEP_SIZE]
     factor = LENGTHEN
     if error > 0.0:
         wanted = (
-            0.9 * error ** (0.2 * PROPORTIONAL - EXPONENT) * max(control[ERROR], LEAST_ERROR) ** PROPORTIONAL
+            0.9
+            * error ** (0.2 * PROPORTIONAL - EXPONENT)
+            * max(control[Control.STEP_ERROR], LEAST_ERROR) ** PROPORTIONAL
         )
         factor = min(max(wanted, SHORTEN), LENGTHEN)
     if rejected:
-        control[STEP] = min(h * min(factor, 1.0), limit)
+        control[Control.STEP_SIZE] = min(h * min(factor, 1.0), limit)
     else:
-        control[STEP] = min(max(h * factor, step if h < step else 0.0), limit)
-    control[ERROR] = max(error, LEAST_ERROR)
+        control[Control.STEP_SIZE] = min(max(h * factor, step if h < step else 0.0), limit)
+    control[Control.STEP_ERROR] = max(error, LEAST_ERROR)
 
 
 def advance(
@@ -397,23 +297,11 @@ def advance(
     origin,
     tolerance,
     limit,
-    breaks,
-    until,
-    landing,
+    bounds,
     loads_end,
     control,
-    search,
-    displacement,
-    velocity,
-    force,
-    resisting,
-    direction,
-    work,
-    rod_work,
-    marks,
-    power,
-    gained,
-    stage_power,
+    state,
+    scratch,
     account,
     measures,
     *columns,
@@ -426,9 +314,7 @@ def advance(
     are divided into calls.
     """
     if not fresh:
-        evaluate(
-            control[TIME], control[STEP], displacement, velocity, force, resisting, direction, power, *columns
-        )
+        evaluate(control[Control.TIME], control[Control.STEP_SIZE], *state, power, *columns)
         accelerate(force, resisting, work[0], *columns)
     taken = 0
     while taken < steps:
@@ -439,36 +325,26 @@ def advance(
             origin,
             tolerance,
             limit,
-            breaks,
-            until,
-            landing,
+            *bounds,
             control,
-            search,
-            displacement,
-            velocity,
-            force,
-            resisting,
-            direction,
-            work,
-            rod_work,
-            marks,
-            power,
-            gained,
-            stage_power,
+            *state,
+            *scratch,
             account,
             *columns,
         )
         taken += done
         if not good:
-            return taken, 4
+            return taken, StopReason.UNRESOLVED.value
         now = total + taken
         if done > 0 and is_check_due(now, now):
             measure(displacement, velocity, force, resisting, measures, *columns)
-            reason = judge(measures, account, control[STEP], SHADOW, 0.0, control[TIME] >= loads_end)
-            if reason != 0:
-                return taken, reason
+            reason = judge(
+                measures, account, control[Control.STEP_SIZE], SHADOW, 0.0, control[Control.TIME] >= loads_end
+            )
+            if reason != StopReason.DONE:
+                return taken, reason.value
         if done > 0 and now % REVIEW_INTERVAL == 0:
-            return taken, 1
+            return taken, StopReason.REVIEW.value
         if done < wanted:
             break
-    return taken, 0
+    return taken, StopReason.DONE.value

@@ -1,4 +1,4 @@
-"""Stack: variants of one model as equal, disjoint blocks of the same tables."""
+"""Batched model: variants of one model as equal, disjoint parts of the same tables."""
 
 from __future__ import annotations
 
@@ -17,36 +17,36 @@ from components.world import World
 _TABLES = ("particles", "rods", "loads", "environment", "settings", "clock")
 
 
-class Stack:
+class BatchedModel:
     """Variants that differ in their numbers only, not in what there is and what is joined to what.
 
-    A column of all of them, such as `stack["rods.stiffness"]`, has the shape (blocks, rows, …). To functions
-    that read the columns of a model, they are those of one model that consists of disjoint blocks:
-    `stack.rods.stiffness` has the rows of all, and references point to rows of the same block. A table
-    with a single row, such as the environment, has a row for each particle then.
+    variants: how many. A column of all of them, such as `batched["rods.stiffness"]`, has the shape (variants, rows, …).
+    Functions that read the columns of a model see one that consists of disjoint parts: `batched.rods.stiffness` has
+    the rows of all, and references point to rows of the same variant. A table with a single row, such as the
+    environment, has a row for each particle then.
     """
 
-    def __init__(self, model: Model, columns: dict[str, Column], blocks: int) -> None:
-        self.blocks = blocks
+    def __init__(self, model: Model, columns: dict[str, Column], variants: int) -> None:
+        self.variants = variants
         self._model = model
         self._columns = columns
-        self.tables = {name: _Table(self, name, blocks * model.tables[name].count) for name in _TABLES}
+        self.tables = {name: _Table(self, name, variants * model.tables[name].count) for name in _TABLES}
         self.particles, self.rods, self.loads = (self.tables[name] for name in ("particles", "rods", "loads"))
 
     @classmethod
-    def of(cls, model: Model, blocks: int) -> Stack:
+    def of(cls, model: Model, variants: int) -> BatchedModel:
         """So many copies of a model."""
         columns = {
-            f"{name}.{field.name}": np.repeat(model.tables[name].column(field.name)[None], blocks, axis=0)
+            f"{name}.{field.name}": np.repeat(model.tables[name].column(field.name)[None], variants, axis=0)
             for name in _TABLES
             for field in model.tables[name].fields.values()
         }
-        return cls(model, columns, blocks)
+        return cls(model, columns, variants)
 
-    def part(self, blocks: NDArray[np.intp]) -> Stack:
-        """Copies of some of the blocks."""
-        columns = {name: column[blocks] for name, column in self._columns.items()}
-        return Stack(self._model, columns, len(blocks))
+    def part(self, variants: NDArray[np.intp]) -> BatchedModel:
+        """Copies of some of the variants."""
+        columns = {name: column[variants] for name, column in self._columns.items()}
+        return BatchedModel(self._model, columns, len(variants))
 
     def as_model(self) -> Model:
         """Itself, for functions that only read columns of a model."""
@@ -60,7 +60,7 @@ class Stack:
         return name in self._columns
 
     def single(self, name: str) -> Column:
-        """A column of a table that has a single row in each block, shape (blocks, …)."""
+        """A column of a table that has a single row in each variant, shape (variants, …)."""
         return self._columns[name][:, 0]
 
     def field(self, name: str) -> Field[object]:
@@ -69,19 +69,19 @@ class Stack:
         return self._model.tables[table].fields[field]
 
     def writable(self, name: str) -> Column:
-        """A column with the rows of all blocks, for a derivation to fill."""
+        """A column with the rows of all variants, for a derivation to fill."""
         column = self._columns[name]
         return column.reshape(-1, *column.shape[2:])
 
     def flat(self, name: str) -> Column:
-        """A column as that of one model that consists of all blocks."""
+        """A column as that of one model that consists of all variants."""
         table, references = name.partition(".")[0], self.field(name).references
         column = self._columns[name]
         if self._model.tables[table].kind.single:
             column = np.repeat(column, self._model.particles.count, axis=1)
         elif references is not None:
             rows = self._model.tables[references].count
-            first = np.arange(self.blocks, dtype=column.dtype) * column.dtype.type(rows)
+            first = np.arange(self.variants, dtype=column.dtype) * column.dtype.type(rows)
             column = column + first.reshape(-1, *(1,) * (column.ndim - 1))
         return column.reshape(-1, *column.shape[2:])
 
@@ -91,11 +91,11 @@ class Stack:
             derivation.compute(cast(World, self))
 
     def extreme(self) -> NDArray[np.bool_]:
-        """Which blocks have a number that is too large or too small to compute with."""
-        found = np.zeros(self.blocks, dtype=bool)
+        """Which variants have a number that is too large or too small to compute with."""
+        found = np.zeros(self.variants, dtype=bool)
         for name, column in self._columns.items():
             if is_computed_with(self.field(name)):
-                found |= is_extreme(self.field(name), column).reshape(self.blocks, -1).any(axis=1)
+                found |= is_extreme(self.field(name), column).reshape(self.variants, -1).any(axis=1)
         return found
 
     def state(self) -> Mapping[str, Column]:
@@ -111,11 +111,11 @@ class Stack:
 
 
 class _Table:
-    """A table with the rows of all blocks."""
+    """A table with the rows of all variants."""
 
-    def __init__(self, stack: Stack, name: str, count: int) -> None:
+    def __init__(self, model: BatchedModel, name: str, count: int) -> None:
         self.count = count
-        self._stack, self._name = stack, name
+        self._model, self._name = model, name
 
     def __getattr__(self, field: str) -> Column:
         if field.startswith("_"):
@@ -124,4 +124,4 @@ class _Table:
 
     def column(self, field: str) -> Column:
         """The column of a Field."""
-        return self._stack.flat(f"{self._name}.{field}")
+        return self._model.flat(f"{self._name}.{field}")

@@ -1,7 +1,11 @@
-"""Kernels row by row: what each row of a step system's kernel gives at the present state of a model."""
+"""Reference laws: what the kernel of each step system gives, row by row, in the present state of a model.
+
+It is the step of a program taken apart, to find which kernel gave a number that is not finite, and to time one.
+"""
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
@@ -10,16 +14,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.model import Model
-from systems.base import Commit, Law, StepSystem
-from systems.program.binding import Bound, bind
+from systems.base import StepSystem
+from systems.program.binding import Bound, StepRole, bind, by_role
+from systems.program.loops import RodLoop
+from systems.program.pasting import fragment
+from systems.program.templates import rods
+from systems.program.writer import DRIFT, SHIFT
 
 Numbers = NDArray[np.float64]
 
-CALLS, TRIALS = 100_000, 5  # of which the fastest trial counts
+_OF_RODS = ("between", "difference", "original_length", "misfit")
+
+CALLS, TRIALS = 100_000, 5  # the fastest trial counts
 
 
 class KernelRows:
-    """Calls kernels one row at a time, the slow way, at the state in which a model is now."""
+    """Calls kernels one row at a time, in the present state of a model."""
 
     def __init__(self, model: Model) -> None:
         self.model = model
@@ -108,32 +118,26 @@ def _seconds(loop: Callable[..., float], columns: Sequence[NDArray[Any]]) -> flo
 def in_turn(systems: Sequence[StepSystem], model: Model) -> Iterator[tuple[StepSystem, Numbers]]:
     """Each law and commit with what its kernel gives for each row, in the order of the step program."""
     rows = KernelRows(model)
-    bound = [bind(system, model) for system in systems if isinstance(system, Law | Commit)]
-    laws = sorted((b for b in bound if b.each), key=lambda b: b.system.name)
-    commits = [b for b in bound if not b.each]
-    late = [b for b in commits if "axial_force" in b.parameters]
-    first = [b for b in laws if b.each != "rods"] + [b for b in commits if b not in late]
-    summed = [b for b in laws if b.each == "rods" and not {"rate", "axial_force"} & set(b.parameters)]
-    replacing = [b for b in bound if b.each == "rods" and b.replaces]
-    rates = [b for b in laws if b.each == "rods" and "rate" in b.parameters]
-    for b in (*first, *summed, *replacing, *late, *rates):
-        given = rows.of(b)
-        yield b.system, given
-        if b in summed:
-            rows.provided["axial_force"] = rows.provided["axial_force"] + given[:, 0]
-        elif b in replacing:
-            rows.provided["axial_force"] = given[:, 0]
+    for role, some in by_role(bind(system, model) for system in systems).items():
+        for b in some:
+            given = rows.of(b)
+            yield b.system, given
+            if role is StepRole.SUMMED:
+                rows.provided["axial_force"] = rows.provided["axial_force"] + given[:, 0]
+            elif role is StepRole.REPLACING:
+                rows.provided["axial_force"] = given[:, 0]
 
 
 def _geometry(model: Model) -> Mapping[str, Numbers]:
-    """Elongation (m) and its rate (m/s) of every rod."""
-    rods, particles = model.rods, model.particles
-    shift = particles.displacement[rods.between[:, 1]] - particles.displacement[rods.between[:, 0]]
-    drift = particles.velocity[rods.between[:, 1]] - particles.velocity[rods.between[:, 0]]
-    now = rods.difference + shift
-    length = np.hypot(now[:, 0], now[:, 1])
-    both = length + rods.original_length
-    with np.errstate(divide="ignore", invalid="ignore"):
-        stretch = np.where(both > 0.0, ((rods.difference + now) * shift).sum(axis=1) / both, 0.0)
-        rate = np.where(length > 0.0, (drift * now).sum(axis=1) / length, 0.0)
-    return {"elongation": stretch + rods.misfit, "rate": rate}
+    """Elongation (m) and its rate (m/s) of every rod, by the lines that step programs consist of, as plain Python."""
+    kept = [f"{name}s[r] = {name}" for name in ("elongation", "rate")]
+    geometry = [*fragment(rods.geometry, misfit="rods_misfit[r]"), *fragment(rods.rate)]
+    columns = {f"rods_{name}": model.rods.column(name) for name in _OF_RODS}
+    state = {name: model.particles.column(name) for name in ("displacement", "velocity")}
+    found = {name: np.zeros(model.rods.count) for name in ("elongations", "rates")}
+    with np.errstate(all="ignore"):
+        exec(
+            "\n".join(RodLoop(SHIFT | DRIFT, [*geometry, *kept]).one_by_one()),
+            {"math": math, **columns, **state, **found},
+        )
+    return {"elongation": found["elongations"], "rate": found["rates"]}

@@ -1,0 +1,78 @@
+"""Pasting: functions of templates as source of a step program; systems/program/templates says what they may hold."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import re
+import textwrap
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
+from typing import Any
+
+Inserts = Mapping[str, str | Sequence[str]]  # what stands for insert(…): an expression, or lines
+
+_LINE = re.compile(r"( *)insert\((\w+)\)")
+_EXPRESSION = re.compile(r"insert\((\w+)\)")
+_ON_LINES = re.compile(r"\(\n((?:[^()]|\([^()]*\))*\*columns),?\s*\)")
+_WIDTH = 112
+
+
+@cache
+def source_of(function: Callable[..., Any]) -> str:
+    """The source of a function, which takes a millisecond to find, with arguments that are groups on one line."""
+    source = textwrap.dedent(inspect.getsource(function))
+    return _ON_LINES.sub(lambda match: f"({' '.join(match[1].split())})", source)
+
+
+def pasted(function: Callable[..., Any], decorator: str, name: str = "", **inserts: str | Sequence[str]) -> str:
+    """A template with a decorator, under its own or another name."""
+    head, body = source_of(function).split(":\n", 1)
+    head = re.sub(r"(?<=[(\s])(state|forces|scratch|bounds|observed)(?=[,)])", r"*\1", head)
+    if name:
+        head = head.replace(f"def {function.__name__}(", f"def {name}(", 1)
+    return "\n".join([f"@{decorator}", f"{head}:", *_filled(body.splitlines(), inserts)])
+
+
+def fragment(function: Callable[..., Any], **inserts: str | Sequence[str]) -> list[str]:
+    """The lines of a template without its head and its docstring."""
+    source = source_of(function)
+    definition = ast.parse(source).body[0]
+    assert isinstance(definition, ast.FunctionDef)
+    statements = definition.body[ast.get_docstring(definition) is not None :]
+    if not statements:
+        return []
+    lines = source.splitlines()[statements[0].lineno - 1 :]
+    return _filled(textwrap.dedent("\n".join(lines)).splitlines(), inserts)
+
+
+def _filled(lines: Iterable[str], inserts: Inserts) -> list[str]:
+    filled: list[str] = []
+    for line in lines:
+        whole = _LINE.fullmatch(line)
+        if whole and not isinstance(inserts[whole[2]], str):
+            filled += [whole[1] + inserted for inserted in inserts[whole[2]]]
+        else:
+            filled.append(_EXPRESSION.sub(lambda match: str(inserts[match[1]]), line))
+    return filled
+
+
+def expanded(source: str, groups: Mapping[str, Sequence[str]]) -> str:
+    """The source with its names for every group that is an argument, such as *columns."""
+    argument = re.compile(rf"(?<=[(\s])\*({'|'.join(groups)})\b")
+    lines: list[str] = []
+    for line in source.splitlines():
+        text = argument.sub(lambda match: ", ".join(groups[match[1]]), line)
+        lines += [line] if text == line else _wrapped(text)
+    return "\n".join(lines) + "\n"
+
+
+def _wrapped(line: str) -> list[str]:
+    """A definition or a call in lines that are not too long."""
+    deeper = " " * (len(line) - len(line.lstrip()) + 8)
+    return textwrap.wrap(line, _WIDTH, subsequent_indent=deeper, break_long_words=False, break_on_hyphens=False)
+
+
+def indented(lines: Iterable[str], levels: int = 1) -> list[str]:
+    """The lines, so many levels deeper."""
+    return ["    " * levels + line for line in lines]

@@ -1,0 +1,59 @@
+"""Events: where a rod leaves the branch of a law that is not smooth; integrators that control their steps end one there.
+
+For every such law the writer pastes `note` or `look` into a loop over the rods.
+"""
+
+# ruff: noqa: F821, F841
+# mypy: ignore-errors
+
+
+def mark(dt, displacement, velocity, marks, *columns):
+    """Note for every rod which branch of its law it is on; returns how far the nearest is from leaving."""
+    low = math.inf
+    insert(rods)
+    return low
+
+
+def passed(dt, displacement, velocity, marks, first, *columns):
+    """How far the nearest rod is from leaving its branch at the end of a step; negative: it has left.
+
+    first: this is the first look at the step, which chooses the rods whose least margins are watched.
+    """
+    low = math.inf
+    insert(rods)
+    return low
+
+
+def note():
+    """As a step begins."""
+    branch = insert(branch)
+    marks[r, insert(law) + Mark.BRANCH] = branch
+    insert(margin_and_slope)
+    marks[r, insert(law) + Mark.MARGIN] = gap
+    marks[r, insert(law) + Mark.SLOPE] = slope
+    marks[r, insert(law) + Mark.WATCHED] = 0.0
+    low = min(low, gap)
+
+
+def look():
+    """As a step ends. A rod that has come back is found by the least margin that it had on the way."""
+    branch = marks[r, insert(law) + Mark.BRANCH]
+    insert(margin_and_slope)
+    before = marks[r, insert(law) + Mark.SLOPE]
+    if first and gap > 0.0 and before * dt < -insert(steady) and slope > 0.0:
+        start = marks[r, insert(law) + Mark.MARGIN]
+        least = lowest(start, before, gap, slope, dt)
+        if least < min(start, gap) - least:
+            marks[r, insert(law) + Mark.WATCHED] = 1.0
+    if marks[r, insert(law) + Mark.WATCHED] > 0.0:
+        gap = min(gap, -slope * dt)
+    low = min(low, gap)
+
+
+def margin_and_slope():
+    """gap: the margin of a rod; slope: its rate, by a small part of the step."""
+    gap = insert(margin)
+    here = elongation
+    elongation = here + rate * (insert(ahead) * dt)
+    slope = (insert(margin) - gap) / (insert(ahead) * dt)
+    elongation = here

@@ -1,0 +1,48 @@
+"""Forces of a state, the history of rods, and the energy that either takes or brings."""
+
+# ruff: noqa: F821
+# mypy: ignore-errors
+
+
+def external(time, dt, displacement, velocity, force, resisting, *columns):
+    """force ← constant forces, varying loads, laws of particles (kN); resisting ← laws that resist their motion."""
+    insert(particle_forces)
+
+
+def forces(time, dt, state, *columns):
+    """force ← all but dampers and drag (kN); resisting ← dampers and drag; direction ← of the rods."""
+    external(time, dt, displacement, velocity, force, resisting, *columns)
+    insert(rod_forces)
+
+
+def accept(time, dt, state, account, *columns):
+    """As forces(), at the end of a step: history is brought up to date first."""
+    external(time, dt, displacement, velocity, force, resisting, *columns)
+    insert(rod_forces)
+
+
+def resist(time, dt, displacement, velocity, resisting, direction, power, *columns):
+    """resisting ← dampers and drag at this velocity (kN); power ← what each account gains per second (kW)."""
+    insert(resistance)
+
+
+def load_power(time, velocity, *columns):
+    """What the varying loads do per second at a velocity (kW)."""
+    power = 0.0
+    insert(loads)
+    return power
+
+
+def evaluate(time, dt, state, power, *columns):
+    """As forces(), at any stage of a step; power ← what each account gains per second there (kW)."""
+    insert(trial_forces)
+
+
+def remember(time, dt, displacement, account, *columns):
+    """Bring the history of all rods up to date at the end of a step."""
+    insert(history)
+
+
+def commit(time, dt, state, account, *columns):
+    """Bring history up to date in a state that no step has led to."""
+    insert(history)

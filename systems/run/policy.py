@@ -1,0 +1,169 @@
+"""Policies of a run: the size of steps, when they and islands are reviewed, when a time is reached.
+
+Pure functions of what a state allows: single runs (simulation.py) and the batches of sweeps go by them alike.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from components.field import Column
+from systems.base import Integrator, StopReason
+from systems.entries import Measure
+from systems.physics.automatic import SMALL
+
+GOING_ON = (StopReason.DONE, StopReason.REVIEW)  # reasons for which nothing ends
+
+SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
+ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square
+FIRST_SHARE = 0.1  # of 1/ω, the step at which error control begins
+FREE_STEP = 1e-3  # s, where nothing limits the step
+DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
+
+ERROR_CONTROL = (
+    "step_error",
+    "largest_displacement",
+    "largest_speed",
+)  # of the clock; 0 where steps begin anew
+
+SLEEP_INTERVAL = (
+    1024  # steps between reviews of islands; fewer: asleep sooner, but one costs as much as ten steps
+)
+
+
+# --- step sizes ------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What a state allows: the highest angular frequency (rad/s), decay (1/s), and the largest stable step (s)."""
+
+    frequency: float
+    decay: float
+    stable_step: float
+
+    @classmethod
+    def of(cls, integrator: Integrator, frequency: float, decay: float) -> Limits:
+        """Those of an integrator; infinite where nothing swings or decays."""
+        limited = frequency > 0.0 or decay > 0.0
+        return cls(frequency, decay, integrator.stable_step(frequency, decay) if limited else math.inf)
+
+
+def not_shown() -> float:
+    """The longest step (s) that a person can follow, where nobody watches."""
+    return math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class StepPolicy:
+    """How the steps of a run are chosen.
+
+    fixed: the step (s) that a person chose; None: automatic. rods: how many the model has.
+    shown: gives the longest step (s) that a person can follow.
+    """
+
+    integrator: Integrator
+    fixed: float | None
+    rods: int
+    shown: Callable[[], float] = not_shown
+
+    @property
+    def controls_error(self) -> bool:
+        """True if the integrator chooses each step by its error, within a limit."""
+        return self.integrator.estimates_error and self.fixed is None
+
+    def is_doubtful(self, limits: Limits) -> bool:
+        """True if the run will probably diverge, of which a person is warned."""
+        stable = limits.stable_step
+        return stable == 0.0 or (self.fixed is not None and self.fixed > stable)
+
+    def first(self, limits: Limits) -> tuple[float, float]:
+        """The step (s) that a run begins with, and its limit (s) under error control, 0: none."""
+        if self.controls_error:
+            limit = self.limit(limits)
+            return first_step(limits, limit), limit
+        return self.fixed if self.fixed is not None else self._automatic(limits), 0.0
+
+    def reviewed(self, limits: Limits, size: float) -> float | None:
+        """The step (s) to go on with instead of `size` (s) if that fits the present state no more, or None.
+
+        Only for automatic steps without error control.
+        """
+        wanted = self._automatic(limits)
+        fits = 0.5 * wanted <= size <= min(1.5 * wanted, 0.95 * limits.stable_step)
+        return None if fits else wanted
+
+    def limit(self, limits: Limits) -> float:
+        """The longest step (s) under error control: stability and the eye limit it; 0: nothing does."""
+        limit = min(SAFETY * limits.stable_step, self.shown())
+        return rounded_down(limit) if limit < math.inf else 0.0
+
+    def _automatic(self, limits: Limits) -> float:
+        """The step (s) without error control."""
+        stable = limits.stable_step
+        if stable == 0.0:
+            return rounded_down(min(DOUBTFUL_STEP / limits.frequency, FREE_STEP))
+        share = ACCURATE if self.rods <= SMALL else SAFETY
+        shown = self.shown() if self.integrator.exact else math.inf
+        return rounded_down(min(share * stable, FREE_STEP, shown))
+
+
+def first_step(limits: Limits, limit: float) -> float:
+    """The step (s) with which error control begins, below its limit (s; 0: there is none)."""
+    fastest = max(limits.frequency, 2.0 * limits.decay)
+    first = FIRST_SHARE / fastest if fastest > 0.0 else FREE_STEP
+    return rounded_down(min(first, limit or math.inf))
+
+
+def rounded_down(size: float) -> float:
+    """To three significant digits, so that the last bits of an eigenvalue do not matter."""
+    digits = 2 - math.floor(math.log10(size))
+    return math.floor(size * 10.0**digits) / 10.0**digits
+
+
+def begin_steps(clock: Callable[[str], Column], rows: Any, size: Any) -> None:
+    """From now on steps have this size (s), counted from the present time.
+
+    clock: gives a column of clocks to write to. rows: of the clocks that are meant.
+    """
+    clock("origin")[rows] = clock("time")[rows]
+    clock("origin_steps")[rows] = clock("steps")[rows]
+    clock("step_size")[rows] = size
+
+
+# --- reviews, ends ---------------------------------------------------------------------------------------
+
+
+def steps_to_sleep_review(steps: Any) -> Any:
+    """After how many steps islands are reviewed again, when so many were taken; a number or an array."""
+    return SLEEP_INTERVAL - steps % SLEEP_INTERVAL
+
+
+def is_sleep_review(steps: Any) -> Any:
+    """True where islands are reviewed after so many steps."""
+    return steps % SLEEP_INTERVAL == 0
+
+
+def is_before(time: Any, target: float) -> Any:
+    """True where a time (s) is not yet the target (s), by more than round-off."""
+    return target - time > 4.0 * math.ulp(target)
+
+
+def residual(measures: Column) -> Column:
+    """Largest unbalanced force on a free particle over the largest force of all, dampers apart.
+
+    measures: as of Dynamics, along the first axis.
+    """
+    unbalanced, largest = measures[Measure.RESIDUAL], measures[Measure.LARGEST_FORCE]
+    found: Column = np.divide(unbalanced, largest, out=np.zeros(largest.shape), where=largest > 0.0)
+    return found
+
+
+def at_rest_since(time: float) -> str:
+    """What to say of a model that came to rest at this time (s)."""
+    return f"At rest since t = {time:.6g} s."

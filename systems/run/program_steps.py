@@ -1,0 +1,57 @@
+"""Steps of a step program: by all of it, or while islands sleep by the part that is awake."""
+
+from __future__ import annotations
+
+import math
+
+from components.model import Model
+from systems.base import StopReason
+from systems.program.program import Program
+from systems.program.writer import REVIEW_INTERVAL
+from systems.run.policy import GOING_ON
+from systems.run.programs import Programs
+from systems.run.sleep import Sleep
+from systems.run.step_size import StepSize
+
+
+class ProgramSteps:
+    """The stepper of one model's step program; it does not look out for what meets."""
+
+    def __init__(self, model: Model, programs: Programs, sleep: Sleep, step_size: StepSize) -> None:
+        self._model = model
+        self._programs = programs
+        self._sleep = sleep
+        self._step_size = step_size
+
+    @property
+    def program(self) -> Program:
+        """What takes the next steps."""
+        whole = self._programs.compiled
+        if not self._sleep.any_asleep:
+            return whole
+        if self._sleep.disturb(whole):
+            self._step_size.limit_anew()
+        return self._sleep.part(whole)
+
+    def rebound(self) -> Program:
+        """What takes the next steps, now that an impact changed the plan or woke something."""
+        self._programs.unbind()
+        return self.program
+
+    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
+        """Take up to `steps` steps, as every stepper does."""
+        return self.program.advance(steps, until, landing)
+
+    def land(self, target: float) -> StopReason:
+        """Take the last, short step, to exactly the time `target` (s)."""
+        clock, reason = self._model.clock, StopReason.DONE
+        if self._programs.driver.controlled:
+            while clock.time < target and reason in GOING_ON:
+                _, reason = self.advance(REVIEW_INTERVAL, target, target)
+            return reason
+        size = clock.step_size
+        self._step_size.begin(target - clock.time)
+        _, reason = self.advance(1)
+        self._model.writable("clock.time")[0] = target
+        self._step_size.begin(size)
+        return reason

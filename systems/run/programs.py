@@ -1,0 +1,190 @@
+"""Programs: by what the steps of one model are taken, chosen by its plan and bound to its columns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from components.model import Model
+from components.rod import is_warm
+from systems.base import Integrator, Phase, StepSystem
+from systems.collision.free.flight import Flight
+from systems.collision.impacts import Impacts
+from systems.collision.system import FreeFlight
+from systems.edit.pull import Pull
+from systems.physics.automatic import choose
+from systems.physics.integrators import INTEGRATORS
+from systems.program.binding import ProgramError
+from systems.program.culprit import blame_mod
+from systems.program.parallel import make_program
+from systems.program.program import Program
+from systems.program.stepper import Dynamics
+from systems.program.writer import form_of
+from systems.schedule import Plan, Schedule
+
+FREE_FLIGHT = FreeFlight()
+
+Key = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Bound:
+    """What moves a model by one plan: exact flight, or else a compiled program. collides: particles may meet."""
+
+    dynamics: Dynamics
+    collides: bool
+    flight: Flight | None = None
+    program: Program | None = None
+
+
+class Programs:
+    """The step programs of one model, made once for each plan; the present plan's is bound to the model.
+
+    scene: the one whose systems act. bindings: how often one was bound. compile_seconds: spent in compiling or
+    loading them.
+    """
+
+    def __init__(self, model: Model, schedule: Schedule, impacts: Impacts, scene: str) -> None:
+        self.scene = scene
+        self._model = model
+        self._schedule = schedule
+        self._impacts = impacts
+        self.bindings = 0
+        self.compile_seconds = 0.0
+        self._made: dict[Key, Bound] = {}
+        self._driver: Integrator | None = None
+        self._bound: Bound | None = None
+
+    @property
+    def plan(self) -> list[StepSystem]:
+        """The laws and commits that act in the scene and that the model needs, in order."""
+        return self._schedule.step_plan(self.scene, self._model)
+
+    def planned(self) -> Plan:
+        """All systems that run in the scene with the model, the integrator among them, and why the others do not."""
+        found = self._schedule.plan(self.scene, self._model)
+        phases, left_out = dict(found.phases), dict(found.left_out)
+        for integrator in (*INTEGRATORS.values(), FREE_FLIGHT):
+            if not self._schedule.is_active(integrator, self.scene):
+                left_out[integrator.name] = self._schedule.inactive(integrator, self.scene)
+            elif integrator is self.driver:
+                phases[Phase.STEP] = (*phases[Phase.STEP], integrator)
+            else:
+                left_out[integrator.name] = f"{self.driver.name} integrates"
+        return Plan(self.scene, phases, left_out)
+
+    @contextmanager
+    def in_scene(self, scene: str) -> Iterator[None]:
+        """What is asked inside is answered as if the systems of this scene acted."""
+        driver, before = self._driver, self.scene
+        self._driver, self.scene = None, scene
+        try:
+            yield
+        finally:
+            self._driver, self.scene = driver, before
+
+    def differ_in(self, scene: str) -> bool:
+        """True if other systems, or another integrator, act in this scene."""
+        if scene == self.scene:
+            return False
+        here = self.plan, self._integrator
+        with self.in_scene(scene):
+            return (self.plan, self._integrator) != here
+
+    @property
+    def driver(self) -> Integrator:
+        """Exact flight if every system of the plan leaves it exact, else the integrator."""
+        if self._driver is None:
+            plan = self.plan
+            exact = all(system.leaves_flight_exact(self._model) for system in plan)
+            self._driver = FREE_FLIGHT if exact and _collides(plan) else self._integrator
+        return self._driver
+
+    @property
+    def _integrator(self) -> Integrator:
+        """The one that the settings name; one that suits if they name none, or one that does not act now."""
+        named = INTEGRATORS.get(self._model.settings.integrator)
+        off = named is None or (named.mod is not None and named.mod.off)
+        if named is None or off or not self._schedule.is_active(named, self.scene):
+            return INTEGRATORS[choose(self._model)]
+        return named
+
+    @property
+    def ready(self) -> bool:
+        """False if the next step or observation needs a program that is not loaded yet."""
+        return self._bound is not None or self._key(self.plan) in self._made
+
+    # --- the one that is bound -----------------------------------------------------------------------
+
+    @property
+    def program(self) -> Dynamics:
+        """What moves the model, bound to it as it is now."""
+        return self._present.dynamics
+
+    @property
+    def flight(self) -> Flight | None:
+        """The same if it is exact flight, or None."""
+        return self._present.flight
+
+    @property
+    def compiled(self) -> Program:
+        """The same if it is a compiled program; exact flight has none."""
+        program = self._present.program
+        assert program is not None
+        return program
+
+    @property
+    def collides(self) -> bool:
+        """True if particles may meet."""
+        return self._present.collides
+
+    @property
+    def _present(self) -> Bound:
+        return self._bound or self.bind()
+
+    def bind(self) -> Bound:
+        """Have what moves the model bound to it, without mods whose systems cannot join it."""
+        while self._bound is None:
+            try:
+                self._bound = self._bound_to(self.plan)
+                self.bindings += 1
+            except ProgramError as error:
+                if not blame_mod(error):
+                    raise
+                self._driver = None  # it may be the one
+        return self._bound
+
+    def unbind(self) -> None:
+        """The plan may be another one."""
+        self._bound = None
+
+    def void(self) -> None:
+        """The document changed."""
+        self._driver = self._bound = None
+
+    def _bound_to(self, plan: list[StepSystem]) -> Bound:
+        key = self._key(plan)
+        if key in self._made:
+            self._made[key].dynamics.bind()
+        else:
+            self._made[key] = self._make(plan)
+            self.compile_seconds += self._made[key].dynamics.compile_seconds
+        return self._made[key]
+
+    def _make(self, plan: list[StepSystem]) -> Bound:
+        if self.driver.exact:
+            hand = next((system for system in plan if isinstance(system, Pull)), None)
+            flight = Flight(self._model, self._impacts, hand)
+            return Bound(flight, collides=True, flight=flight)
+        program = make_program(self._model, plan, self.driver)
+        return Bound(program, collides=_collides(plan), program=program)
+
+    def _key(self, plan: list[StepSystem]) -> Key:
+        warmth = ("rods.misfit",) if is_warm(self._model) else ()
+        names = (system.name for system in plan)
+        return (*names, self.driver.name, form_of(self._model, self.driver), *warmth)
+
+
+def _collides(plan: list[StepSystem]) -> bool:
+    return any(system.impulsive for system in plan)

@@ -1,0 +1,73 @@
+"""Recovery: the last good state of a run, and the ways to go on from it when the steps failed."""
+
+from __future__ import annotations
+
+from components.field import same
+from components.model import Model
+from components.snapshot import Snapshot
+from systems.program.culprit import find_culprit
+from systems.run.programs import Programs
+from systems.run.sleep import Sleep
+from systems.run.step_size import StepSize
+
+MOST_HALVINGS = 6  # of an automatic step before a run is given up
+
+MOVING = ("particles.displacement", "particles.velocity", "rods.plastic_strain")
+
+
+class Recovery:
+    """Keeps the last good state of one model's run. safe: that state, or None."""
+
+    def __init__(self, model: Model, programs: Programs, sleep: Sleep, step_size: StepSize) -> None:
+        self._model = model
+        self._programs = programs
+        self._sleep = sleep
+        self._step_size = step_size
+        self.forget()
+
+    def forget(self) -> None:
+        """The state was replaced."""
+        self.safe: Snapshot | None = None
+        self._halvings = 0
+
+    def keep(self, state: Snapshot) -> bool:
+        """A review found this state good; False if nothing moved since the last one.
+
+        Far from where a rod was drawn, a creep may be lost in rounding.
+        """
+        before, self.safe, self._halvings = self.safe, state, 0
+        return before is None or not all(same(before.columns[name], state.columns[name]) for name in MOVING)
+
+    def without_mod(self) -> bool:
+        """Return to the good state without the mod whose numbers were not finite; False if none's were."""
+        assert self.safe is not None
+        if find_culprit(self._programs.compiled, self.safe) is None:
+            return False
+        self.safe.restore(self._model)
+        return True
+
+    def with_shorter_steps(self) -> bool:
+        """Return to the good state and halve an automatic step, which proved too long as the geometry changed.
+
+        False if the step is not automatic, or was halved in vain.
+        """
+        chosen = self._model.settings.time_step is not None or self._programs.driver.estimates_error
+        if chosen or self._halvings == MOST_HALVINGS:
+            return False
+        assert self.safe is not None
+        size = self._model.clock.step_size
+        self.safe.restore(self._model)
+        self._sleep.forget()
+        self._step_size.begin(0.5 * size)
+        self._halvings += 1
+        return True
+
+    def give_up(self, why: str) -> str:
+        """Return to the good state for good; says what happened and what helps."""
+        failed, size = self._model.clock.time, self._model.clock.step_size
+        assert self.safe is not None
+        self.safe.restore(self._model)
+        return (
+            f"The simulation diverged near t = {failed:.6g} s: {why}. {self._step_size.remedy(size)}"
+            f" The last good state, at t = {self._model.clock.time:.6g} s, was kept."
+        )
