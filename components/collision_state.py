@@ -47,9 +47,6 @@ class _Saved(Mapping[str, Any]):
         value = getattr(self, key)
         return value if key == "kind" else _replaced(np.asarray(value).tolist(), math.inf, None)
 
-    def __repr__(self) -> str:
-        return f"{type(self).__name__}({dict(self)!r})"
-
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, _Saved) or type(self) is not type(other):
             return False

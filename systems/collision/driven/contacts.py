@@ -79,7 +79,7 @@ class ContactStepper:
             push = support_forces(normal, pairs, forces, self.model.particles.count)
             apply_contact_forces(trial.program, self.model, push)
             reason = trial.take(end)
-            h = trial.duration
+            h = float(self.model.clock.time - trial.start)
             if h == 0.0 or reason is StopReason.DIVERGED:
                 return reason, turn == 0  # contact forces that were tried are not to blame
             if trial.program.integrator.controlled:

@@ -36,8 +36,3 @@ class TrialStep:
     def take_back(self) -> None:
         """Restore the state in which the step begins."""
         self.before.restore(self.model)
-
-    @property
-    def duration(self) -> float:
-        """Time (s) from the start of the step to the present."""
-        return float(self.model.clock.time - self.start)

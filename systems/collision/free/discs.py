@@ -99,11 +99,9 @@ class Discs:
         self.count = len(place)
         n = self.count + len(self._obstacles)
         self.rows = np.zeros((n, len(Disc)))
-        self._columns(Disc.OX)[...] = place
-        self._columns(Disc.UX)[...] = displacement
-        self._columns(Disc.VX)[...] = velocity
-        self._columns(Disc.WX)[...] = inverse_mass
-        self._columns(Disc.GX)[...] = acceleration
+        columns = (Disc.OX, place), (Disc.UX, displacement), (Disc.VX, velocity), (Disc.WX, inverse_mass)
+        for first, values in (*columns, (Disc.GX, acceleration)):
+            self._columns(first)[...] = values
         self._columns(Disc.GX)[self._columns(Disc.WX) == 0.0] = 0.0
         self._columns(Disc.AX)[...] = self._columns(Disc.GX)
         self.rows[: self.count, Disc.RADIUS] = radius

@@ -7,15 +7,7 @@ grid and queue can be discarded and made anew at any time without changing a bit
 
 from systems.collision.columns import NONE, Count, Disc, Number, Reason
 from systems.collision.kernels import compiled
-from systems.collision.kernels.grid import (
-    COARSEST,
-    box_size,
-    enclose,
-    enter,
-    layer_of,
-    level_of,
-    neighbours,
-)
+from systems.collision.kernels.grid import COARSEST, box_size, enclose, enter, layer_of, level_of, neighbours
 from systems.collision.kernels.heap import changes, purge, push
 from systems.collision.kernels.persistent_contact import find_persistent
 from systems.collision.kernels.time_of_impact import (
