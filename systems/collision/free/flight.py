@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from components.collision_state import FreeFlightState
 from components.field import Role
+from components.handle import Handle
 from components.load import loads_end
 from components.model import Model
 from components.obstacles import obstacles
-from systems.base import StopReason
+from systems.base import Event, StopReason
 from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc
 from systems.collision.free.compiled import EVENTS, HORIZONS, PILES, engine
 from systems.collision.free.discs import Discs
@@ -75,6 +76,12 @@ class Flight:
         """True if impacts take energy."""
         least = obstacles(self.model).restitution.min(initial=self.model.settings.restitution)
         return bool(least < 1.0)
+
+    watches_events = False
+
+    def take_events(self) -> list[tuple[Event, list[Handle], list[Handle]]]:
+        """None: a plan with events has a step program."""
+        return []
 
     def bind(self) -> None:
         """The document changed: paths are found anew."""
