@@ -1,4 +1,4 @@
-"""Discs in lasting contact: the slow, obvious physics that piles are compared with.
+"""Discs in persistent contact: the slow, obvious physics that piles are compared with.
 
 In each short step the velocities change as little as they can (Gauss's principle) so that no gap is negative at its
 end, to first order: min |v − v₀ − h g|² in mass, under gap + h n·Δv ≥ 0. Nothing bounces. The least is found by

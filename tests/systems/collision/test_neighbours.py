@@ -1,4 +1,4 @@
-"""Who is near whom is looked up when the document changes or particles have moved, not in every step."""
+"""The neighbour list is made anew when the document changes or particles have moved, not in every step."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from game import Session
-from systems.broad_phase import FEW, near_pairs
-from systems.collision.driven import neighbours as vicinity
-from systems.collision.driven.neighbours import Vicinity
-from systems.collision.driven.stepper import Encounters
+from systems.broad_phase import ALL_PAIRS_DISCS, near_pairs
+from systems.collision.driven import neighbours
+from systems.collision.driven.neighbours import NeighbourList
+from systems.collision.driven.stepper import DrivenCollisions
 from tests.benchmarks.models import lattice
-from tests.systems.test_encounters import truss
+from tests.systems.collision.test_driven_collisions import truss
 
 
 def test_a_step_looks_up_nothing_and_an_edit_does(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -27,7 +27,7 @@ def test_a_step_looks_up_nothing_and_an_edit_does(monkeypatch: pytest.MonkeyPatc
         looked.append(where)
         return near_pairs(*where)
 
-    monkeypatch.setattr(vicinity, "near_pairs", looked_up)
+    monkeypatch.setattr(neighbours, "near_pairs", looked_up)
     for _ in range(5):
         session.step()
     assert not looked
@@ -36,7 +36,7 @@ def test_a_step_looks_up_nothing_and_an_edit_does(monkeypatch: pytest.MonkeyPatc
     assert looked
 
 
-@pytest.mark.parametrize("count", [20, FEW + 20])
+@pytest.mark.parametrize("count", [20, ALL_PAIRS_DISCS + 20])
 @pytest.mark.parametrize("sizes", [(0.05,), (0.05, 0.3), (0.001, 0.02, 0.02, 0.4)])
 def test_all_pairs_within_reach_are_found_once_and_in_order(sizes: tuple[float, ...], count: int) -> None:
     random = np.random.default_rng(len(sizes))
@@ -95,7 +95,7 @@ def lively(seed: int) -> Session:
 def test_before_its_time_nothing_meets(seed: int) -> None:
     """Followed without collisions: within the time that is told, no gap closes and no particle is too fast."""
     session = lively(seed)
-    near = Vicinity(session.model)
+    near = NeighbourList(session.model)
     near.look_up()
     clear = near.clear_time()
     assert 0.0 < clear < math.inf
@@ -116,13 +116,13 @@ def test_what_flies_away_from_a_structure_is_not_watched(monkeypatch: pytest.Mon
     document = truss({"position": [1.03, 0.65]}, integrator="velocity_verlet")
     session = Session.open(document)
     watched: list[None] = []
-    step = Encounters._watched_step
+    step = DrivenCollisions._examined_step
 
     def noted(*args: Any, **rest: Any) -> Any:
         watched.append(None)
         return step(*args, **rest)
 
-    monkeypatch.setattr(Encounters, "_watched_step", noted)
+    monkeypatch.setattr(DrivenCollisions, "_examined_step", noted)
     session.run(time=10.0)
     assert session.particles["ball"].displacement[1] < -300.0
     assert session.model.clock.steps > 10_000

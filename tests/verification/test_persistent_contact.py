@@ -5,7 +5,7 @@ import pytest
 
 from game import Session
 from systems.collision.free.compiled import engine
-from tests.reference import lasting
+from tests.reference import persistent_contact
 from tests.reference.scenes_of_discs import GRAVITY, Scene, stacked
 
 DOWN = np.array([0.0, -GRAVITY])
@@ -29,7 +29,7 @@ def heap() -> Scene:
 @pytest.fixture(scope="module")
 def expected() -> np.ndarray:
     """Displacements of the heap after UNTIL, extrapolated from two runs of first order."""
-    coarse, fine = (lasting.moved(heap(), DOWN, UNTIL, steps) for steps in (500, 1000))
+    coarse, fine = (persistent_contact.moved(heap(), DOWN, UNTIL, steps) for steps in (500, 1000))
     assert 1e-4 < np.abs(fine - coarse).max() / RADIUS < 1e-3
     found: np.ndarray = 2.0 * fine - coarse - heap()["position"]
     assert np.abs(found).max() > 0.5 * RADIUS
@@ -80,18 +80,18 @@ def test_contacts_of_a_resting_pile_push_as_statics_demands(count: int, columns:
     discs.advance(8.0)
     assert discs.at_rest
     place = scene["position"] + discs.state_at(8.0)[0]
-    _, _, gaps = lasting.lines_of(scene, place, RADIUS)
+    _, _, gaps = persistent_contact.lines_of(scene, place, RADIUS)
     assert gaps.min() >= -1e-6 * scene["radius"].min()
-    demanded = lasting.forces_at_rest(scene, place, DOWN)
-    paths = discs.paths()
+    demanded = persistent_contact.forces_at_rest(scene, place, DOWN)
+    state = discs.state()
     found = {
         (min(pair), max(pair)): force
-        for pair, force in zip(paths.contacts.tolist(), paths.forces.tolist(), strict=True)
+        for pair, force in zip(state.contacts.tolist(), state.forces.tolist(), strict=True)
     }
     heaviest = GRAVITY / scene["inverse_mass"][:count].min()
     assert max(demanded.values()) > 2.0 * heaviest
     for pair in demanded.keys() | found.keys():
         assert found.get(pair, 0.0) == pytest.approx(demanded.get(pair, 0.0), abs=1e-6 * heaviest)
-    _, lines, _ = lasting.lines_of(scene, place, 1e-9 * RADIUS)
+    _, lines, _ = persistent_contact.lines_of(scene, place, 1e-9 * RADIUS)
     floor = (np.array(list(demanded.values())) @ lines).reshape(-1, 2)[count:, 1].sum()
     assert floor == pytest.approx(-GRAVITY * (1.0 / scene["inverse_mass"][:count, 1]).sum(), rel=1e-9)

@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from components.collision_state import FreeFlightState, PersistentContacts
 from game import Session
 from game.commands.command_line import main
 from game.documents.models import document
-from systems.collision.driven.neighbours import Vicinity
+from systems.collision.driven.neighbours import NeighbourList
 from systems.edit.pull import hand_on
-from tests.systems.test_encounters import box, energy_of_discs
+from tests.systems.collision.test_driven_collisions import box, energy_of_discs
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
 
@@ -196,12 +197,44 @@ def test_saved_and_continued_gives_the_same_bits(document: dict[str, Any], tmp_p
     assert again.energy == session.energy
 
 
-def test_paths_that_make_no_sense_are_refused() -> None:
+@pytest.mark.parametrize("name", ["free_discs", "resting_ball"])
+def test_runs_saved_before_the_collision_state_was_split_go_on_to_the_bit(name: str, tmp_path: Path) -> None:
+    """Files of an earlier program, whose `state.paths` held both kinds; saved anew, they have the present form."""
+    file = Path(__file__).parent / "saved_paths" / f"{name}.json"
+    old = json.loads(file.read_text())["state"]["paths"]
+    session = Session.open(file)
+    found = session.model.clock.collision_state
+    if isinstance(found, FreeFlightState):
+        assert name == "free_discs"
+        assert [found[key] for key in ("motion", "contacts", "forces", "pile")] == [
+            old[key] for key in ("motion", "contacts", "forces", "crowd")
+        ]
+    else:
+        assert isinstance(found, PersistentContacts)
+        assert (name, old["motion"], [found.longest_step]) == ("resting_ball", [], old["crowd"])
+        assert (found["pairs"], found["forces"]) == (old["contacts"], old["forces"])
+    session.save(tmp_path / "saved.json")
+    saved = json.loads((tmp_path / "saved.json").read_text())["state"]
+    assert "paths" not in saved
+    assert saved["collision_state"] == dict(found)
+    again = Session.open(tmp_path / "saved.json")
+    assert again.model.clock.collision_state == found
+    for one in (session, again):
+        one.run(time=0.05)
+    assert state(again) == state(session)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"contacts": [[0, -7]]}, {"kind": "orbits"}, {"pile": [[1.0]]}, {"more": 1}, {"motion": [[1.0], []]}],
+    ids=str,
+)
+def test_a_collision_state_that_makes_no_sense_is_refused(change: dict[str, Any]) -> None:
     session = Session.open("collision_i")
     session.run(time=0.1)
     saved = document(session.model)
-    saved["state"]["paths"]["contacts"] = [[0, -7]]
-    with pytest.raises(ValueError, match="paths are not what a saved run holds"):
+    saved["state"]["collision_state"] |= change
+    with pytest.raises(ValueError, match=r"collision_state.*: it is not what a saved run holds"):
         Session.open(saved)
 
 
@@ -278,7 +311,7 @@ def pull(session: Session, name: str, anchors: list[tuple[float, float]], steps:
 
 def sinking(session: Session) -> float:
     """By how much of a radius discs are in one another at most."""
-    near = Vicinity(session.model)
+    near = NeighbourList(session.model)
     near.look_up()
     near._list(near._least, near.displacement)
     gap, _ = near.gaps(near.pairs, near.displacement)

@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from components.paths import resting
+from components.collision_state import PersistentContacts
 from game import Session
-from systems.collision.driven.neighbours import Vicinity
+from systems.collision.driven.neighbours import NeighbourList
 from systems.collision.driven.stepper import DRIVEN
-from systems.collision.system import contacts_of
+from systems.collision.system import persistent_contacts
 from systems.edit.pull import hand_on
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
@@ -114,7 +114,7 @@ def test_how_a_run_is_divided_does_not_matter_nor_is_anything_lost_by_saving(tmp
         divided.run(steps=20)
         divided.save(tmp_path / "saved.json")
         divided = Session.open(tmp_path / "saved.json")
-    assert whole.model.clock.paths is not None, "the ball rests on the node by now"
+    assert whole.model.clock.collision_state is not None, "the ball rests on the node by now"
     assert state(whole) == state(divided)
     assert whole.energy == divided.energy
 
@@ -277,7 +277,7 @@ def energy_of_discs(session: Session) -> float:
 
 def assert_inside(session: Session) -> None:
     """Nothing sunk in by 1e-6 of a radius."""
-    near = Vicinity(session.model)
+    near = NeighbourList(session.model)
     near.look_up()
     near._list(near._least, near.displacement)
     gap, _ = near.gaps(near.pairs, near.displacement)
@@ -286,15 +286,15 @@ def assert_inside(session: Session) -> None:
 
 def assert_lies(session: Session) -> None:
     """At rest, nothing sunk in by 1e-6 of a radius, and what holds it bears its weight."""
-    particles, near = session.model.particles, Vicinity(session.model)
+    particles, near = session.model.particles, NeighbourList(session.model)
     near.look_up()
     assert_inside(session)
-    contacts = contacts_of(session.model)
+    contacts = persistent_contacts(session.model)
     assert contacts is not None
     assert (contacts.forces >= 0.0).all()
-    _, normal = near.gaps(contacts.contacts, near.displacement)
+    _, normal = near.gaps(contacts.pairs, near.displacement)
     force = 1000.0 * particles.constant_force
-    for (i, j), n, push in zip(contacts.contacts, normal, contacts.forces, strict=True):
+    for (i, j), n, push in zip(contacts.pairs, normal, contacts.forces, strict=True):
         force[i] -= push * n
         if j < particles.count:
             force[j] += push * n
@@ -355,7 +355,7 @@ def test_a_ball_that_makes_a_truss_yield_rests_on_what_is_left() -> None:
 
 
 def test_a_hand_presses_a_disc_onto_a_node() -> None:
-    """From aside, then from above; it never passes, and all work is accounted for, through impacts and lasting contact."""
+    """From aside, then from above; it never passes, and all work is accounted for, in impacts and contact."""
     session = Session.open(truss({"position": [0.2, 1.5]}))
     session.simulation.advance(0)
     hand = hand_on(session.model, session.view, session.particles["ball"], lambda: session.pace)
@@ -374,10 +374,10 @@ def test_a_step_that_is_cut_does_not_outlast_the_run() -> None:
     disc = {"position": [0.0, 0.05], "velocity": [0.05, 0.0]}
     session = Session.open(box([disc], environment=GRAVITY | {"drag": 0.5}, settings={"restitution": 0.0}))
     session.run(time=0.1)
-    paths = contacts_of(session.model)
-    assert paths is not None
-    session.model.writable("clock.paths")[0] = resting(
-        paths.contacts, paths.forces, 0.5 * session.model.clock.step_size
+    contacts = persistent_contacts(session.model)
+    assert contacts is not None
+    session.model.writable("clock.collision_state")[0] = PersistentContacts(
+        contacts.pairs, contacts.forces, 0.5 * session.model.clock.step_size
     )
     session.run(time=1e-4)
     assert session.time == pytest.approx(0.1001, abs=1e-15)
