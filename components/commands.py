@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from components.handle import Handle
-    from components.world import World
+from components.handle import Handle
 
 
 @dataclass(frozen=True)
@@ -72,8 +70,8 @@ class Group:
 class Custom(Protocol):
     """A command of a mod's own, for what is not in a table: applying it returns what takes it exactly back."""
 
-    def apply(self, world: World) -> Command:
-        """Make the change; returns the inverse."""
+    def apply(self, world: Any) -> Command:
+        """Make the change in a World; returns the inverse."""
 
 
 Command = Create | Delete | Restore | Assign | Group | Custom

@@ -5,13 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Mapping, Set
 from enum import Enum
-from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
+from typing import Any, Generic, Protocol, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    from components.handle import Handle
 
 T = TypeVar("T")
 Vector = tuple[float, float]
@@ -48,6 +45,20 @@ class Role(Enum):
 
 class FieldError(ValueError):
     """A value that a Field cannot take; the message names the element, the value and the remedy."""
+
+
+class Values(Protocol):
+    """A world, as Fields know it: it reads and writes one value of one element."""
+
+    def read(self, handle: Any, field: Field[Any]) -> Any: ...
+    def write(self, handle: Any, field: Field[Any], value: Any) -> None: ...
+
+
+class Element(Protocol):
+    """A handle, as Fields know it: an element of a world."""
+
+    @property
+    def world(self) -> Values: ...
 
 
 class Field(Generic[T]):
@@ -135,14 +146,14 @@ class Field(Generic[T]):
     @overload
     def __get__(self, handle: None, owner: type) -> Field[T]: ...
     @overload
-    def __get__(self, handle: Handle, owner: type) -> T: ...
-    def __get__(self, handle: Handle | None, owner: type) -> Field[T] | T:
+    def __get__(self, handle: Element, owner: type) -> T: ...
+    def __get__(self, handle: Element | None, owner: type) -> Field[T] | T:
         if handle is None:
             return self
         value: T = handle.world.read(handle, self)
         return value
 
-    def __set__(self, handle: Handle, value: T | None) -> None:
+    def __set__(self, handle: Element, value: T | None) -> None:
         handle.world.write(handle, self, value)
 
     # --- storage ---------------------------------------------------------------------------------

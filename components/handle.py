@@ -11,11 +11,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from components.spelling import missing
-from components.table import Table, living
-
-if TYPE_CHECKING:
-    from components.world import World
+from components.suggestions import missing
+from components.table import Store, Table, living
 
 
 class Handle:
@@ -31,14 +28,14 @@ class Handle:
     single: ClassVar[bool] = False  # exactly one in every world
     points: ClassVar[tuple[str, ...]] = ()  # Fields that are places in the plane (m), which move with it
 
-    _world: weakref.ref[World]
+    _world: weakref.ref[Store]
     entity: int
 
     def __init__(self) -> None:
         raise TypeError(f"A {self.noun} is part of a model; model.create({type(self).__name__}) makes one.")
 
     @classmethod
-    def of_world(cls, world: World, count: int) -> list[Self]:
+    def of_world(cls, world: Store, count: int) -> list[Self]:
         """So many new handles, of a world that is yet to give each an entity; only `World.create` makes any."""
         handles = list(map(cls.__new__, repeat(cls, count)))
         deque(map(_set_world, handles, repeat(weakref.ref(world))), maxlen=0)
@@ -60,7 +57,7 @@ class Handle:
             super().__setattr__(name, value)
 
     @property
-    def world(self) -> World:
+    def world(self) -> Store:
         """The world it belongs to. Raises LookupError if that is gone."""
         world = self._world()
         return world if world is not None else living(self._world, f"this {self.noun}")
@@ -88,5 +85,5 @@ class Handle:
 
 
 # Setters of the slots, which many handles are handed to at once without a look at the name.
-_set_world: Callable[[Handle, weakref.ref[World]], None] = vars(Handle)["_world"].__set__
+_set_world: Callable[[Handle, weakref.ref[Store]], None] = vars(Handle)["_world"].__set__
 set_entity: Callable[[Handle, int], None] = vars(Handle)["entity"].__set__

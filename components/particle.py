@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from components.field import Field, FieldError, Role, Vector
 from components.handle import Handle
-from components.table import Table
-from components.world import World
+from components.table import Store, Table
 
 DEFAULT_MASS = 1.0  # kg, of a particle without rods
 
@@ -141,7 +140,7 @@ def _check_rods(table: Table[Any], rows: NDArray[np.intp]) -> None:
         )
 
 
-def rods_without_length(world: World, rows: NDArray[np.intp]) -> NDArray[np.intp]:
+def rods_without_length(world: Store, rows: NDArray[np.intp]) -> NDArray[np.intp]:
     """Those of these rods whose ends are at the same place and that have no rest length of their own."""
     ends = world.column("particles.position")[world.column("rods.between")[rows]]
     together = (ends[:, 0] == ends[:, 1]).all(axis=1)

@@ -5,22 +5,38 @@ from __future__ import annotations
 import itertools
 import weakref
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Column, Field, Role
-from components.spelling import missing
-
-if TYPE_CHECKING:
-    from components.handle import Handle
-    from components.world import World
-
-H = TypeVar("H", bound="Handle")
+from components.suggestions import missing
 
 _SMALLEST_CAPACITY = 8
 _TRIED = 64  # names at once, at least, in search of a free one
+
+
+class Store(Protocol):
+    """A world, as its tables and handles know it."""
+
+    tables: dict[str, Table[Any]]
+    row_of_entity: NDArray[np.int64]
+
+    def read(self, handle: Any, field: Field[Any]) -> Any: ...
+    def write(self, handle: Any, field: Field[Any], value: Any) -> None: ...
+    def assign(self, handles: Sequence[Any], field_name: str, values: Any) -> None: ...
+    def row(self, handle: Any) -> int: ...
+    def describe(self, handle: Any) -> str: ...
+    def column(self, name: str) -> Column: ...
+    def refresh(self, name: str) -> None: ...
+    def next_revision(self, *roles: Role) -> int: ...
+    def restructured(self, roles: Iterable[Role]) -> int: ...
+    def forget_layouts(self) -> None: ...
+    def place(self, table: Table[Any], first: int) -> None: ...
+
+
+H = TypeVar("H")  # the handles of a kind; see components.handle.Handle
 
 
 class Table(Generic[H]):
@@ -54,7 +70,7 @@ class Table(Generic[H]):
         "structure",
     )
 
-    def __init__(self, world: World, name: str, kind: type[H]) -> None:
+    def __init__(self, world: Store, name: str, kind: type[Any]) -> None:
         self._world = weakref.ref(world)
         self._by_role: dict[tuple[Role, ...], list[Field[Any]]] = {}
         object.__setattr__(self, "name", name)  # assigning to it names the entities
@@ -88,7 +104,7 @@ class Table(Generic[H]):
         return blocks
 
     @property
-    def world(self) -> World:
+    def world(self) -> Store:
         """The world it is part of. Raises LookupError if that is gone."""
         world = self._world()
         return world if world is not None else living(self._world, f"these {self.name}")
@@ -338,7 +354,7 @@ def _spread(column: Column, where: NDArray[np.bool_]) -> Column:
     return spread
 
 
-def living(world: weakref.ref[World], elements: str) -> World:
+def living(world: weakref.ref[Store], elements: str) -> Store:
     """The world of some elements, which do not keep it alive. Raises LookupError if it is gone."""
     found = world()
     if found is None:

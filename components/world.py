@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from components.commands import Assign, Command, Create, Custom, Delete, Group, Removed, Restore
 from components.field import Column, Field, FieldError, Role, same
 from components.handle import Handle, set_entity
-from components.spelling import missing
+from components.suggestions import missing
 from components.table import Table, grown
 from components.tags import Rare
 

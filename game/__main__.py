@@ -1,11 +1,11 @@
 """The program: `pinjoint`, or `python -m game`."""
 
-from game.interrupts import unheard
+from game.interrupts import quietly_interrupted
 
 
 def main() -> int:
     """Run the command line; returns the exit status."""
-    with unheard():
+    with quietly_interrupted():
         from game.commands import command_line
     return command_line.main()
 

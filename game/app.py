@@ -22,7 +22,7 @@ from components.toolbar import Toolbar
 from components.view import MAGNIFICATIONS, MARGIN, Plot, View, drawn_places, magnified
 from game.documents import library, models
 from game.documents.autosave import Autosave, unkept
-from game.documents.open_documents import Desk, ModelFile
+from game.documents.open_documents import ModelFile, OpenDocument
 from game.documents.preferences import (
     DEFAULT_THEME,
     preferred_magnification,
@@ -34,7 +34,8 @@ from game.editor.frame import Frame
 from game.editor.scenes.load import Load
 from game.preparation import Preparation
 from game.scripts.performance import FOOTER, LARGER, Performance
-from game.scripts.script import Failure, Recorder, Script
+from game.scripts.playing import Failure, Recorder
+from game.scripts.script import Script
 from game.session import Session
 from systems.base import System
 from systems.edit.hover import Hover
@@ -100,6 +101,11 @@ def _autosave() -> tuple[Autosave | None, str]:
         return None, unkept(library.data_folder(), error)
 
 
+def unseen_systems(folder: Path) -> list[System]:
+    """The systems that a window adds to a session, without a window; unsaved work would go to the folder."""
+    return [PygameInput(), Hover(), Autosave(folder), Preparation(), PygameRender(pygame.Surface((1, 1)))]
+
+
 def _find_display() -> None:
     """Get ready for a window that somebody can see, or one as SDL_VIDEODRIVER says. Raises NoDisplay, pygame.error."""
     chosen = "SDL_VIDEODRIVER" in os.environ
@@ -141,7 +147,7 @@ class App:
         systems: list[System] = [self.input, Hover(), *further, self.render]
         self.session = Session(model, systems, View(theme=theme), file)
         self.session.window = self
-        self.session.faults_told = 0  # also which mods were left out is shown
+        self.session.faults_seen = 0  # also which mods were left out is shown
         self.session.autosave = self.autosave = autosave
         self.session.preparation = self.preparation = preparation
         self._theme = theme
@@ -150,7 +156,7 @@ class App:
         self._follow_size()
         self.session.view.fit(model)
         self._full_screen = False
-        self._desk: Desk | None = None
+        self._known: OpenDocument | None = None
 
     def run(self) -> list[Failure]:
         """Frames at 60 Hz until the window is closed; returns what played scripts expected in vain."""
@@ -158,7 +164,7 @@ class App:
         thresholds = gc.get_threshold()
         gc.set_threshold(SELDOM)  # else it looks through thousands of new elements in mid edit; see _clean_up
         try:
-            while not self.input.closed:
+            while not self.closed:
                 self.next_frame()
                 if self.session.lesson is not None:
                     lesson, self.session.lesson = self.session.lesson, None
@@ -166,7 +172,7 @@ class App:
         finally:
             gc.set_threshold(*thresholds)
         if self.autosave is not None:
-            self.autosave.close(self.session.desks)
+            self.autosave.close(self.session.documents)
         if self.preparation is not None:
             self.preparation.close()
         self.close()
@@ -205,6 +211,21 @@ class App:
         return frame
 
     @property
+    def closed(self) -> bool:
+        """True once the person has closed the window."""
+        return self.input.closed
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height (points of the display)."""
+        width, height = self.window.size
+        return width, height
+
+    @size.setter
+    def size(self, size: tuple[int, int]) -> None:
+        self.window.size = size
+
+    @property
     def room_below(self) -> int:
         """Points between the window and the lower edge of the display."""
         return max(int(self._display_height) - self.window.position[1] - self.window.size[1], 0)
@@ -227,8 +248,8 @@ class App:
     def _follow_title(self) -> None:
         """Let the window's title name the model, with a dot while it has unsaved work."""
         session = self.session
-        name = session.file.name or ("Untitled" if session.desk.unsaved else "")
-        title = f"{'• ' if session.desk.unsaved else ''}{name} – Pinjoint" if name else "Pinjoint"
+        name = session.file.name or ("Untitled" if session.document.unsaved else "")
+        title = f"{'• ' if session.document.unsaved else ''}{name} – Pinjoint" if name else "Pinjoint"
         if title != self.window.title:
             self.window.title = title
 
@@ -238,8 +259,8 @@ class App:
         Through a newly opened model it looks for the last time: its elements stay, and looking through those of
         a large one takes a tenth of a second, else in mid drag.
         """
-        if self._desk is not self.session.desk:
-            self._desk = self.session.desk
+        if self._known is not self.session.document:
+            self._known = self.session.document
             gc.unfreeze()
             gc.collect()
             gc.freeze()

@@ -14,10 +14,9 @@ from components.field import Column, Role, same
 from components.model import Model
 from game.documents import models
 from game.editor.frame import Frame
-from game.registry import SYSTEMS
 from game.session import Session
 from systems.base import Commit, Integrator, Law, StepSystem, StopReason, System
-from systems.catalogue import step_systems
+from systems.catalogue import all_systems
 from systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
 from systems.program.binding import ProgramError, bind
 from systems.program.reference_laws import KernelRows
@@ -151,8 +150,7 @@ def _compare(
 
 def _all_with(system: System) -> list[System]:
     """The systems of the program, this one among them once."""
-    others = [*step_systems(), *(make() for make in SYSTEMS)]
-    return [*(other for other in others if other.name != system.name), system]
+    return [*(other for other in all_systems() if other.name != system.name), system]
 
 
 def _check_steps(system: Callable[[], System], source: Source) -> float:

@@ -18,7 +18,7 @@ def _is_program(called: str) -> bool:
 
 
 @contextmanager
-def unheard() -> Iterator[None]:
+def quietly_interrupted() -> Iterator[None]:
     """Let Ctrl+C end the process at once, if it is the program itself: a script that imports it has its own way."""
     usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     in_main_thread = threading.current_thread() is threading.main_thread()

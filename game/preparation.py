@@ -8,33 +8,30 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from components.model import Model
 from components.obstacles import any_obstacles
 from components.rod import is_warm, nodes
 from game.mods import MODS
 from game.prepare import WARM, Job, is_prepared, load_program
 from systems.base import Phase, StepSystem, System
 from systems.collision.driven.stepper import DRIVEN
-from systems.collision.free.compiled import EVENTS, PILES, WINDOWS
+from systems.collision.free.compiled import EVENTS, HORIZONS, PILES
 from systems.collision.free.flight import may_pile
-from systems.collision.system import Support, contacts_of
+from systems.collision.system import Support, persistent_contacts
 from systems.edit.pull import Pull
 from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import CompiledUnit, is_blank, load_compiler
 from systems.program.program import has_program
 from systems.program.writer import form_of, read_sources
+from systems.render.raster import Raster
 from systems.render.raster_program import RASTER, load_raster
-
-if TYPE_CHECKING:
-    from components.model import Model
-    from systems.render.raster import Raster
-    from systems.run.simulation import Simulation
-
+from systems.run.simulation import Simulation
 
 Units = tuple[CompiledUnit, ...]  # that one process compiles
-FREE: tuple[Units, ...] = (EVENTS,), (WINDOWS,)  # for free particles
-PULLED: tuple[Units, ...] = (EVENTS,), (WINDOWS, PILES)  # for those that may pile up
+FREE: tuple[Units, ...] = (EVENTS,), (HORIZONS,)  # for free particles
+PULLED: tuple[Units, ...] = (EVENTS,), (HORIZONS, PILES)  # for those that may pile up
 AHEAD: tuple[Units, ...] = (RASTER,), (DRIVEN,), *PULLED  # which any model may come to need
 
 
@@ -181,7 +178,7 @@ def _may_meet(simulation: Simulation) -> bool:
 
 def _may_rest(model: Model) -> bool:
     """True if something that is no structure may come to rest on one, or a structure on a wall, and none does yet."""
-    return contacts_of(model) is None and (any_obstacles(model) or not nodes(model).all())
+    return persistent_contacts(model) is None and (any_obstacles(model) or not nodes(model).all())
 
 
 def _with_support(simulation: Simulation) -> list[StepSystem]:

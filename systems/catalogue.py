@@ -1,8 +1,10 @@
-"""The laws and commits that Pinjoint brings along."""
+"""The laws and commits that Pinjoint brings along, and the systems that mods add."""
 
 from __future__ import annotations
 
-from systems.base import StepSystem
+from collections.abc import Callable
+
+from systems.base import StepSystem, System
 from systems.collision.system import Collision, Support
 from systems.loads.system import varying_loads
 from systems.physics.system import (
@@ -14,6 +16,8 @@ from systems.physics.system import (
     Slackness,
 )
 from systems.plasticity.system import Strength, Yielding
+
+SYSTEMS: list[Callable[[], System]] = []  # that mods add; made anew for every session
 
 
 def step_systems() -> list[StepSystem]:
@@ -31,3 +35,8 @@ def step_systems() -> list[StepSystem]:
         Support(),
         *varying_loads(),
     ]
+
+
+def all_systems() -> list[System]:
+    """Laws and commits, then the systems of mods, frame systems among them."""
+    return [*step_systems(), *(make() for make in SYSTEMS)]

@@ -6,20 +6,19 @@ import io
 import math
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from components.snapshot import Snapshot
 from components.view import drawn_places
 from game.documents.models import replace
-
-if TYPE_CHECKING:
-    from game.session import Session
-    from systems.render.labels import Placed
+from game.session import Session
+from systems.render.labels import Placed
 
 FRAME = 0.05  # s shown by each picture; viewers of GIFs slow down what is quicker
-LONGEST = 12.0  # s shown at most: what takes longer is shown faster, or only how it ends
+LONGEST = (
+    12.0  # s shown at most; a longer run to a time is shown faster, one until rest only in part and its end
+)
 HELD = 1.5  # s for which the last picture stays
 COLOURS = 128
 
@@ -27,7 +26,7 @@ COLOURS = 128
 def render_gif(
     session: Session, path: str, size: tuple[int, int], theme: str, *, until: float | None, limit: float
 ) -> str:
-    """Run on to a time (s; None: until at rest) and write what one sees on the way; returns how it ended.
+    """Run to a time (s; None: until at rest) and write the pictures of the run as a GIF; returns how it ended.
 
     Raises OSError if the file cannot be written.
     """
@@ -51,7 +50,7 @@ def render_gif(
 
 
 def _run(session: Session, until: float | None, limit: float) -> tuple[str, list[Snapshot]]:
-    """How the run ends, and the states on the way."""
+    """The status at the end of the run, and the states that pictures show."""
     moments = [Snapshot.take(session.model)]
     status = "time reached"
     for begin, end in pairwise(_times(session, until, limit)):
@@ -59,7 +58,7 @@ def _run(session: Session, until: float | None, limit: float) -> tuple[str, list
         moments.append(Snapshot.take(session.model))
         if status != "time reached":
             return status, moments
-    if until is None:  # what takes longer than one watches
+    if until is None:  # the rest of a run that takes longer than is shown
         status = session.run(until="rest", limit=limit)
         moments.append(Snapshot.take(session.model))
     return status, moments
@@ -78,6 +77,6 @@ def _times(session: Session, until: float | None, limit: float) -> Iterator[floa
 
 
 def _drawn_at(session: Session, moment: Snapshot) -> np.ndarray:
-    """Where particles are drawn (m), shape (n, 2), in a state."""
+    """The places at which particles are drawn in a state (m), shape (n, 2)."""
     moment.restore(session.model)
     return drawn_places(session.model)

@@ -1,16 +1,12 @@
-"""What the words of a command line mean; what they cannot mean is refused in one sentence."""
+"""Arguments: the values that words of a command line mean, or one sentence that refuses a word."""
 
 from __future__ import annotations
 
 import argparse
 import math
-import os
 import re
-import sys
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any, NoReturn
-
-from game.documents.models import replace
 
 BAD_INPUT = 2
 
@@ -24,7 +20,7 @@ class UsageError(Exception):
 
 
 class Parser(argparse.ArgumentParser):
-    """Says what is wrong in one sentence, and where help is; an option's value may begin with a minus: -1,2."""
+    """A parser that says what is wrong in one sentence; the value of an option may begin with a minus: -1,2."""
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
@@ -36,35 +32,26 @@ class Parser(argparse.ArgumentParser):
 
 def positive(text: str) -> float:
     """A finite number above 0."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text} is not a number of seconds above 0")
-    return value
+    return _number(text, float, lambda value: 0.0 < value < math.inf, "a number of seconds above 0")
 
 
 def count(text: str, least: int = 2) -> int:
-    """A whole number of at least 2, or what is the least."""
-    try:
-        value = int(text)
-    except ValueError:
-        value = least - 1
-    if value < least:
-        raise argparse.ArgumentTypeError(f"{text} is not a whole number of at least {least}")
-    return value
+    """A whole number of at least `least`."""
+    return int(_number(text, int, lambda value: value >= least, f"a whole number of at least {least}"))
 
 
 def finite(text: str) -> float:
     """A finite number."""
+    return _number(text, float, math.isfinite, "a finite number")
+
+
+def _number(text: str, kind: type[float], fits: Callable[[float], bool], wanted: str) -> float:
     try:
-        value = float(text)
+        if fits(value := kind(text)):
+            return value
     except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text} is not a finite number")
-    return value
+        pass
+    raise argparse.ArgumentTypeError(f"{text} is not {wanted}")
 
 
 def numbers(option: str, text: str) -> tuple[float, ...]:
@@ -84,32 +71,3 @@ def times(text: str) -> tuple[float, ...]:
     if found[0] < 0.0 or list(found) != sorted(found):
         raise UsageError(f"--at {text}: times must be at least 0 s and ascending.")
     return found
-
-
-def writable(text: str) -> str:
-    """A file that can be written, found out before anything is computed for it."""
-    path = Path(text)
-    if path.is_dir():
-        reason = "it is a folder"
-    elif not path.parent.is_dir():
-        reason = f"there is no folder {path.parent}"
-    elif not os.access(path if path.exists() else path.parent, os.W_OK):
-        reason = "permission denied"
-    else:
-        return text
-    raise argparse.ArgumentTypeError(f"{text} cannot be written, {reason}; choose another file")
-
-
-def write(text: str, path: str | None) -> None:
-    """Write a result to a file, as a whole or not at all, or to standard output if None. Raises UsageError."""
-    try:
-        if path is None:
-            sys.stdout.write(text)
-            sys.stdout.flush()
-        else:
-            replace(path, text.encode())
-    except BrokenPipeError:
-        raise
-    except OSError as error:
-        place = path or "Standard output"
-        raise UsageError(f"{place} cannot be written: {error.strerror}. Choose another file.") from None

@@ -2,35 +2,105 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import csv
+import importlib
+import math
+import sys
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
-from game.commands import benchmarks as benchmarks
 from game.commands.arguments import Parser, UsageError
 from game.commands.options import ANSWERED
+from game.commands.output import Row, add_format, aligned, formatted, write
+
+CHECKOUT = Path(__file__).resolve().parents[2]
+NAMES = ("speed", "accuracy", "stability", "drawing", "editing", "mods", "collisions", "sweeps", "start")
+
+Tables = Mapping[str, Sequence[Mapping[str, Any]]]  # rows by the title of their table
 
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
-    parser = Parser(prog="pinjoint bench", description="Measure, against peers in the same run.")
-    parser.add_argument(
-        "names", nargs="*", metavar="NAME", help=f"any of {', '.join(benchmarks.NAMES)}; default all"
+    parser = Parser(
+        prog="pinjoint bench", description="Measure speed and accuracy, against peers in the same run."
     )
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(NAMES)}; default all")
     parser.add_argument("--quick", action="store_true", help="smaller sizes; ends within a minute")
+    add_format(parser)
     parser.add_argument("--output", metavar="DIR", help="also write CSV files and pictures there")
     options = parser.parse_args(words)
     for name in options.names:
-        if name not in benchmarks.NAMES:
-            raise UsageError(f"There is no benchmark '{name}'; choose from {', '.join(benchmarks.NAMES)}.")
-    for name in options.names or benchmarks.NAMES:
-        try:
-            tables = benchmarks.run(name, quick=options.quick)
-        except benchmarks.NoBenchmarks as error:
-            raise UsageError(str(error)) from None
-        print(f"== {name} ==\n{benchmarks.as_text(tables)}")
+        if name not in NAMES:
+            raise UsageError(f"There is no benchmark '{name}'; choose from {', '.join(NAMES)}.")
+    measured: dict[str, Tables] = {}
+    for name in options.names or NAMES:
+        tables = run(name, quick=options.quick)
+        if options.format == "table":  # at once: the next one may take minutes
+            print(f"== {name} ==\n{as_text(tables)}")
+        measured[name] = tables
         if options.output:
             try:
-                benchmarks.write(name, tables, Path(options.output))
+                write_files(name, tables, Path(options.output))
             except OSError as error:
                 raise UsageError(f"{options.output} cannot be written: {error.strerror}.") from None
+    if options.format != "table":
+        write(formatted(options.format, _finite(measured), _rows), None)
     return ANSWERED
+
+
+def run(name: str, *, quick: bool) -> Tables:
+    """The tables of one benchmark. Raises UsageError outside a source checkout."""
+    if not (CHECKOUT / "tests" / "benchmarks").is_dir():
+        raise UsageError(
+            "The benchmarks live in the source tree, not in the installed package; clone it and"
+            ' install it with: pip install -e ".[bench]"'
+        )
+    if str(CHECKOUT) not in sys.path:
+        sys.path.insert(0, str(CHECKOUT))
+    try:
+        tables: Tables = importlib.import_module(f"tests.benchmarks.{name}").report(quick=quick)
+    except ImportError as error:
+        raise UsageError(f'{error}; install the peers with: pip install -e ".[bench]"') from None
+    return tables
+
+
+def as_text(tables: Tables) -> str:
+    """All tables of a benchmark, aligned, to read."""
+    return "\n".join("\n".join([title, *_lines(rows), ""]) for title, rows in tables.items())
+
+
+def _lines(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    cells = [[f"{v:.4g}" if isinstance(v, float) else str(v) for v in row.values()] for row in rows]
+    return aligned([list(rows[0]), *cells])
+
+
+def _finite(value: Any) -> Any:
+    """A value with None for every number that is not finite: JSON has none of these."""
+    if isinstance(value, Mapping):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _rows(measured: Mapping[str, Tables]) -> Iterator[Row]:
+    """One value a line: tables have different columns."""
+    yield "benchmark", "table", "row", "quantity", "value"
+    for name, tables in measured.items():
+        for title, rows in tables.items():
+            for number, row in enumerate(rows, 1):
+                yield from ((name, title, number, *entry) for entry in row.items())
+
+
+def write_files(name: str, tables: Tables, folder: Path) -> None:
+    """One CSV file per table, and a picture where the benchmark has one."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for title, rows in tables.items():
+        with open(folder / f"{name}_{title}.csv", "w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, list(rows[0]))
+            writer.writeheader()
+            writer.writerows(rows)
+    module = importlib.import_module(f"tests.benchmarks.{name}")
+    if hasattr(module, "draw"):
+        module.draw(tables, folder / f"{name}.png")

@@ -7,21 +7,31 @@ import sys
 from collections.abc import Sequence
 
 from components.field import FieldError
-from game.commands import bench, curve, force_method, plan, play, render, run, sweep, verify, window
-from game.commands.arguments import BAD_INPUT, Parser, UsageError, write
+from game.commands import (
+    COMMANDS,
+    Command,
+    bench,
+    curve,
+    force_method,
+    mods,
+    plan,
+    play,
+    render,
+    run,
+    sweep,
+    verify,
+    window,
+)
+from game.commands.arguments import BAD_INPUT, UsageError
 from game.commands.options import NOT_ANSWERED, use_cores_as_asked
+from game.commands.output import ResultError, write
 from game.commands.reports.report import AnalysisError
-from game.commands.reports.results import ResultError
 from game.documents.document import ModelError
-from game.editor.shapes import NoShape
-from game.mods import ModError
-from game.mods.command import load_as_asked
-from game.mods.command import run as run_mods
-from game.paths.overrides import OverrideError
-from game.registry import ABOUT, COMMANDS
+from game.documents.shapes import NoShape
+from game.mods.mod import ModError
+from game.paths import PathError
 from game.scripts.script import ScriptError
 from game.sweeps import SweepError
-from game.version import __version__
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -29,15 +39,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # standard output is for results
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        words = load_as_asked(use_cores_as_asked(words))
+        words = mods.load_as_asked(use_cores_as_asked(words))
         command = words[0] if words and words[0] in COMMANDS else "open"
-        status = COMMANDS[command](words[1:] if command in words[:1] else words)
-        write("", None)  # what is still on its way there
+        status = COMMANDS[command].run(words[1:] if command in words[:1] else words)
+        write("", None)  # flushes standard output, while errors can still be told
         return status
     except (
         UsageError,
         ModelError,
-        OverrideError,
+        PathError,
         FieldError,
         ScriptError,
         ModError,
@@ -50,11 +60,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return getattr(error, "status", BAD_INPUT)
     except KeyboardInterrupt:
         return 130
-    except BrokenPipeError:  # whoever reads has seen enough, such as `head`
+    except BrokenPipeError:  # the reader has seen enough, such as `head`
         _drop_output()
         return NOT_ANSWERED
     except OSError as error:
-        if error.filename is None:  # and not tried again on leaving
+        if error.filename is None:  # of standard output, which Python would flush again on leaving
             _drop_output()
         place = error.filename or "Standard output"
         print(f"pinjoint: {place} cannot be used: {error.strerror or error}.", file=sys.stderr)
@@ -62,40 +72,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _drop_output() -> None:
-    """Let what is still on its way to standard output go nowhere."""
+    """Discard the buffered rest of standard output, which cannot be written."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _mods(words: Sequence[str]) -> int:
-    """`pinjoint mods`, which game.mods answers."""
-    parser = Parser(prog="pinjoint mods", description="Extensions of the program; see assets/mods/README.md.")
-    return run_mods(words, parser, __version__)
-
-
 COMMANDS |= {
-    "open": window.command,
-    "run": run.command,
-    "render": render.command,
-    "bench": bench.command,
-    "play": play.command,
-    "verify": verify.command,
-    "curve": curve.command,
-    "force-method": force_method.command,
-    "plan": plan.command,
-    "mods": _mods,
-    "sweep": sweep.command,
-}
-
-ABOUT |= {
-    "open": "show a model in the window, as without a command",
-    "run": "compute a model without a window, and print what came of it",
-    "verify": "simulation beside linear and exact theory; influence lines",
-    "curve": "load–displacement curve, through limit points",
-    "force-method": "hyperstatic forces by the force method",
-    "sweep": "compute many variants of a model",
-    "plan": "which systems run in a scene with a model, and why others do not",
-    "render": "draw a model, or its run, without a display",
-    "play": "play a scripted session or a lesson",
-    "mods": "list, check and begin extensions",
-    "bench": "measure speed and accuracy",
+    "open": Command(window.command, "show a model in the window, as without a command"),
+    "run": Command(run.command, "compute a model without a window, and print the result"),
+    "verify": Command(verify.command, "simulation beside linear and exact theory; influence lines"),
+    "curve": Command(curve.command, "load–displacement curve, through limit points"),
+    "force-method": Command(force_method.command, "hyperstatic forces by the force method"),
+    "sweep": Command(sweep.command, "compute many variants of a model"),
+    "plan": Command(plan.command, "which systems run in a scene with a model, and why others do not"),
+    "render": Command(render.command, "draw a model, or its run, without a display"),
+    "play": Command(play.command, "play a scripted session or a lesson"),
+    "mods": Command(mods.command, "list, check and begin extensions"),
+    "bench": Command(bench.command, "measure speed and accuracy"),
 }

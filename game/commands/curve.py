@@ -1,20 +1,27 @@
-"""`pinjoint curve`: a load–displacement curve as CSV."""
+"""`pinjoint curve`: a load–displacement curve."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
-from game.commands.arguments import Parser, UsageError, count, finite, write
-from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_output, session_of
-from game.commands.reports.curve import as_csv, why_nothing_follows
+import numpy as np
+
+from components.model import Model
+from game.commands.arguments import Parser, UsageError, count, finite
+from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from game.commands.output import Row, add_output, write_result
+
+if TYPE_CHECKING:
+    from systems.statics.path import Curve
 
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
     parser = Parser(
         prog="pinjoint curve",
-        description="Load–displacement curve as CSV: equilibria while the load grows, and falls where it must.",
+        description="Load–displacement curve: the equilibria while the load grows, and falls behind limit points.",
     )
     add_model(parser)
     goal = parser.add_mutually_exclusive_group()
@@ -25,18 +32,54 @@ def command(words: Sequence[str]) -> int:
         "--until", metavar="B.y=-2.5", help="end where a particle first has this displacement (m)"
     )
     parser.add_argument("--points", type=count, default=500, metavar="N", help="at most so many equilibria")
-    add_output(parser)
+    add_output(parser, default="csv")
     options = parser.parse_args(words)
     session = session_of(options)
     try:
         found = session.load_path(options.factor, until=options.until, points=options.points)
     except ValueError as error:
         raise UsageError(str(error)) from None
-    write(as_csv(session.model, found), options.output)
+    write_result(options, _data(session.model, found), _rows)
     if not found.complete:
         print(
             f"pinjoint: The curve ends at the load factor {found.load_factor[-1]:.6g}."
-            f"{why_nothing_follows(session.model) if len(found.load_factor) == 1 else ''}",
+            f"{_why_nothing_follows(session.model) if len(found.load_factor) == 1 else ''}",
             file=sys.stderr,
         )
     return ANSWERED if found.complete else NOT_ANSWERED
+
+
+def _why_nothing_follows(model: Model) -> str:
+    """Why a curve ends where it begins: the motion of a mechanism in words; "" if the structure is none."""
+    from systems.statics.explain import describe_motion
+    from systems.statics.theory import mechanisms
+
+    moving = mechanisms(model)
+    if not len(moving):
+        return ""
+    return (
+        f" The structure is a mechanism: {describe_motion(model, moving)} can move. Add rods or supports there."
+    )
+
+
+def _data(model: Model, curve: Curve) -> dict[str, Any]:
+    """A curve as plain data, each list with one entry for every equilibrium.
+
+    displacement (m): by free direction, such as "B.y"; axial_force (kN): by rod. complete: as in `Curve`.
+    """
+    names = model.particles.names
+    free = np.argwhere(~model.particles.fixed).tolist()
+    return {
+        "complete": curve.complete,
+        "load_factor": curve.load_factor,
+        "stable": curve.stable,
+        "displacement": {f"{names[row]}.{'xy'[axis]}": curve.displacement[:, row, axis] for row, axis in free},
+        "axial_force": dict(zip(model.rods.names, curve.axial_force.T, strict=True)),
+    }
+
+
+def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
+    """The data of a curve as rows, one for every equilibrium, headings first."""
+    moved, forces = found["displacement"], found["axial_force"]
+    yield "load factor", "stable", *(f"{name} (m)" for name in moved), *(f"{name} (kN)" for name in forces)
+    yield from zip(found["load_factor"], found["stable"], *moved.values(), *forces.values(), strict=True)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
-from game.commands.arguments import Parser, UsageError, write
-from game.commands.options import ANSWERED, add_output
+from components.model import Model
+from game.commands.arguments import Parser, UsageError
+from game.commands.options import ANSWERED
+from game.commands.output import Row, add_output, write_result
 from game.documents import models
-from game.paths.overrides import apply_override
+from game.paths import apply_override
 
 
 def command(words: Sequence[str]) -> int:
@@ -21,17 +23,60 @@ def command(words: Sequence[str]) -> int:
     parser.add_argument(
         "--set", action="append", default=[], metavar="PATH=VALUE", help="change the model first"
     )
-    add_output(parser)
+    add_output(parser, default="json")
     options = parser.parse_args(words)
     model = models.load(options.model)
     for override in options.set:
         apply_override(model, override)
-    from game.force_method.report import force_method
     from systems.statics.force_method import ForceMethodError
 
     try:
-        found = force_method(model, None if options.all else options.release)
+        found = _solved(model, None if options.all else options.release)
     except ForceMethodError as error:
         raise UsageError(str(error)) from None
-    write(json.dumps(found, indent=2, ensure_ascii=False) + "\n", options.output)
+    write_result(options, found, _rows)
     return ANSWERED
+
+
+def _solved(model: Model, release: str | None) -> dict[str, Any]:
+    """Displacements (m, m/kN) and hyperstatic forces (kN), with the exact forces beside them.
+
+    release: "AC" or "A.y"; None: as many unknowns as make the structure isostatic, in lists and a matrix.
+    Raises ForceMethodError.
+    """
+    from game.force_method.guide import exact_forces
+    from systems.statics.force_method import find_unknown, redundants, solve
+
+    unknowns = redundants(model) if release is None else [find_unknown(model, release)]
+    solution = solve(model, unknowns)
+    exact = exact_forces(model, unknowns)
+    if release is not None:
+        return {
+            "released": release,
+            "delta_real": float(solution.delta_real[0]),
+            "delta_base": float(solution.delta_base[0]),
+            "delta_unit": float(solution.delta_unit[0, 0]),
+            "force": float(solution.force[0]),
+            "exact_force": exact[0] if exact is not None else None,
+        }
+    return {
+        "released": [unknown.name for unknown in unknowns],
+        "delta_real": solution.delta_real.tolist(),
+        "delta_base": solution.delta_base.tolist(),
+        "delta_unit": solution.delta_unit.tolist(),
+        "force": solution.force.tolist(),
+        "exact_force": exact,
+    }
+
+
+def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
+    """The result as rows, one for every unknown, headings first."""
+    if not isinstance(found["released"], list):
+        found = {key: [value] for key, value in found.items()} | {"delta_unit": [[found["delta_unit"]]]}
+    names = found["released"]
+    exact = found["exact_force"] or [None] * len(names)
+    unit = [f"delta_unit {name} (m/kN)" for name in names]
+    yield "released", "delta_real (m)", "delta_base (m)", *unit, "force (kN)", "exact_force (kN)"
+    parts = (names, found["delta_real"], found["delta_base"], found["delta_unit"], found["force"], exact)
+    for name, real, base, row, force, exactly in zip(*parts, strict=True):
+        yield name, real, base, *row, force, exactly

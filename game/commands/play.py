@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
 
 from game.commands.arguments import Parser
 from game.commands.options import ANSWERED, NOT_ANSWERED
+from game.commands.output import Row, add_output, write_result
 from game.commands.window import in_window
 from game.documents import library, models
 from game.documents.open_documents import file_of
-from game.scripts import script
+from game.scripts import playing, script
 
 
 def command(words: Sequence[str]) -> int:
@@ -30,8 +32,9 @@ def command(words: Sequence[str]) -> int:
         "--data",
         type=Path,
         metavar="FOLDER",
-        help="where it saves and loads; left out, in an empty folder that is gone afterwards",
+        help="where the session saves and loads; default: an empty folder that is deleted afterwards",
     )
+    add_output(parser)
     options = parser.parse_args(words)
     loaded = script.Script(options.script)
     with ExitStack() as kept:
@@ -41,13 +44,28 @@ def command(words: Sequence[str]) -> int:
         if options.window:
             failures = in_window(models.load(loaded.source), file_of(loaded.source), lesson=loaded)
         else:
-            session = loaded.open()
+            session = playing.session_of(loaded)
             if not loaded.has_data:  # so that it ends alike however often it is played
                 kept.enter_context(library.data_apart())
-            failures = loaded.play(session)
+            failures = playing.play(loaded, session)
+    found = {
+        "script": options.script,
+        "lines": len(loaded.lines) - 1,
+        "failures": [{**vars(failure), "got": str(failure.got)} for failure in failures],
+    }
     for failure in failures:
         print(f"{options.script} {failure}", file=sys.stderr)
-    failed = f"{len(failures)} expectation{'s' if len(failures) > 1 else ''} failed"
-    found = failed if failures else "all as expected"
-    print(f"{options.script}: {len(loaded.lines) - 1} lines, {found}")
+    write_result(options, found, _rows, _lines)
     return NOT_ANSWERED if failures else ANSWERED
+
+
+def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
+    """The expectations that failed."""
+    yield "script", "line", "expected", "got"
+    yield from ((found["script"], *failure.values()) for failure in found["failures"])
+
+
+def _lines(found: Mapping[str, Any]) -> Iterator[str]:
+    failed = len(found["failures"])
+    ended = f"{failed} expectation{'s' if failed > 1 else ''} failed" if failed else "all as expected"
+    yield f"{found['script']}: {found['lines']} lines, {ended}"

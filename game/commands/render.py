@@ -6,10 +6,11 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from game.commands.arguments import Parser, UsageError, positive, writable
+from game.commands.arguments import Parser, UsageError, positive
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from game.commands.output import writable
 from game.commands.reports.report import FOUND
-from game.editor.shapes import numbered
+from game.documents.shapes import numbered
 from game.session import DEFAULT_LIMIT, Session
 from systems.render.theme import theme_names
 
@@ -59,10 +60,10 @@ def command(words: Sequence[str]) -> int:
 
 
 def _show_shape(session: Session, options: argparse.Namespace) -> None:
-    """Raises NoShape if there is none with that number."""
+    """Draw the mechanism or mode that the options ask for. Raises NoShape if there is none with that number."""
     for kind in ("mechanism", "mode"):
         if (number := getattr(options, kind)) is not None:
-            session.desk.shapes.show(numbered(session.model, kind, number))
+            session.document.shapes.show(numbered(session.model, kind, number))
 
 
 def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:

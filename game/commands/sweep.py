@@ -21,18 +21,13 @@ def command(words: Sequence[str]) -> int:
 
     if options.plot is not None:
         check_output(Path(options.plot), [".png"])
-    overrides = [*options.set]
-    if options.integrator is not None:
-        overrides.append(f"settings.integrator={options.integrator}")
-    if options.time_step is not None:
-        overrides.append(f"settings.time_step={options.time_step}")
     try:
         results = sweep(
             options.model,
             options.vary,
             options.measure,
             analysis_of(options),
-            overrides=overrides,
+            overrides=options.set,
             samples=options.samples,
             seed=options.seed,
             output=options.output,

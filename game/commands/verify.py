@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from game.commands.arguments import BAD_INPUT, Parser, UsageError, positive, write
-from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, add_output, session_of
-from game.commands.reports.results import as_json
+from game.commands.arguments import BAD_INPUT, Parser, UsageError, positive
+from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
+from game.commands.output import add_output, write_result
 from game.session import DEFAULT_LIMIT
 
 
@@ -27,7 +27,6 @@ def command(words: Sequence[str]) -> int:
     parser.add_argument(
         "--limit", type=positive, default=DEFAULT_LIMIT, metavar="SECONDS", help="simulated time for rest"
     )
-    parser.add_argument("--format", choices=("table", "json"), default="table")
     add_output(parser)
     options = parser.parse_args(words)
     session = session_of(options)
@@ -42,5 +41,5 @@ def command(words: Sequence[str]) -> int:
             found = verify.verify(session, options.model, options.limit, simulate=not options.theory_only)
     except (ForceMethodError, NoEquilibrium) as error:
         raise UsageError(str(error), NOT_ANSWERED if isinstance(error, NoEquilibrium) else BAD_INPUT) from None
-    write(as_json(found) if options.format == "json" else verify.as_table(found), options.output)
+    write_result(options, found, verify.rows, verify.lines)
     return ANSWERED if found.get("status") != verify.NOT_VERIFIED else NOT_ANSWERED

@@ -9,20 +9,22 @@ from pathlib import Path
 from typing import Any
 
 from components.model import Model
-from components.spelling import nearest
-from game.commands.arguments import Parser, UsageError, writable
+from components.suggestions import nearest
+from game.commands import COMMANDS
+from game.commands.arguments import Parser, UsageError
+from game.commands.mods import in_use
 from game.commands.options import ANSWERED, NO_DISPLAY
+from game.commands.output import writable
 from game.documents import models
 from game.documents.open_documents import ModelFile, file_of
-from game.mods.safety import in_use
-from game.registry import ABOUT, COMMANDS
 from game.scripts import script
+from game.scripts.playing import Failure
 from game.version import __version__
 from systems.render.theme import theme_names
 
 
 def _refuse_misspelt(word: str) -> None:
-    """Refuse a word that is no model but nearly a command. Raises UsageError."""
+    """Raise UsageError for a word that is not a model but nearly a command."""
     near = nearest(word, COMMANDS, cutoff=0.75)
     if near and word not in models.bundled() and not Path(word).exists():
         raise UsageError(f"There is no command '{word}'; did you mean '{near}'?")
@@ -39,7 +41,7 @@ def _epilog() -> str:
     return "\n".join(
         [
             "commands (each with --help):",
-            *(f"  {name.ljust(width)}  {ABOUT.get(name, '')}".rstrip() for name in sorted(COMMANDS)),
+            *(f"  {name.ljust(width)}  {COMMANDS[name].about}".rstrip() for name in sorted(COMMANDS)),
             *(f"\n{textwrap.fill(paragraph, 78)}" for paragraph in paragraphs),
         ]
     )
@@ -57,9 +59,9 @@ def command(words: Sequence[str]) -> int:
     )
     parser.add_argument("model", nargs="?", help="a model file, or the name of a bundled model")
     parser.add_argument(
-        "--record", type=writable, metavar="FILE", help="write what you do to a script for: pinjoint play"
+        "--record", type=writable, metavar="FILE", help="write the session to a script for: pinjoint play"
     )
-    parser.add_argument("--theme", choices=theme_names(), help="colours; default: those that were used last")
+    parser.add_argument("--theme", choices=theme_names(), help="colours; default: the theme that was used last")
     parser.add_argument("--version", action="version", version=f"pinjoint {__version__}")
     options = parser.parse_args(words)
     source = options.model or script.EMPTY
@@ -73,8 +75,8 @@ def command(words: Sequence[str]) -> int:
     return ANSWERED
 
 
-def in_window(model: Model, file: ModelFile, theme: str | None = None, **further: Any) -> list[script.Failure]:
-    """Show a model until the window is closed; returns what a script that was played expected in vain."""
+def in_window(model: Model, file: ModelFile, theme: str | None = None, **further: Any) -> list[Failure]:
+    """Show a model until the window is closed; returns the failed expectations of the script that was played."""
     try:
         from game.app import NoDisplay, open_window
     except ImportError as error:

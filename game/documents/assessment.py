@@ -11,10 +11,10 @@ from components.model import Model
 from components.snapshot import Snapshot
 from systems.base import Law, StopReason
 from systems.catalogue import step_systems
+from systems.run.simulation import Simulation
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # they import scipy
     from systems.run.measured_error import MeasuredError
-    from systems.run.simulation import Simulation
     from systems.statics.events import Event
     from systems.statics.verify import Comparison, Theories
 

@@ -20,16 +20,16 @@ from components.table import Table
 from game.documents import library, models
 from game.documents.document import document
 from game.documents.locks import lock_file
-from game.documents.open_documents import Desk
+from game.documents.open_documents import OpenDocument
 from systems.base import Phase, System
 
-INTERVAL = 2.0  # s between spares of the same model, at least
+INTERVAL = 2.0  # s between recovery files of the same model, at least
 SHARE = 0.05  # of the time at most goes into making them
 LAST_SESSION = "last session"  # the name under which edits are kept that nobody saved
 
 
-def spare_name(path: Path) -> str:
-    """The name of the model in a spare."""
+def recovered_name(path: Path) -> str:
+    """The name of the model in a recovery file."""
     return path.stem.partition(".")[2].partition(".")[2]
 
 
@@ -45,13 +45,13 @@ class Autosave(System):
     """Writes the unsaved work of a window to files that only a crash leaves behind.
 
     The folder holds, for every running program, a lock "ID.lock" that its end releases, however it ends,
-    and its spares "ID.NUMBER.NAME.json".
+    and its recovery files "ID.NUMBER.NAME.json".
     """
 
     name = "files.autosave"
     phase = Phase.EVENTS
     reads = ("document", "state")
-    writes = ("spares",)
+    writes = ("recovery",)
     headless = False
 
     def __init__(self, folder: Path | None = None, interval: float = INTERVAL) -> None:
@@ -59,9 +59,11 @@ class Autosave(System):
         self._interval = interval
         self._id = uuid.uuid4().hex[:8]
         self._count = 0
-        self._written: dict[Desk, int] = {}  # revision of what the spare of a desk holds
+        self._written: dict[OpenDocument, int] = {}  # revision of what the recovery file of a document holds
         self._due = 0.0
-        self._trouble = self._told = ""  # why the last spare could not be written; what of that was said
+        self._trouble = self._told = (
+            ""  # why the last recovery file could not be written; what of that was said
+        )
         self._thread: threading.Thread | None = None
         self._folder.mkdir(parents=True, exist_ok=True)
         lock = lock_file(self._folder / f"{self._id}.lock")
@@ -71,7 +73,7 @@ class Autosave(System):
     # --- what a crash left behind --------------------------------------------------------------------
 
     def _orphans(self) -> list[Path]:
-        """Spares of programs that are not running any more, the newest first; they are ours now."""
+        """Recovery files of programs that are not running any more, the newest first; they are ours now."""
         for path in self._folder.glob("*.lock"):
             if path.stem == self._id:
                 continue
@@ -86,12 +88,12 @@ class Autosave(System):
         """What a crash left behind."""
         return [path for path in self._left if path.exists()]
 
-    def take_over(self, path: Path, desk: Desk) -> None:
-        """What was left behind is unsaved work of this desk from now on."""
+    def take_over(self, path: Path, opened: OpenDocument) -> None:
+        """What was left behind is unsaved work of this document from now on."""
         self._left.remove(path)
-        desk.spare = path
-        desk.saved = -1
-        self._written[desk] = -1
+        opened.recovery = path
+        opened.saved = -1
+        self._written[opened] = -1
 
     def discard(self) -> None:
         """What a crash left behind is not wanted any more."""
@@ -102,27 +104,27 @@ class Autosave(System):
     # --- writing -------------------------------------------------------------------------------------
 
     def process(self, frame: Any) -> None:
-        """Write a spare of one model that changed, if it is time to; say once if that cannot be done."""
+        """Write a recovery file of one model that changed, if it is time to; say once if that cannot be done."""
         if self._trouble != self._told:
             self._told = self._trouble
             frame.session.notice = self._trouble or frame.session.notice
         if (self._thread is not None and self._thread.is_alive()) or time.monotonic() < self._due:
             return
-        desks = [desk for desk in frame.session.desks if desk.unsaved]
-        for desk in self._written.keys() - set(desks):
-            self._remove(desk)
-        changed = (desk for desk in desks if self._written.get(desk) != desk.newest)
-        for desk in itertools.islice(changed, 1):
-            self._write(desk)
+        open_ones = [opened for opened in frame.session.documents if opened.unsaved]
+        for opened in self._written.keys() - set(open_ones):
+            self._remove(opened)
+        changed = (opened for opened in open_ones if self._written.get(opened) != opened.newest)
+        for opened in itertools.islice(changed, 1):
+            self._write(opened)
 
-    def _write(self, desk: Desk) -> None:
+    def _write(self, opened: OpenDocument) -> None:
         """Take the model as it is now; a thread puts it into the file."""
-        if desk.spare is None:
+        if opened.recovery is None:
             self._count += 1
-            desk.spare = self._folder / f"{self._id}.{self._count}.{desk.file.name}.json"
-        self._written[desk] = desk.newest
-        still = _Still(desk.model)
-        self._thread = threading.Thread(target=self._put, args=(desk.spare, still), daemon=True)
+            opened.recovery = self._folder / f"{self._id}.{self._count}.{opened.file.name}.json"
+        self._written[opened] = opened.newest
+        still = _Still(opened.model)
+        self._thread = threading.Thread(target=self._put, args=(opened.recovery, still), daemon=True)
         self._thread.start()
 
     def _put(self, path: Path, still: _Still) -> None:
@@ -137,23 +139,23 @@ class Autosave(System):
         spent = time.monotonic() - began
         self._due = began + max(self._interval, spent / SHARE)
 
-    def _remove(self, desk: Desk) -> None:
-        del self._written[desk]
-        if desk.spare is not None:
-            desk.spare.unlink(missing_ok=True)
-            desk.spare = None
+    def _remove(self, opened: OpenDocument) -> None:
+        del self._written[opened]
+        if opened.recovery is not None:
+            opened.recovery.unlink(missing_ok=True)
+            opened.recovery = None
 
-    def close(self, desks: Iterable[Desk]) -> None:
-        """A clean end: no spare stays. Edits that nobody saved are kept as the model "last session"."""
+    def close(self, open_ones: Iterable[OpenDocument]) -> None:
+        """A clean end: no recovery file stays. Edits that nobody saved are kept as the model "last session"."""
         if self._thread is not None:
             self._thread.join()
-        edited = [desk for desk in desks if desk.edited and desk.model.particles.count]
+        edited = [opened for opened in open_ones if opened.edited and opened.model.particles.count]
         with contextlib.suppress(models.ModelError, OSError):
-            for desk in edited[-1:]:
+            for opened in edited[-1:]:
                 library.models_folder().mkdir(parents=True, exist_ok=True)
-                models.save(desk.model, library.path_of(LAST_SESSION))
-        for desk in tuple(self._written):
-            self._remove(desk)
+                models.save(opened.model, library.path_of(LAST_SESSION))
+        for opened in tuple(self._written):
+            self._remove(opened)
         for lock in self._locks:
             path = Path(lock.name)
             lock.close()

@@ -23,7 +23,7 @@ from components.model import ADDED, Model
 from components.particle import Particle, check_velocities
 from components.rod import Rod
 from components.settings import Settings
-from components.spelling import missing, remedy
+from components.suggestions import missing, remedy
 from components.table import fields_of
 
 FORMAT = "pinjoint model"
@@ -143,6 +143,10 @@ def _migrated(document: Any) -> Mapping[str, Any]:
         if old not in MIGRATIONS:
             _fail("$.version", f"there never was a version {version}; the present one is {VERSION}.")
         migrated = MIGRATIONS[old](migrated)
+    state = migrated.get("state")
+    if isinstance(state, Mapping) and "paths" in state and "collision_state" not in state:  # its earlier name
+        renamed = {("collision_state" if key == "paths" else key): value for key, value in state.items()}
+        migrated["state"] = renamed
     return migrated
 
 

@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 
 from platformdirs import user_data_path
 
-from components import spelling
+from components import suggestions
 from game.documents import models
 
 DATA_VARIABLE = "PINJOINT_DATA"  # names another folder than the system's own
@@ -95,7 +95,7 @@ def find(name: str) -> Path | str | None:
 def nearest(name: str) -> str | None:
     """The name of a saved or bundled model that comes nearest, if one does."""
     known = [*(path.stem for path in saved()), *models.bundled()]
-    return spelling.nearest(name.strip(), known)
+    return suggestions.nearest(name.strip(), known)
 
 
 def written_age(path: Path) -> str:

@@ -21,12 +21,12 @@ from typing import Any, NoReturn
 import msgspec
 
 from components.model import Model
-from components.spelling import nearest
+from components.suggestions import nearest
 from game.documents.document import ModelError, document, parse
 
 _ENCODER = msgspec.json.Encoder()
 
-__all__ = ["ModelError", "bundled", "document", "laid_out", "load", "parse", "replace", "save", "told"]
+__all__ = ["ModelError", "bundled", "document", "header_of", "laid_out", "load", "parse", "replace", "save"]
 
 
 FOLDERS: list[Path] = []  # of mods, with models that are opened by name
@@ -47,20 +47,20 @@ def _bundled_files() -> Iterable[Traversable]:
 # --- reading ---------------------------------------------------------------------------------------
 
 
-class Told(msgspec.Struct):
-    """What a model file says about itself."""
+class ModelHeader(msgspec.Struct):
+    """The title and the description in a model file."""
 
     title: str = ""
     description: str = ""
 
 
 @cache
-def told(name: str) -> Told:
-    """What a bundled model says about itself, without reading the rest of it."""
+def header_of(name: str) -> ModelHeader:
+    """Title and description of a bundled model, without reading the rest of its file; empty if it cannot be read."""
     try:
-        return msgspec.json.decode(_found(name).read_bytes(), type=Told)
-    except (OSError, msgspec.DecodeError):  # which is explained to who opens it
-        return Told()
+        return msgspec.json.decode(_found(name).read_bytes(), type=ModelHeader)
+    except (OSError, msgspec.DecodeError):  # `load` explains it
+        return ModelHeader()
 
 
 def load(source: str | Path | Mapping[str, Any]) -> Model:

@@ -1,13 +1,17 @@
-"""Desk: one open model with its run, its log and its file."""
+"""Open documents: models with their runs, their logs and their files, one of them in use."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from components.collision_state import PersistentContacts
 from components.field import Role
+from components.load import loads_end
 from components.model import Model
 from components.snapshot import Snapshot
 from game.documents import models
@@ -15,12 +19,13 @@ from game.documents.assessment import Assessment
 from game.documents.history.history import History
 from game.documents.history.log import Edit, Entry
 from game.documents.history.timeline import Timeline
-from game.editor.shapes import Shapes
+from game.documents.shapes import Shapes
 from systems.edit.pull import Pull
 from systems.run.real_time import RealTimeRunner
 from systems.run.simulation import Simulation
 from systems.schedule import Schedule
 
+Source = str | Path | Mapping[str, Any]  # of a model: a file, the name of a bundled one, or its content
 Stamp = tuple[int, ...]
 
 
@@ -50,16 +55,16 @@ def stamp_of(path: Path) -> Stamp:
     return found.st_ino, found.st_mtime_ns, found.st_size
 
 
-class Desk:
+class OpenDocument:
     """A model and all that belongs to it while it is open.
 
     beginning: the state from which time began to pass. saved: the revision of what its file holds.
-    spare: where unsaved work is kept against a crash.
+    recovery: the file that keeps unsaved work against a crash.
     """
 
     def __init__(self, model: Model, schedule: Schedule, pull: Pull, file: ModelFile) -> None:
         self.model = model
-        self._pull = pull
+        self._schedule, self._pull = schedule, pull
         self.simulation = Simulation(model, schedule)
         self.timeline = Timeline(self.simulation, pull)
         self.history = History(model, self.simulation, on_change=self._changed)
@@ -68,7 +73,7 @@ class Desk:
         self.assessment = Assessment(model, self.simulation)
         self.shapes = Shapes(model)
         self.file = file
-        self.spare: Path | None = None
+        self.recovery: Path | None = None
         self.saved = self._last_edit = model.revision
 
     def _changed(self, entry: Entry) -> None:
@@ -77,10 +82,62 @@ class Desk:
         if isinstance(entry, Edit):
             self.assessment.disturb()
 
-    def begin(self) -> None:
-        """Time begins to pass from the present state."""
-        self.beginning = self.simulation.present()
-        self.assessment.begin(self.beginning)
+    # --- time --------------------------------------------------------------------------------------
+
+    @property
+    def at_beginning(self) -> bool:
+        """True if no time has passed, or restarting took it back."""
+        beginning = self.beginning
+        return beginning is None or self.model.clock.steps == beginning.columns["clock.steps"][0]
+
+    def note_beginning(self) -> None:
+        """Time is about to pass: if none has passed yet, it begins at the present state."""
+        if self.at_beginning:
+            self.beginning = self.simulation.present()
+            self.assessment.begin(self.beginning)
+
+    def restart(self) -> None:
+        """Go back to the beginning of time, keeping all edits; the log ends the run."""
+        assert self.beginning is not None
+        self.history.end_run()
+        self.history.begin_run()
+        self.beginning.restore(self.model)
+        particles = self.model.particles
+        self.model.writable("particles.velocity")[particles.fixed] = 0.0  # supported since
+        self.simulation.start_anew()
+        self.timeline.clear()
+        self.history.end_run()
+
+    def settle(self, factors: Sequence[float] | float) -> tuple[str, str]:
+        """Go to the static equilibrium at each load factor; returns its status and the account of the way there."""
+        from systems.statics.settle import settle  # scipy
+
+        model, clock = self.model, self.model.clock
+        found, strain = settle(model, factors), model.rods.plastic_strain.copy()
+        with model.transaction("settle"):
+            model.give("particles.displacement", found.final.displacement)
+            model.give("particles.velocity", np.zeros_like(found.final.displacement))
+            model.give("rods.plastic_strain", found.final.plastic_strain)
+            time = max(clock.time, loads_end(model))
+            model.give("clock.time", np.array([time]))
+            model.give("clock.origin", np.array([time]))
+            model.give("clock.origin_steps", np.array([clock.steps]))
+            if len(found.final.contacts) and not self.simulation.integrator.exact:
+                clock.collision_state = PersistentContacts(
+                    found.final.contacts, 1000.0 * found.final.contact_force
+                )
+        account, yielded = [found.account], np.flatnonzero(found.final.plastic_strain != strain)
+        if len(yielded) and not found.events:  # at once: what it began from is beyond the strengths
+            rod = model.describe(model.rods[yielded[0]])
+            account.append(
+                f"{len(yielded)} rods have yielded at once."
+                if len(yielded) > 1
+                else f"{rod[:1].upper()}{rod[1:]} has yielded at once."
+            )
+        account.append(self._schedule.left_out_of_statics(model))
+        return found.status, " ".join(filter(None, account))
+
+    # --- edits and the file ------------------------------------------------------------------------
 
     @property
     def newest(self) -> int:
@@ -105,57 +162,57 @@ class Desk:
         return self._last_edit > self.saved
 
 
-class Desks:
-    """The open models, one of them in use; those with unsaved work wait to be gone back to."""
+class OpenDocuments:
+    """The open documents, one of them in use; those with unsaved work wait to be gone back to."""
 
     def __init__(self, model: Model, schedule: Schedule, pull: Pull, file: ModelFile) -> None:
         self._schedule = schedule
         self._pull = pull
-        self._desks = [Desk(model, schedule, pull, file)]
+        self._documents = [OpenDocument(model, schedule, pull, file)]
         self._at = 0
 
-    def __iter__(self) -> Iterator[Desk]:
-        return iter(tuple(self._desks))
+    def __iter__(self) -> Iterator[OpenDocument]:
+        return iter(tuple(self._documents))
 
     def __len__(self) -> int:
-        return len(self._desks)
+        return len(self._documents)
 
     @property
-    def current(self) -> Desk:
+    def current(self) -> OpenDocument:
         """The one in use."""
-        return self._desks[self._at]
+        return self._documents[self._at]
 
     def add(self, model: Model, file: ModelFile) -> None:
-        """Use a new desk with this model; the one in use until now stays if it has unsaved work.
+        """Open a model; the document in use until now stays open if it has unsaved work.
 
-        What could be done again here is forgotten, as by any edit. Work on the desks that were gone back from
-        is not: they come before this one now, with all that was done on them.
+        What could be repeated in that one is forgotten, as by any edit. Work in later documents, from which undo
+        came back, is repeated, and they stand before the new one.
         """
         self.current.leave()
         self.current.history.forget_undone()
-        earlier, later = self._desks[: self._at], self._desks[self._at + 1 :]
-        for desk in later:
-            desk.history.redo_all()
+        earlier, later = self._documents[: self._at], self._documents[self._at + 1 :]
+        for document in later:
+            document.history.redo_all()
         here = [self.current] if self.current.unsaved else []
-        self._desks = [*earlier, *later, *here, Desk(model, self._schedule, self._pull, file)]
-        self._at = len(self._desks) - 1
+        self._documents = [*earlier, *later, *here, OpenDocument(model, self._schedule, self._pull, file)]
+        self._at = len(self._documents) - 1
 
     def can_move(self, by: int) -> bool:
-        """True if there is a desk before (-1) or after (1) this one."""
-        return 0 <= self._at + by < len(self._desks)
+        """True if there is a document before (-1) or after (1) this one."""
+        return 0 <= self._at + by < len(self._documents)
 
     def move(self, by: int) -> str:
-        """Use the desk before (-1) or after (1) this one; returns what that undoes or repeats, or ""."""
+        """Use the document before (-1) or after (1) this one; returns what that undoes or repeats, or ""."""
         target = self._at + by
         if not self.can_move(by):
             return ""
         self.current.leave()
-        opened = self._desks[max(self._at, target)].file.name
+        opened = self._documents[max(self._at, target)].file.name
         self._at = target
         return f"opening {opened or 'a new model'}"
 
 
-def file_of(source: str | Path | Mapping[str, Any]) -> ModelFile:
+def file_of(source: Source) -> ModelFile:
     """The file that a source of a model is; examples and documents have none."""
     if isinstance(source, Mapping):
         return ModelFile()

@@ -20,22 +20,22 @@ from components.table import Table, fields_of
 from components.tags import Selected
 from game.documents.document import ModelError, document_of, parse
 from game.documents.models import laid_out
+from systems.edit import Refusal
 from systems.edit.moving import moving_rows
-from systems.edit.refusal import Refusal
 
 Rows = NDArray[np.int64]
 Kind = type[Handle]
-Chosen = Mapping[Kind, Rows]  # of particles first, then of rods and loads, then of what mods add
+RowsByKind = Mapping[Kind, Rows]  # particles first, then rods and loads, then kinds of mods
 
 REFERENCES = {"between", "on"}  # Fields that refer to particles
 
 
 @dataclass(frozen=True)
 class Part:
-    """Some particles, with rods between and loads on them, and elements of mods, that belong to no model.
+    """Particles, the rods between and the loads on them, and elements of mods, apart from any model.
 
-    columns: by kind, what they hold, by Field; particles are referred to by their place among these.
-    foreign: by kind and place, what belongs to mods that are not loaded.
+    columns: by kind, values by Field; references are places among the particles of the part.
+    foreign: by kind and place, the data of mods that are not loaded.
     """
 
     columns: Mapping[Kind, Mapping[str, Any]]
@@ -47,10 +47,10 @@ class Part:
         return np.concatenate([held[point] for kind, held in self.columns.items() for point in _points(kind)])
 
 
-def chosen(model: Model) -> Chosen:
+def selected_rows(model: Model) -> RowsByKind:
     """Rows of the selected particles and rods, of the ends of those rods, and of the loads on them.
 
-    And of the elements of mods among them. Raises Refusal if there are none.
+    And of the selected elements of mods. Raises Refusal if there are none.
     """
     rows = model.rows_tagged(Selected)
     particles = moving_rows(model, rows)
@@ -61,30 +61,30 @@ def chosen(model: Model) -> Chosen:
     return {Particle: particles, Rod: rows["rods"], Load: loads, **others}
 
 
-def written(model: Model, rows: Chosen) -> str:
-    """These rows as the text of a model document. Raises Refusal if they cannot be written."""
+def as_text(model: Model, rows: RowsByKind) -> str:
+    """Rows of a model as the text of a document. Raises Refusal if they cannot be written."""
     try:
         return laid_out(document_of(model, rows), depth=2, spaced=False)
     except ModelError as error:
         raise Refusal(f"This cannot be copied: {error}") from None
 
 
-def parsed(text: str) -> Part:
-    """The part that such a text describes. Raises Refusal if it is none."""
+def part_in(text: str) -> Part:
+    """The part that the text of a document describes. Raises Refusal if it describes none."""
     try:
         source = parse(msgspec.json.decode(text))
     except (ModelError, msgspec.DecodeError):
         source = Model()
     kinds: list[Kind] = [Particle, Rod, Load, *_added()]
     rows = {kind: np.arange(source.tables[kind.table].count) for kind in kinds}
-    part = taken(source, rows)
+    part = part_of(source, rows)
     if not len(part.position):
         raise Refusal("The clipboard holds no particles or rods; select some and copy them with Ctrl+C.")
     return part
 
 
-def taken(model: Model, rows: Chosen) -> Part:
-    """What these rows hold."""
+def part_of(model: Model, rows: RowsByKind) -> Part:
+    """The part of a model in these rows."""
     place = np.zeros(model.particles.count, dtype=np.int64)
     place[rows[Particle]] = np.arange(len(rows[Particle]))
     foreign: dict[tuple[Kind, int], dict[str, Any]] = {}
@@ -95,9 +95,9 @@ def taken(model: Model, rows: Chosen) -> Part:
 
 
 def paste(model: Model, part: Part, offset: Vector) -> list[Handle]:
-    """New elements like those of a part, moved by an offset (m), as one edit.
+    """Create elements like those of a part, moved by an offset (m), as one edit; returns all but the loads.
 
-    Names that are taken are replaced by free ones. Returns all but the loads.
+    Names that are taken are replaced by free ones.
     """
     first = model.particles.count
     made: dict[Kind, list[Handle]] = {}
@@ -115,17 +115,17 @@ def paste(model: Model, part: Part, offset: Vector) -> list[Handle]:
 
 
 def _points(kind: Kind) -> tuple[str, ...]:
-    """The Fields that are places in the plane."""
+    """The Fields of a kind that are places in the plane."""
     return ("position",) if kind is Particle else kind.points
 
 
 def _added() -> list[Kind]:
-    """The kinds of mods that can be copied: they have a place, and refer to nothing else."""
+    """The kinds of mods that can be copied: they have points, and refer to no other elements."""
     return [kind for kind in ADDED.values() if kind.points and not any(f.references for f in fields_of(kind))]
 
 
 def _columns(model: Model, kind: Kind, rows: Rows, place: Rows) -> dict[str, Any]:
-    """What some rows hold, by Field; particles that are referred to renumbered."""
+    """Values of some rows by Field; references by the new places of particles."""
     table = model.tables[kind.table]
     columns: dict[str, Any] = {
         field.name: table.column(field.name)[rows] for field in table.fields_in(Role.DOCUMENT, Role.STATE)

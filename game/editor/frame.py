@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from components.field import Vector
 from components.model import Model
+from game.editor.context import Context
 from systems.base import Phase, System
 from systems.input.bindings import TEXT
-
-if TYPE_CHECKING:
-    from game.session import Session
 
 
 @dataclass
@@ -21,7 +19,7 @@ class Frame:
     pressed: (key or button, pixel) in the order in which a person pressed them; see input/bindings.py.
     """
 
-    session: Session
+    session: Context
     elapsed: float
     pressed: list[tuple[str, Vector]] = field(default_factory=list)
 
@@ -58,7 +56,7 @@ class Actions(System):
 
     def process(self, frame: Any) -> None:
         """Perform the actions of the frame in their order, then let the scene change."""
-        session: Session = frame.session
+        session = frame.session
         for key, pixel in frame.pressed if not session.performing else ():
             if not key.startswith(TEXT):
                 self._keyed = session.scene

@@ -1,13 +1,10 @@
-"""Surroundings: what a session is given in a window, and does without elsewhere."""
+"""Host: what a window gives a session, which does without elsewhere."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
-if TYPE_CHECKING:
-    from game.documents.open_documents import Desk
-    from systems.run.simulation import Simulation
+from systems.run.simulation import Simulation
 
 
 class Window(Protocol):
@@ -29,21 +26,8 @@ class Window(Protocol):
         """Put a text on the system's clipboard."""
 
 
-class Autosaves(Protocol):
-    """Where a window keeps unsaved work against a crash."""
-
-    def left(self) -> list[Path]:
-        """What a crash left behind."""
-
-    def take_over(self, path: Path, desk: Desk) -> None:
-        """What was left behind is unsaved work of this desk from now on."""
-
-    def discard(self) -> None:
-        """What a crash left behind is not wanted any more."""
-
-
 class Prepares(Protocol):
-    """What has step programs compiled in a window, which must not stand still meanwhile."""
+    """Compiles step programs in another process, so that the window goes on meanwhile."""
 
     def waits_for(self, simulation: Simulation) -> float | None:
         """Seconds since the program of a simulation was wanted, or None if it can be had at once."""

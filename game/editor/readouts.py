@@ -6,15 +6,15 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from components.field import FieldError
+from components.handle import Handle
 from components.particle import Particle
 from components.rod import Rod
 from components.view import Readout
 from game.documents.assessment import LARGEST
+from game.editor.context import Context
 from systems.base import StopReason
 
-if TYPE_CHECKING:
-    from components.handle import Handle
-    from game.session import Session
+if TYPE_CHECKING:  # it imports scipy
     from systems.statics.verify import Comparison, Row, Theories
 
 MOST_ELEMENTS = 3  # of the selected ones that have a readout of their own
@@ -24,20 +24,22 @@ _SHOWN = {"axial_force": ("N", "kN", 1.0), "reaction": ("R", "kN", 1.0), "displa
 _WAYS = {"simulation": "run", "linear": "linear theory", "exact": "exact theory"}
 
 
-def own_readouts(session: Session) -> Iterator[Readout]:
+def own_readouts(context: Context) -> Iterator[Readout]:
     """Those that are switched on, for the view."""
-    if session.view.theory:
-        yield from _theory(session)
-    if session.view.energy:
-        yield _energy(session)
+    if context.view.theory:
+        yield from _theory(context)
+    if context.view.energy:
+        yield _energy(context)
 
 
-def _energy(session: Session) -> Readout:
+def _energy(context: Context) -> Readout:
     rows = [
         (name.replace("_", " "), f"{value:.5g} J".replace("-", "−"))
-        for name, value in session.energy.as_dict().items()
+        for name, value in context.energy.as_dict().items()
     ]
-    error = session.desk.assessment.error() if not session.busy else None  # measuring takes a run of its own
+    error = (
+        context.document.assessment.error() if not context.busy else None
+    )  # measuring takes a run of its own
     if error is not None:
         rows.append(("displacement error", f"{error.relative:.1e} of the largest"))
     return Readout("Energy account", tuple(rows))
@@ -46,25 +48,25 @@ def _energy(session: Session) -> Readout:
 # --- theory ----------------------------------------------------------------------------------------------
 
 
-def _theory(session: Session) -> Iterator[Readout]:
-    if session.model.rods.count == 0:
+def _theory(context: Context) -> Iterator[Readout]:
+    if context.model.rods.count == 0:
         yield Readout("Theory beside the run", (("no rods", ""),))
-    elif not session.desk.assessment.is_small:
+    elif not context.document.assessment.is_small:
         yield Readout("Theory beside the run", ((f"more than {LARGEST} rods: use", "pinjoint verify"),))
     else:
         try:
-            theory, comparison = session.desk.assessment.theories, session.desk.assessment.comparison()
+            theory, comparison = context.document.assessment.theories, context.document.assessment.comparison()
         except FieldError:  # whoever runs or settles it is told which number it is
             yield Readout("Theory beside the run", (("numbers too large or too small", ""),))
             return
-        yield Readout("Theory beside the run", tuple(_overview(session, theory, comparison)))
-        for handle in session.selected[:MOST_ELEMENTS]:
+        yield Readout("Theory beside the run", tuple(_overview(context, theory, comparison)))
+        for handle in context.selected[:MOST_ELEMENTS]:
             yield from _of_element(handle, comparison)
 
 
-def _overview(session: Session, theory: Theories, comparison: Comparison) -> Iterator[tuple[str, str]]:
+def _overview(context: Context, theory: Theories, comparison: Comparison) -> Iterator[tuple[str, str]]:
     settlement = theory.settlement
-    yield from _verdict(session, comparison)
+    yield from _verdict(context, comparison)
     if theory.refusal is not None:
         yield "linear theory", "a mechanism" if theory.refusal.status == "mechanism" else "not with cables"
     if theory.exact is None:
@@ -79,18 +81,18 @@ def _overview(session: Session, theory: Theories, comparison: Comparison) -> Ite
                 f"largest error, {_WAYS[way].split()[0]}",
                 f"{getattr(worst, f'{way}_error'):.1e} ({_symbol(worst)})",
             )
-    if not session.desk.assessment.undisturbed and not session.at_beginning:
+    if not context.document.assessment.undisturbed and not context.at_beginning:
         yield "edited during the run", "theory is without that"
 
 
-def _verdict(session: Session, comparison: Comparison) -> Iterator[tuple[str, str]]:
+def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, str]]:
     """Of a run at rest: whether it is where a slowly growing load leads to, and why not."""
     from systems.statics.verify import DEPARTURES, differs
 
-    if session.simulation.reason is not StopReason.REST or comparison.worst("simulation") is None:
+    if context.simulation.reason is not StopReason.REST or comparison.worst("simulation") is None:
         return
     if differs(comparison):
-        reasons = [DEPARTURES[remark.kind] for remark in session.remarks if remark.kind in DEPARTURES]
+        reasons = [DEPARTURES[remark.kind] for remark in context.remarks if remark.kind in DEPARTURES]
         yield "differs from static theory", ", ".join(dict.fromkeys(reasons)) or "see pinjoint verify"
     else:
         yield "at rest", "where static theory says"

@@ -2,63 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
-from components.view import Preview, Readout, Status
+from components.view import Preview, Status
+from game.editor.context import Context
 from game.editor.gestures import TOOL_HINTS
 from game.editor.readouts import own_readouts
-from game.registry import PANELS
 from systems.base import StopReason
-from systems.edit.refusal import Refusal
+from systems.edit import Refusal
 from systems.input.bindings import LIVE, help_lines
 from systems.render.help import help_pages
-
-if TYPE_CHECKING:
-    from game.session import Session
 
 COMPILING = "Preparing the step program, which takes a while for the first model of its kind:"
 FLASH = 0.15  # s shown, for which an impact is marked
 MOST_FLASHES = 500  # impacts marked at a time
 
 
-def show(session: Session) -> None:
-    """Let the view show the session as it is now."""
-    view, scene = session.view, session.scenes.active
-    view.forces_known = session.waited_for(session.simulation) is None
-    said = _awaited(session) or session.notice
-    view.preview = _preview(session)
-    view.flashes = _flashes(session)
+def show(context: Context) -> None:
+    """Let the view show the context as it is now."""
+    view, scene = context.view, context.scenes.active
+    view.forces_known = context.waited_for(context.simulation) is None
+    said = _awaited(context) or context.notice
+    view.preview = _preview(context)
+    view.flashes = _flashes(context)
     view.heading = scene.heading
-    view.shape = session.desk.shapes.shown
-    pages = pages_of_help(session) if view.help else []
+    view.shape = context.document.shapes.shown
+    pages = pages_of_help(context) if view.help else []
     view.keys, view.more_keys = pages[view.help - 1] if pages else [], view.help < len(pages)
-    _show_readouts(session)
+    _show_readouts(context)
     view.status = Status(
-        time=session.time,
-        speed=session.clock.shown_pace if session.busy else 0.0,
-        state=_state_word(session),
-        hint=_drawing_hint(session) or scene.hint(session),
-        problem=_problem(session),
-        notice=said or " ".join(remark.message for remark in session.remarks),
+        time=context.time,
+        speed=context.clock.shown_pace if context.busy else 0.0,
+        state=_state_word(context),
+        hint=_drawing_hint(context) or scene.hint(context),
+        problem=_problem(context),
+        notice=said or " ".join(remark.message for remark in context.remarks),
     )
 
 
-def pages_of_help(session: Session) -> list[list[tuple[str, str]]]:
+def pages_of_help(context: Context) -> list[list[tuple[str, str]]]:
     """What can be pressed in the active scene; the page that is shown is one of them."""
-    scene, view = session.scenes.active, session.view
-    pages = help_pages(help_lines(scene.name), scene.helped(session), view.pixel_ratio)
+    scene, view = context.scenes.active, context.view
+    pages = help_pages(help_lines(scene.name), scene.helped(context), view.pixel_ratio)
     view.help = min(view.help, len(pages))
     return pages
 
 
-def _show_readouts(session: Session) -> None:
+def _show_readouts(context: Context) -> None:
     """All panels, and in which order they came."""
-    view = session.view
-    view.readouts = (*own_readouts(session), *_panels(session))
+    view = context.view
+    view.readouts = (*own_readouts(context), *context.panels())
     latest, since = max(view.since.values(), default=0), view.since
     view.since = {
         readout.title: since.get(readout.title, latest + number)
@@ -66,68 +60,54 @@ def _show_readouts(session: Session) -> None:
     }
 
 
-def _panels(session: Session) -> Iterator[Readout]:
-    return (readout for panel in PANELS for readout in panel(session))
-
-
-def make_room(session: Session) -> None:
-    """Let the model stand beside the panels, if there are any that would cover it.
-
-    After actions, and never because of time or frames, so that a recording is replayed in the same picture.
-    """
-    view = session.view
-    wanted = view.theory or view.energy or any(readout.is_large for readout in _panels(session))
-    view.share(session.model, shares=view.legend and wanted)
-
-
-def _awaited(session: Session) -> str:
+def _awaited(context: Context) -> str:
     """That a step program is waited for, "" if none is (any more)."""
-    waited = session.waited_for(session.awaited) if session.awaited is not None else None
+    waited = context.waited_for(context.awaited) if context.awaited is not None else None
     if waited is None:
-        session.awaited = None
+        context.awaited = None
         return ""
     return f"{COMPILING} {waited:.0f} s."
 
 
-def _flashes(session: Session) -> NDArray[np.float64]:
+def _flashes(context: Context) -> NDArray[np.float64]:
     """Where particles collided within the last moment that was shown."""
-    impacts = session.impacts
-    if not session.busy or len(impacts) == 0:
+    impacts = context.impacts
+    if not context.busy or len(impacts) == 0:
         return np.zeros((0, 2))
-    since = session.time - FLASH * session.clock.shown_pace
+    since = context.time - FLASH * context.clock.shown_pace
     first = max(int(np.searchsorted(impacts.time, since)), len(impacts) - MOST_FLASHES)
     return np.column_stack([impacts.x[first:], impacts.y[first:]])
 
 
-def _preview(session: Session) -> Preview | None:
+def _preview(context: Context) -> Preview | None:
     try:
-        return session.gesture.preview(session, session.pointer) if session.gesture is not None else None
+        return context.gesture.preview(context, context.pointer) if context.gesture is not None else None
     except Refusal as error:
-        session.gesture, session.notice = None, str(error)
+        context.gesture, context.notice = None, str(error)
         return None
 
 
-def _drawing_hint(session: Session) -> str:
-    if session.scene not in LIVE:
+def _drawing_hint(context: Context) -> str:
+    if context.scene not in LIVE:
         return ""
-    return session.gesture.hint if session.gesture is not None else TOOL_HINTS.get(session.view.tool, "")
+    return context.gesture.hint if context.gesture is not None else TOOL_HINTS.get(context.view.tool, "")
 
 
-def _state_word(session: Session) -> str:
-    if session.simulation.halted:
-        return "at rest" if session.simulation.reason is StopReason.REST else "diverged"
-    if session.awaited is not None:
+def _state_word(context: Context) -> str:
+    if context.simulation.halted:
+        return "at rest" if context.simulation.reason is StopReason.REST else "diverged"
+    if context.awaited is not None:
         return "preparing"
-    if not session.busy:
+    if not context.busy:
         return "paused"
-    return "running, slower than asked" if session.clock.lagging else "running"
+    return "running, slower than asked" if context.clock.lagging else "running"
 
 
-def _problem(session: Session) -> str:
+def _problem(context: Context) -> str:
     """What went wrong, or a person should know though the run goes on."""
-    simulation = session.simulation
-    if session.fault:
-        return f"{session.fault} Esc takes this away."
+    simulation = context.simulation
+    if context.fault:
+        return f"{context.fault} Esc takes this away."
     if simulation.reason is StopReason.DIVERGED and simulation.halted:
         return simulation.message
     return simulation.warning or simulation.note

@@ -1,3 +1,3 @@
-"""The force method: its guide, the words it is told in, and its report without a window."""
+"""The force method: the guide through its seven parts, and their words."""
 
 PARTS = 7

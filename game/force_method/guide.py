@@ -18,7 +18,7 @@ from components.rod import Rod
 from components.table import Table
 from components.tags import Selected
 from components.view import View
-from game.editor.shapes import DRAWN_SHARE, extent
+from game.documents.shapes import DRAWN_SHARE, extent
 from game.force_method import PARTS
 from systems.run.real_time import RealTimeRunner
 from systems.run.simulation import Simulation

@@ -4,29 +4,26 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from components import Model, Plot, Readout, Vector
 from components.rod import nodes
-
-if TYPE_CHECKING:
-    from game.mods import App
-    from game.session import Session
+from game.editor.context import Context
+from game.mods import App
 
 MANY = 100  # particles without rods, from which on their speeds are shown unasked
 BINS = 16
 RANGE = 2.5  # times the root mean square speed, that the bars cover
 
-_asked: weakref.WeakKeyDictionary[Session, bool] = weakref.WeakKeyDictionary()
+_asked: weakref.WeakKeyDictionary[Context, bool] = weakref.WeakKeyDictionary()
 
 
 def free_speeds(model: Model) -> NDArray[np.float64]:
     """Speeds v √(m / m̄) (m/s) of the particles that no rod holds, m̄ their mean mass.
 
-    In equilibrium the energies of all are distributed alike, so that these are too, whatever the masses.
+    In equilibrium the energies of all particles have one distribution, and so have these speeds, whatever the masses.
     """
     particles = model.particles
     free = np.logical_not(particles.fixed.all(axis=1) | nodes(model))
@@ -59,16 +56,16 @@ def is_gas(model: Model) -> bool:
     return not pulled and not model.rods.count and int((~model.particles.fixed.all(axis=1)).sum()) >= MANY
 
 
-def toggle_speeds(session: Session, pixel: Vector) -> None:
-    """Show the speeds of the particles, or not."""
+def toggle_speeds(session: Context, pixel: Vector) -> None:
+    """Show or hide the speeds of the particles."""
     shown = _asked[session] = not _asked.get(session, is_gas(session.model))
     session.notice = "Speeds beside Rayleigh's curve." if shown else "Speeds are not shown."
     if shown and not free_speeds(session.model).any():
         session.notice += " They appear as soon as a particle that no rod holds is moving."
 
 
-def panels(session: Session) -> Sequence[Readout]:
-    """The number of impacts once there are any, and the speeds where they are wanted."""
+def panels(session: Context) -> Sequence[Readout]:
+    """A panel with the number of impacts once there are any, and one with the speeds of a gas, or where asked for."""
     made = []
     if session.model.clock.collisions:
         made.append(Readout("Impacts", (("so far", str(session.model.clock.collisions)),)))

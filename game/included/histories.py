@@ -9,34 +9,31 @@ import csv
 import itertools
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from components import FieldError, HistoryKind, Load, Model, Vector
 from components.load import History
-
-if TYPE_CHECKING:
-    from game.mods import App
+from game.mods import App
 
 STANDARD_GRAVITY = 9.80665  # m/s²
 DIRECTIONS = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
 
 
 def check_sine(history: History, where: str) -> None:
-    """A sine has a frequency."""
+    """Raise FieldError for a sine without a frequency."""
     if not history["frequency"] > 0.0:
         raise FieldError(f"{where}: history frequency is {history['frequency']:g} Hz; it must be above 0 Hz.")
 
 
 def check_pulse(history: History, where: str) -> None:
-    """A pulse lasts."""
+    """Raise FieldError for a pulse without a duration."""
     if not history["duration"] > 0.0:
         raise FieldError(f"{where}: history duration is {history['duration']:g} s; it must be above 0 s.")
 
 
 def check_points(history: History, where: str) -> None:
-    """There is one value for each time, and times ascend."""
+    """Raise FieldError unless there is one value for each time and times ascend."""
     times, values = (history[name] for name in list(history)[1:])
     if not times or len(times) != len(values):
         raise FieldError(
@@ -114,7 +111,7 @@ def read_record(path: Path, unit: float = 1.0) -> dict[str, list[float] | str]:
 def shake(model: Model, record: History | dict[str, list[float] | str], direction: Vector = (1.0, 0.0)) -> None:
     """Shake the supports: a load −m a(t) on every particle that can move, displacements being relative to them.
 
-    One step of undo. The masses are those of now.
+    One step of undo. The masses are the present ones.
     """
     particles = model.particles
     free = np.flatnonzero(~particles.fixed.all(axis=1))
@@ -127,7 +124,8 @@ def shake(model: Model, record: History | dict[str, list[float] | str], directio
 
 def run(words: list[str]) -> int:
     """`pinjoint shake MODEL RECORD.csv --output FILE`."""
-    from game.commands.arguments import Parser, UsageError, writable
+    from game.commands.arguments import Parser, UsageError
+    from game.commands.output import writable
     from game.documents import models
 
     parser = Parser(
@@ -154,7 +152,7 @@ def run(words: list[str]) -> int:
 
 
 def plugin(app: App) -> None:
-    """Register them."""
+    """Register the histories and the command."""
     for kind in (SINE, PULSE, TABLE, RECORD):
         app.history(kind)
     app.command("shake", run, "give a model the loads of a recorded base acceleration")

@@ -1,4 +1,4 @@
-"""Probes: what is read while time passes, drawn live as plots and written as CSV and PNG."""
+"""Probes: quantities sampled while time passes, drawn live as plots and written as CSV and PNG."""
 
 from __future__ import annotations
 
@@ -9,19 +9,17 @@ from array import array
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from components import Model, Particle, Plot, Readout, Rod, Vector
 from game.documents.models import replace
-from game.paths.quantities import TIME, Quantity, quantity
+from game.editor.context import Context
+from game.mods import App
+from game.paths import TIME, Quantity, quantity
 from systems.base import Phase, System
-from systems.edit.refusal import Refusal
-
-if TYPE_CHECKING:
-    from game.mods import App
-    from game.session import Session
+from systems.edit import Refusal
 
 MOST = 20_000  # samples; beyond, every second one is dropped
 FEW = 3  # plots at a time
@@ -37,7 +35,7 @@ OF_PARTICLE = (
 
 @dataclass
 class Probe:
-    """Quantities read against another; `samples` holds time, that one and each of them, in turn."""
+    """Quantities sampled against another one; each sample is the time, `against` and all of `read`, one after the other."""
 
     against: Quantity
     read: tuple[Quantity, ...]
@@ -46,21 +44,21 @@ class Probe:
 
     @property
     def key(self) -> tuple[str, ...]:
-        """What it reads."""
+        """The paths that the probe samples; probes with the same key are the same."""
         return (self.against.path, *(quantity.path for quantity in self.read))
 
     @property
     def table(self) -> np.ndarray[Any, np.dtype[np.float64]]:
-        """The samples, shape (k, 2 + quantities): time (s), what they are read against, and each of them."""
+        """The samples, shape (k, 2 + quantities): time (s), `against`, and each of `read`."""
         return np.array(self.samples).reshape(-1, 2 + len(self.read))
 
     @property
     def time(self) -> float | None:
-        """When it was read last (s)."""
+        """The time of the last sample (s)."""
         return self.samples[-2 - len(self.read)] if self.samples else None
 
-    def sample(self, session: Session) -> None:
-        """Read once; what lies at this time or later (time was taken back) is dropped."""
+    def sample(self, session: Context) -> None:
+        """Take one sample; samples at this time or later are dropped first (time was taken back)."""
         width, time = 2 + len(self.read), session.time
         while self.samples and self.samples[-width] >= time:
             del self.samples[-width:]
@@ -70,7 +68,7 @@ class Probe:
         self.revision += 1
 
     def plot(self, span: float) -> Plot:
-        """As a plot of the last part of the time, `span` of all."""
+        """A plot of the last part of the samples; span: its share of the whole time."""
         table = self.table
         if len(table):
             begin = table[-1, 0] - span * (table[-1, 0] - table[0, 0])
@@ -87,15 +85,15 @@ def _short(read: Quantity) -> str:
 
 
 class Probes:
-    """The probes of one session. span: the share of the time that is shown."""
+    """The probes of one session. span: the share of the time that plots show."""
 
     def __init__(self) -> None:
         self.all: list[Probe] = []
         self.span = 1.0
         self._model: weakref.ref[Model] | None = None
 
-    def add(self, session: Session, paths: Iterable[str], against: str = TIME) -> Probe:
-        """Read these quantities from now on. Raises QuantityError. Of too many, the oldest goes."""
+    def add(self, session: Context, paths: Iterable[str], against: str = TIME) -> Probe:
+        """Sample these quantities from now on. Raises PathError. Of more than FEW probes the oldest is dropped."""
         model = session.model
         probe = Probe(quantity(model, against), tuple(quantity(model, path) for path in paths))
         self._model = weakref.ref(model)
@@ -103,12 +101,12 @@ class Probes:
         return probe
 
     def keep_to(self, model: Model) -> None:
-        """Forget those of another model."""
+        """Forget the probes of any other model."""
         if self._model is None or self._model() is not model:
             self.all = []
 
-    def sample(self, session: Session) -> None:
-        """Read all of them, if time has passed since."""
+    def sample(self, session: Context) -> None:
+        """Take a sample of every probe for which time has passed."""
         behind = [probe for probe in self.all if probe.time != session.time]
         if behind and session.simulation.ready:
             session.simulation.observe()
@@ -116,18 +114,18 @@ class Probes:
                 probe.sample(session)
 
 
-_probes: weakref.WeakKeyDictionary[Session, Probes] = weakref.WeakKeyDictionary()
+_probes: weakref.WeakKeyDictionary[Context, Probes] = weakref.WeakKeyDictionary()
 
 
-def probes_of(session: Session) -> Probes:
-    """The probes of a session, all of the model that is open."""
+def probes_of(session: Context) -> Probes:
+    """The probes of a session, all of them of the model that is open."""
     probes = _probes.setdefault(session, Probes())
     probes.keep_to(session.model)
     return probes
 
 
 class Sampling(System):
-    """Reads the probes once a frame."""
+    """Samples the probes once a frame."""
 
     name = "probes.sampling"
     phase = Phase.EVENTS
@@ -140,8 +138,8 @@ class Sampling(System):
         probes_of(frame.session).sample(frame.session)
 
 
-def choices(session: Session) -> list[tuple[tuple[str, ...], str]]:
-    """(what is read, against what) of the plots that suit what is selected; the energies if nothing is."""
+def choices(session: Context) -> list[tuple[tuple[str, ...], str]]:
+    """(paths, path against which) of the plots that suit the selection; the energies if nothing is selected."""
     found: list[tuple[tuple[str, ...], str]] = []
     for handle in session.selected[-1:]:
         pairs = OF_ROD if isinstance(handle, Rod) else OF_PARTICLE if isinstance(handle, Particle) else ()
@@ -150,8 +148,8 @@ def choices(session: Session) -> list[tuple[tuple[str, ...], str]]:
     return found or [(ENERGIES, TIME)]
 
 
-def plot_next(session: Session, pixel: Vector) -> None:
-    """Plot the first quantity of what is selected, or the next; after the last, none of it."""
+def plot_next(session: Context, pixel: Vector) -> None:
+    """Plot the first quantity of the selection, then the next; after the last one, none."""
     probes = probes_of(session)
     offered = choices(session)
     keys = [(against, *paths) for paths, against in offered]
@@ -168,14 +166,14 @@ def plot_next(session: Session, pixel: Vector) -> None:
     session.notice = f"Plot: {title} against {probe.against.title}; O: the next."
 
 
-def zoom(factor: float, session: Session) -> None:
+def zoom(factor: float, session: Context) -> None:
     """Show a shorter or longer part of the time."""
     probes = probes_of(session)
     probes.span = min(max(probes.span * factor, 1.0 / 1024.0), 1.0)
     session.notice = f"Plots: the last {100.0 * probes.span:.3g} % of the time."
 
 
-def save(session: Session, pixel: Vector) -> None:
+def save(session: Context, pixel: Vector) -> None:
     """Write every plot as CSV and PNG into the working folder."""
     paths = [Path.cwd() / f"pinjoint-plot-{number}.csv" for number, _ in enumerate(probes_of(session).all, 1)]
     try:
@@ -191,7 +189,7 @@ def save(session: Session, pixel: Vector) -> None:
 
 
 def write_csv(probe: Probe, path: Path) -> None:
-    """One sample a line: the time and what was read, in the units of the headings."""
+    """Write one sample a line: the time and the quantities, in the units of the headings."""
     against = [] if probe.against.path == TIME else [1]
     heads = ["time (s)", *([probe.against.title] if against else []), *(read.title for read in probe.read)]
     text = io.StringIO()
@@ -202,13 +200,13 @@ def write_csv(probe: Probe, path: Path) -> None:
 
 
 def write_png(probe: Probe, path: Path, theme: str = "light") -> None:
-    """The whole plot as a picture."""
+    """Write the whole plot as a picture."""
     from game.app import plot_png  # pygame is there when it is needed
 
     plot_png(probe.plot(1.0), path, theme)
 
 
-def panels(session: Session) -> Sequence[Readout]:
+def panels(session: Context) -> Sequence[Readout]:
     """Each probe as a panel with its plot."""
     probes = probes_of(session)
     return [Readout(_heading(probe), (), probe.plot(probes.span)) for probe in probes.all]
@@ -221,9 +219,9 @@ def _heading(probe: Probe) -> str:
 
 def run(words: list[str]) -> int:
     """`pinjoint plot MODEL --of QUANTITY --until T --output FILE`."""
-    from game.commands.arguments import Parser, UsageError, count, positive, writable
+    from game.commands.arguments import Parser, UsageError, count, positive
     from game.commands.options import add_model, session_of
-    from game.paths.quantities import QuantityError
+    from game.commands.output import writable
 
     parser = Parser(
         prog="pinjoint plot", description="Run a model and write quantities against time or another."
@@ -238,10 +236,7 @@ def run(words: list[str]) -> int:
     parser.add_argument("--output", type=writable, required=True, metavar="FILE", help=".csv or .png")
     options = parser.parse_args(words)
     session = session_of(options)
-    try:
-        probe = probes_of(session).add(session, options.of, options.against)
-    except QuantityError as error:
-        raise UsageError(str(error)) from None
+    probe = probes_of(session).add(session, options.of, options.against)
     output = Path(options.output)
     if output.suffix not in (".csv", ".png"):
         raise UsageError(f"--output {output}: write a file that ends with .csv or .png.")
@@ -253,7 +248,7 @@ def run(words: list[str]) -> int:
     return 0
 
 
-def record(session: Session, probe: Probe, until: float, samples: int) -> None:
+def record(session: Context, probe: Probe, until: float, samples: int) -> None:
     """Run to a time (s), reading after the last full step before evenly spaced times. Ends early at rest."""
     simulation = session.simulation
     simulation.advance(0)

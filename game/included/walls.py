@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from components import Field, FieldError, Handle, Pieces, Selected, Table, Vector
 from components.tags import Hovered
+from game.mods import App
 from systems.render.clip import bounds, clip_segments
 from systems.render.labels import STRONG, Label, half_size
 from systems.render.marks import Discs, Mark, Strokes
+from systems.render.sheet import Sheet
 from systems.render.theme import faded
-
-if TYPE_CHECKING:
-    from game.mods import App
-    from systems.render.sheet import Sheet
 
 WIDTH = 4.0  # points, of the line that is drawn
 
@@ -48,7 +46,7 @@ class Wall(Handle):
 
     @classmethod
     def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
-        """A wall has a length."""
+        """Raise FieldError for a wall without a length."""
         points = (table.start[rows] == table.end[rows]).all(axis=1)
         for row in rows[points][:1].tolist():
             where = table.world.describe(table[row])
@@ -56,7 +54,7 @@ class Wall(Handle):
 
 
 def as_pieces(walls: Table[Wall]) -> Pieces:
-    """What particles collide with."""
+    """The walls as pieces with which particles collide."""
     ends = np.stack([walls.start, walls.end], axis=1)
     return Pieces(ends, np.arange(walls.count), restitution=walls.restitution)
 
@@ -80,7 +78,7 @@ def draw(sheet: Sheet) -> Iterator[Mark]:
 
 
 def name_wall(sheet: Sheet, name: str, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
-    """Beside its middle, where there is room."""
+    """Place the name of a wall beside its middle, where there is room."""
     size = sheet.font(12.0)
     half = half_size(name, size, "semibold", sheet.unit)
     along = (end - start) / max(float(np.hypot(*(end - start))), 1e-9)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -17,18 +17,20 @@ from components.load import HISTORIES, HistoryKind, register_history
 from components.model import ADDED
 from components.obstacles import SHAPES, Pieces, Shape, check_pieces
 from components.view import Readout
-from game import registry
+from game.commands import COMMANDS, Command
 from game.commands.arguments import BAD_INPUT, UsageError
 from game.documents import models
-from game.editor.actions.drawing import use
-from game.editor.actions.registry import ACTIONS, WHILE_DRAWING, Action, action
+from game.editor.actions import ACTIONS, WHILE_DRAWING, Action, action
+from game.editor.context import PANELS, Context
 from game.editor.gestures import TOOL_HINTS, TOOLS
 from game.editor.gestures.drawing import drawing_of
-from game.editor.scenes import Scene, all_scenes
+from game.editor.scenes import SCENES, Scene, all_scenes
 from game.mods.guard import guarded_history, guarded_integrator, guarded_scene, guarded_system
 from game.mods.mod import Mod, ModError
+from game.paths import PathError
 from systems.base import Integrator, System
-from systems.edit.refusal import Refusal
+from systems.catalogue import SYSTEMS
+from systems.edit import Refusal
 from systems.input.bindings import (
     LIVE,
     Binding,
@@ -40,21 +42,18 @@ from systems.input.bindings import (
 )
 from systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
 from systems.render.icons import ICONS, Part
-from systems.render.layers import ABOVE, BELOW, Layer
-
-if TYPE_CHECKING:
-    from game.session import Session
+from systems.render.sheet import ABOVE, BELOW, Layer
 
 T = TypeVar("T")
-MISTAKES = (UsageError, models.ModelError, FieldError)  # of a person at the command line
-Panel = Callable[["Session"], Readout | Sequence[Readout] | None]
+MISTAKES = (UsageError, models.ModelError, FieldError, PathError)  # of a person at the command line
+Panel = Callable[[Context], Readout | Sequence[Readout] | None]
 
 
 class App:
-    """The program, as a mod's `plugin(app)` sees it while it registers what it adds.
+    """The program, as a mod's `plugin(app)` sees it: one method for each kind of extension.
 
-    All or nothing: if `plugin` raises, nothing of it stays. What is registered is called only while the mod
-    works; an exception in it switches the whole mod off, and the session goes on.
+    If `plugin` raises, everything that it registered is taken back. An exception in registered code switches the
+    whole mod off, and the session goes on.
     """
 
     def __init__(self, mod: Mod) -> None:
@@ -80,7 +79,7 @@ class App:
         """Add a kind of elements: a class with Fields, whose table every model has; see components.Handle.
 
         Files keep them under "components": {"<mod>.<Kind>": […]}. Those with `points` can be picked, dragged,
-        copied and selected in a box like others; what draws them is a layer of the mod's own.
+        copied and selected in a box like others; a layer of the mod draws them.
         """
         try:
             name = add_kind(self.name, kind)
@@ -102,7 +101,7 @@ class App:
         )
         self._undo += [lambda: TOOLS.pop(name), lambda: TOOL_HINTS.pop(name)]
         self.action(name, key=key, title=title or f"{kind.noun}, from point to point", while_drawing=True)(
-            use(name)
+            TOOLS[name].use
         )
         if icon:
             ICONS[name] = tuple(icon)
@@ -126,7 +125,7 @@ class App:
         """Add a frame system, a law or a commit, by its class: every session makes one of its own."""
         name = getattr(system, "name", "")
         self._check_prefix("system", name or getattr(system, "__name__", "?"))
-        self._add(registry.SYSTEMS, lambda: guarded_system(self._mod, system()))
+        self._add(SYSTEMS, lambda: guarded_system(self._mod, system()))
 
     def integrator(self, integrator: type[Integrator]) -> None:
         """Add an integrator that models, the command line and the properties can choose."""
@@ -171,7 +170,7 @@ class App:
                 f" phase = Phase.STEP and scenes = ('{scene.name}',), and register it by app.system."
             )
         guarded: Callable[[], Scene] = guarded_scene(self._mod, scene)
-        self._add(registry.SCENES, guarded)
+        self._add(SCENES, guarded)
 
     def action(
         self,
@@ -219,16 +218,15 @@ class App:
     def command(self, name: str, run: Callable[[list[str]], int], about: str = "") -> None:
         """Add `pinjoint <name> …`: `run` gets the words after it and returns the exit status; --help says what about.
 
-        It may raise UsageError, ModelError or FieldError, whose sentence is shown, for what a person did wrong.
+        UsageError, ModelError, FieldError and PathError that it raises are shown as mistakes of the person.
         """
-        commands, call = registry.COMMANDS, self._mod.call
-        if name in commands:
+        if name in COMMANDS:
             raise ModError(f"There is a command '{name}' already; call this one something else.")
-        commands[name] = lambda words: int(
-            call(f"the command '{name}'", run, list(words), otherwise=BAD_INPUT, mistakes=MISTAKES)
+        what, call = f"the command '{name}'", self._mod.call
+        COMMANDS[name] = Command(
+            lambda words: int(call(what, run, list(words), otherwise=BAD_INPUT, mistakes=MISTAKES)), about
         )
-        registry.ABOUT[name] = about
-        self._undo.append(lambda: (commands.pop(name), registry.ABOUT.pop(name)))
+        self._undo.append(lambda: COMMANDS.pop(name))
 
     # --- what is seen ------------------------------------------------------------------------------------
 
@@ -238,9 +236,9 @@ class App:
         self._add(BELOW if below else ABOVE, drawn)
 
     def panel(self, read: Panel) -> None:
-        """Show small panels beside the model: `read(session)` returns a Readout, several, or None for none now."""
+        """Show small panels beside the model: `read(session)` returns a Readout, several, or None."""
         checked = _readouts(read)
-        self._add(registry.PANELS, lambda session: self._mod.call("its panel", checked, session, otherwise=()))
+        self._add(PANELS, lambda session: self._mod.call("its panel", checked, session, otherwise=()))
 
     # --- all or nothing ------------------------------------------------------------------------------------
 
@@ -260,22 +258,22 @@ class App:
     def _guarded_action(self, name: str, function: Action) -> Action:
         mod = self._mod
 
-        def act(session: Session, pixel: Vector) -> None:
+        def act(context: Context, pixel: Vector) -> None:
             if mod.off:
                 raise Refusal(f"The mod '{mod.name}' is switched off: {mod.problem}")
             try:
-                with session.model.transaction(name):
-                    function(session, pixel)
+                with context.model.transaction(name):
+                    function(context, pixel)
             except (Refusal, FieldError):
                 raise
-            except Exception as error:  # whatever a stranger's code raises
+            except Exception as error:  # any error of code that is not ours
                 mod.fail(f"the action '{name}'", error)
 
         return act
 
 
 def _checked_key(key: str) -> str:
-    """What bindings call a key. Raises ModError."""
+    """The name of a key in the bindings. Raises ModError."""
     try:
         named = key_named(key)
     except ValueError as error:
@@ -289,9 +287,9 @@ def _as_list(draw: Layer) -> Callable[[Any], list[Any]]:
     return lambda sheet: list(draw(sheet))
 
 
-def _readouts(read: Panel) -> Callable[[Session], Sequence[Readout]]:
-    def readouts(session: Session) -> Sequence[Readout]:
-        made = read(session)
+def _readouts(read: Panel) -> Callable[[Context], Sequence[Readout]]:
+    def readouts(context: Context) -> Sequence[Readout]:
+        made = read(context)
         several = () if made is None else [made] if isinstance(made, Readout) else made
         if isinstance(several, str) or not all(isinstance(readout, Readout) for readout in several):
             raise TypeError(f"{getattr(read, '__name__', 'a panel')} returned {made!r}, not a Readout or None")

@@ -1,21 +1,22 @@
-"""Finding mods: in folders, and among installed packages."""
+"""Finding mods in folders and among installed packages, and the order in which they can be loaded."""
 
 from __future__ import annotations
 
 import importlib.util
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 from game.documents.library import data_folder
-from game.mods.manifest import MANIFEST, read_manifest
-from game.mods.mod import Mod
+from game.mods.mod import MANIFEST, Mod, read_manifest
 
 GROUP = "pinjoint.mods"  # entry points of installed packages
+PROGRAM = "pinjoint"  # what a mod calls the program that it requires
 
 
 def mods_folder() -> Path:
-    """Where a person's mods lie, a folder each; it need not exist yet."""
+    """The folder with a person's mods, a folder each; it need not exist yet."""
     return data_folder() / "mods"
 
 
@@ -61,3 +62,84 @@ def _of_package(name: str, module: str) -> Mod:
     made = read_manifest(Path(spec.origin).parent, source, name)
     made.module = module
     return made
+
+
+# --- order ---------------------------------------------------------------------------------------------
+
+
+def in_order(found: Iterable[Mod], version: str, loaded: Sequence[Mod] = ()) -> list[Mod]:
+    """The mods that can be loaded, each after those that it requires, otherwise by name.
+
+    The others get a problem: a name that is taken (the first found has it), a requirement that is missing
+    or of a wrong version, or one that leads back to the mod. version: of the program. loaded: mods that
+    are there already.
+    """
+    by_name: dict[str, Mod] = {mod.name: mod for mod in loaded}
+    new: dict[str, Mod] = {}
+    for mod in found:
+        if mod.name in by_name:
+            taken = f"There is a mod of this name already, from {by_name[mod.name].source}."
+            mod.problem = mod.problem or taken
+        else:
+            by_name[mod.name] = new[mod.name] = mod
+    ordered: list[Mod] = []
+    for name in _sorted(new):
+        mod = new[name]
+        mod.problem = mod.problem or _unmet(mod, by_name, version)
+        if not mod.off:
+            ordered.append(mod)
+    return ordered
+
+
+def required(mod: Mod) -> list[str]:
+    """Names of what a mod requires, the program included."""
+    return [_parts(entry)[0] for entry in mod.requires]
+
+
+def _sorted(mods: dict[str, Mod]) -> Iterator[str]:
+    """Names of mods, each after those that it requires; every mod that requires itself gets that problem."""
+    while True:
+        usable = [mod for _, mod in sorted(mods.items()) if not mod.off]
+        graph = {mod.name: [name for name in required(mod) if name in mods] for mod in usable}
+        sorter = TopologicalSorter(graph | {name: [] for name, mod in mods.items() if mod.off})
+        try:
+            sorter.prepare()
+        except CycleError as error:
+            chain: list[str] = error.args[1][::-1]
+            for name in chain[:-1]:
+                mods[name].problem = f"These mods require each other: {' → '.join(chain)}; drop one."
+            continue
+        break
+    ready: list[str] = []
+    while sorter.is_active():
+        ready = sorted([*ready, *sorter.get_ready()])
+        yield ready[0]
+        sorter.done(ready.pop(0))
+
+
+def _parts(entry: str) -> tuple[str, str]:
+    """A requirement's name and its range of versions."""
+    from packaging.requirements import Requirement
+
+    parsed = Requirement(entry)
+    return parsed.name, str(parsed.specifier)
+
+
+def _unmet(mod: Mod, by_name: dict[str, Mod], version: str) -> str:
+    """The first requirement of a mod that is not met, as a sentence; "" if all are."""
+    from packaging.specifiers import SpecifierSet
+
+    for entry in mod.requires:
+        name, allowed = _parts(entry)
+        other = by_name.get(name)
+        if name == PROGRAM:
+            present = version
+        elif other is None:
+            return f"It requires the mod '{name}', which is not there; install it, or drop the requirement."
+        elif other.off:
+            return f"It requires the mod '{name}', which cannot be used: {other.problem}"
+        else:
+            present = other.version
+        if not SpecifierSet(allowed).contains(present, prereleases=True):
+            return f"It requires {name} {allowed}, but there is {name} {present}; take another version of one."
+    return ""

@@ -1,32 +1,30 @@
-"""Guards: code of mods is called through them; when it fails, the mod is switched off and the session goes on."""
+"""Guards around the code of mods: when it fails, the mod is switched off and the session goes on."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from components.field import FieldError
 from components.load import History, HistoryKind
+from components.model import Model
 from components.snapshot import Snapshot
-from game.editor.scenes import Scene
+from game.editor.context import Scene
 from game.mods.mod import INCLUDED, Mod
 from game.mods.watchdog import interrupted_after, stop_after
 from systems.base import Event, Integrator, StepSystem, System
 from systems.physics.integrators import VelocityVerlet
 
-if TYPE_CHECKING:
-    from components.model import Model
-
 PATIENCE = 2.0  # s that a frame system may take; a longer one is interrupted
 
 
 def guarded_system(mod: Mod, system: System) -> System:
-    """The system of a mod, so wrapped that it is left out once the mod is switched off.
+    """The system of a mod, wrapped so that it is left out once the mod is switched off.
 
-    The commands of a frame system, or of an event, are one step of undo. If it raises or takes too long they are
-    dropped whole, and the columns that it declares it writes are as before.
+    The commands of a frame system, or of an event, are one step of undo. If the system raises or takes too long,
+    its commands are dropped whole, and the columns that it declares in `writes` and `adds` are restored.
     """
     needs, process = system.needs, system.process
     what = f"the system '{system.name}'"
@@ -62,16 +60,16 @@ def _change_whole(mod: Mod, system: System, what: str, model: Model, change: Cal
                 change()
             else:
                 _watched(change, model)
-    except Exception as error:  # whatever a stranger's code raises
+    except Exception as error:  # any error of code that is not ours
         if before is not None:
             before.restore(model)
         mod.fail(what, error)
 
 
 def _watched(change: Callable[[], None], model: Model) -> None:
-    """Interrupt it if it takes long, and put back what it deleted past the tables.
+    """Run what a system changes; interrupt it after PATIENCE, and restore entities that it deleted past the tables.
 
-    Never in the middle of a command; one that does nothing but give commands is stopped before the next.
+    A command is never interrupted; a system that does nothing but give commands is stopped before the next one.
     """
     model.before_command = stop_after(PATIENCE)
     try:
@@ -90,7 +88,7 @@ def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
             kind.check(history, where)
         except FieldError:
             raise
-        except Exception as error:  # whatever a stranger's code raises
+        except Exception as error:  # any error of code that is not ours
             mod.fail(f"the check of the history '{kind.name}'", error)
 
     def ends(history: History) -> float:
@@ -111,7 +109,7 @@ def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
 
 
 def guarded_integrator(mod: Mod, integrator: Integrator) -> Integrator:
-    """The integrator of a mod, so wrapped that it is no longer chosen once the mod is switched off."""
+    """The integrator of a mod, wrapped so that it is no longer chosen once the mod is switched off."""
     own = integrator.stable_step
 
     def stable_step(frequency: float, decay: float) -> float:
@@ -134,7 +132,7 @@ _METHODS = tuple(name for name, method in vars(Scene).items() if callable(method
 
 
 def guarded_scene(mod: Mod, kind: type[Scene]) -> type[Scene]:
-    """The scene of a mod, so wrapped that it does nothing and leads to pause once the mod is switched off."""
+    """The scene of a mod, wrapped so that it does nothing and leads to pause once the mod is switched off."""
     methods = {name: _guarded_method(mod, kind, name) for name in _METHODS}
     return type(kind.__name__, (kind,), {**methods, "mod": mod})
 

@@ -1,4 +1,4 @@
-"""Loading mods: find, put in order, import, register; each mod wholly or not at all."""
+"""Loading mods: find them, put them in order, import them, register what they add; each mod wholly or not at all."""
 
 from __future__ import annotations
 
@@ -10,15 +10,14 @@ from pathlib import Path
 from types import ModuleType
 
 from game.documents.preferences import preferred_keys
+from game.editor.context import FAULTS
 from game.mods import finding
 from game.mods.app import App, check_plugin
-from game.mods.manifest import MANIFEST
-from game.mods.mod import FAULTS, Mod, ModError
-from game.mods.order import in_order, required
+from game.mods.finding import in_order, required
+from game.mods.mod import MANIFEST, Mod, ModError
 from game.mods.watchdog import interrupted_after
-from game.registry import SYSTEMS
 from game.version import __version__
-from systems.catalogue import step_systems
+from systems.catalogue import all_systems
 from systems.input.bindings import prefer
 from systems.schedule import Schedule
 
@@ -30,7 +29,7 @@ MODS: list[Mod] = []  # all that were found in this process, those that come wit
 def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list[Mod]:
     """Load the mods in these folders (and, if `installed`, the person's own and those of packages).
 
-    Returns all that were found, each with its `problem` if it was left out. What is loaded already stays.
+    Returns all mods that were found, each with its `problem` if it was left out. Mods that are loaded stay.
     """
     found = [mod for folder in folders for mod in finding.in_folder(Path(folder))]
     if installed:
@@ -86,10 +85,10 @@ def _load(mod: Mod) -> None:
         with interrupted_after(PATIENCE, lambda: True):
             module = _import(mod)
             check_plugin(getattr(module, "plugin", None))(app)
-            Schedule([*step_systems(), *(system() for system in SYSTEMS)])
+            Schedule(all_systems())
     except ModError as error:
         mod.problem = str(error)
-    except Exception as error:  # whatever a stranger's code raises
+    except Exception as error:  # any error of code that is not ours
         mod.problem = mod.describe(error)
     if mod.off:
         app.withdraw()

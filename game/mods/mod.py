@@ -1,7 +1,8 @@
-"""Mod: one extension of the program, what became of it, and who is to blame when it fails."""
+"""Mod: one extension of the program, read from its mod.toml, and what became of it."""
 
 from __future__ import annotations
 
+import keyword
 import logging
 import traceback
 from collections.abc import Callable
@@ -9,9 +10,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from game.editor.context import FAULTS
+
 LOG = logging.getLogger("pinjoint.mods")
-FAULTS: list[str] = []  # sentences about mods that failed while the program ran, the oldest first
-INCLUDED = "Pinjoint"  # where the mods that come with the program are from
+INCLUDED = "Pinjoint"  # the source of the mods that come with the program
+MANIFEST = "mod.toml"
+
+_KEYS = ("name", "version", "description", "requires")  # of a manifest
 
 
 class ModError(ValueError):
@@ -24,7 +29,7 @@ class Mod:
 
     folder: where its mod.toml is, if it has one. module: what is imported. source: where it was found.
     requires: requirements like "pinjoint>=0.1" and "gusts>=2". problem: why it was left out or switched
-    off, or "". notes: what else a person should know, such as keys that were taken.
+    off, or "". notes: further sentences for a person, such as keys that were taken.
     """
 
     name: str
@@ -49,11 +54,11 @@ class Mod:
         return self.withdraw is not None
 
     def fail(self, what: str, error: BaseException) -> None:
-        """Switch it off because something of it failed, and tell so."""
+        """Switch the mod off because `what` of it failed."""
         self.switch_off(f"{what} failed: {self.describe(error)}", error)
 
     def switch_off(self, reason: str, error: BaseException | None = None) -> None:
-        """Let nothing of it be called any more."""
+        """Switch the mod off: from now on `call` calls nothing of it."""
         self.problem = reason
         sentence = f"The mod '{self.name}' was switched off: {reason} Your model is as it was before."
         FAULTS.append(sentence)
@@ -80,9 +85,9 @@ class Mod:
         otherwise: Any = None,
         mistakes: tuple[type[Exception], ...] = (),
     ) -> Any:
-        """What a function of the mod returns; `otherwise` if the mod is off, or fails, which switches it off.
+        """The result of a function of the mod; `otherwise` if the mod is off or the function fails, which switches it off.
 
-        mistakes: errors by which it tells a person what to do otherwise; they are raised.
+        mistakes: errors that tell a person what to correct; they are raised.
         """
         if self.off:
             return otherwise
@@ -90,7 +95,7 @@ class Mod:
             return function(*arguments)
         except mistakes:
             raise
-        except Exception as error:  # whatever a stranger's code raises
+        except Exception as error:  # any error of code that is not ours
             self.fail(what, error)
             return otherwise
 
@@ -100,5 +105,67 @@ def _message(error: BaseException) -> str:
 
 
 def _short(path: str) -> str:
-    """The file and the folder it is in."""
+    """A path as its file and the folder that holds it."""
     return "/".join(Path(path).parts[-2:])
+
+
+# --- manifests -----------------------------------------------------------------------------------------
+
+
+def read_manifest(folder: Path, source: str, name: str | None = None) -> Mod:
+    """The mod in a folder, with its problem if the manifest is wrong. name: what an entry point calls it."""
+    made = Mod(name or folder.name, name or folder.name, folder=folder.resolve(), source=source)
+    try:
+        _fill(made, _entries(folder / MANIFEST), named=name)
+    except ModError as error:
+        made.problem = str(error)
+    return made
+
+
+def _entries(path: Path) -> dict[str, Any]:
+    import tomllib  # only where there is a mod
+
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        raise ModError(f"{MANIFEST} cannot be read: {reason}.") from None
+    except tomllib.TOMLDecodeError as error:
+        raise ModError(f"{MANIFEST} is not TOML: {error}.") from None
+
+
+def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
+    for key in entries:
+        if key not in _KEYS:
+            raise ModError(f"{MANIFEST} has the key '{key}'; the keys are {', '.join(_KEYS)}.")
+    for key in ("name", "version", "description"):
+        value = entries.get(key, "")
+        if not isinstance(value, str):
+            raise ModError(f'{MANIFEST}: {key} is {value!r}; it must be a text, such as {key} = "…".')
+        if value or key != "name":
+            setattr(made, key, value)
+    made.module = named or made.name
+    if not made.name.isidentifier() or keyword.iskeyword(made.name) or "__" in made.name:
+        raise ModError(f"{MANIFEST}: the name '{made.name}' must be like a Python name, such as 'wind'.")
+    if named is not None and made.name != named:
+        raise ModError(f"{MANIFEST}: the name is '{made.name}', but the entry point calls it '{named}'.")
+    requires = entries.get("requires", [])
+    if not isinstance(requires, list) or not all(isinstance(entry, str) for entry in requires):
+        raise ModError(f'{MANIFEST}: requires is {requires!r}; write a list like ["pinjoint>=0.1", "gusts"].')
+    made.requires = tuple(requires)
+    _check_versions(made)
+
+
+def _check_versions(made: Mod) -> None:
+    from packaging.requirements import InvalidRequirement, Requirement
+    from packaging.version import InvalidVersion, Version
+
+    try:
+        Version(made.version)
+    except InvalidVersion:
+        raise ModError(f"{MANIFEST}: the version '{made.version}' must be like '1.0'.") from None
+    for entry in made.requires:
+        try:
+            Requirement(entry)
+        except InvalidRequirement:
+            raise ModError(f"{MANIFEST}: requires '{entry}', which must be like 'pinjoint>=0.1,<2'.") from None

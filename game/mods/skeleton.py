@@ -5,8 +5,7 @@ from __future__ import annotations
 import keyword
 from pathlib import Path
 
-from game.mods.manifest import MANIFEST
-from game.mods.mod import ModError
+from game.mods.mod import MANIFEST, ModError
 
 _MANIFEST = """\
 name = "{name}"

@@ -1,4 +1,4 @@
-"""Watchdog: an exception in a thread that runs Python code for too long."""
+"""Watchdog: an exception raised in a thread whose Python code runs for too long."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ RETRY = 1e-4  # s
 
 
 class TooLong(Exception):
-    """Raised inside Python code that took longer than it may."""
+    """Raised in Python code that ran longer than its limit (s)."""
 
     limit = 0.0
 
@@ -27,11 +27,11 @@ class _Watchdog:
         self._changed = threading.Condition()
         self._deadline: float | None = None
         self._may: Callable[[], bool] = bool
-        self._thread = 0  # who is watched
+        self._thread = 0  # identifier of the watched thread
         self._started = False
 
     def watch(self, seconds: float, may: Callable[[], bool]) -> None:
-        """Interrupt the calling thread in so many seconds, or then as soon as it may be."""
+        """Interrupt the calling thread after some seconds, then as soon as may() is true."""
         with self._changed:
             if not self._started:
                 threading.Thread(target=self._run, name="watchdog", daemon=True).start()
@@ -41,7 +41,7 @@ class _Watchdog:
             self._changed.notify()
 
     def stop(self) -> None:
-        """Do not interrupt it any more, not even if that was about to happen."""
+        """End the watch; an exception that is already due is taken back."""
         with self._changed:
             fired, self._deadline = self._deadline is None, None
             if fired:
@@ -69,14 +69,14 @@ def _raise_in(thread: int, exception: type[Exception]) -> None:
 
 
 class _Nothing(Exception):
-    """What comes instead of an exception that is taken back."""
+    """Raised in place of an exception that is taken back."""
 
 
 def _take_back() -> None:
-    """Let no exception be due in this thread any more, whether the one asked for has come or not.
+    """Replace an exception that is due in this thread by one that is caught here.
 
-    The interpreter forgets that one was due only when one comes. If it is told that none is, it goes on looking
-    for it: slower from then on, and for ever where a debugger traces it.
+    The interpreter clears its flag for exceptions from other threads only when one is raised. If the exception
+    were only unset, the flag would stay: a slower interpreter, and an endless loop under a debugger.
     """
     try:
         _raise_in(threading.get_ident(), _Nothing)
@@ -88,10 +88,10 @@ def _take_back() -> None:
 
 @contextmanager
 def interrupted_after(seconds: float, may: Callable[[], bool]) -> Iterator[None]:
-    """Raise TooLong inside, if it takes longer; compiled code is only interrupted when it returns.
+    """Raise TooLong in the body of a `with` that takes longer; compiled code is interrupted when it returns.
 
-    may: whether it may be interrupted just now. Since only one thread runs Python code at a time, the
-    watched one is interrupted exactly where it was when this was asked.
+    may: called by the watchdog; True if the body may be interrupted where it is. Only one thread runs Python
+    code at a time, so the body has not moved on when the exception comes.
     """
     _watchdog.watch(seconds, may)
     try:
@@ -101,7 +101,7 @@ def interrupted_after(seconds: float, may: Callable[[], bool]) -> Iterator[None]
 
 
 def stop_after(seconds: float) -> Callable[[], None]:
-    """A function that raises TooLong when it is called later than that."""
+    """A function that raises TooLong when it is called after some seconds."""
     deadline = time.monotonic() + seconds
 
     def check() -> None:

@@ -1,4 +1,4 @@
-"""Expectations: what a session is to show, such as rods.AB.axial_force ≈ -28.34 ± 0.01."""
+"""Expectations: texts that a session must fulfil, such as rods.AB.axial_force ≈ -28.34 ± 0.01."""
 
 from __future__ import annotations
 
@@ -6,13 +6,10 @@ import math
 import operator
 import re
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
-from components.spelling import missing
-from game.paths.target import PathError, locate_one
-
-if TYPE_CHECKING:
-    from game.session import Session
+from components.suggestions import missing
+from game.paths import Readable, locate_one
 
 _OF_SESSION = ("scene", "time", "message")
 _SECTIONS = ("energy", "force_method", "count")
@@ -28,17 +25,28 @@ _NOTHING = ("none", "null")  # what may be written for no value
 
 
 class ExpectationError(AssertionError):
-    """Something is not as expected; the message says what, and what it is instead."""
+    """An expectation that does not hold; the message says what was expected and what was found."""
 
 
-def expect(session: Session, text: str) -> None:
-    """Raise ExpectationError unless something is as a text says. Raises ValueError, LookupError for bad texts."""
+class Shown(Readable, Protocol):
+    """A session, as far as expectations ask for it."""
+
+    @property
+    def scene(self) -> str: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def scenes(self) -> Any: ...
+
+
+def expect(session: Shown, text: str) -> None:
+    """Raise ExpectationError unless a text holds; ValueError or LookupError if it says nothing that can be tested."""
     for expected, got in check(session, text):
         raise ExpectationError(f"expected {expected}, got {got}")
 
 
-def check(session: Session, text: str) -> Iterator[tuple[str, Any]]:
-    """(expected, got) if something is not as a text says."""
+def check(session: Shown, text: str) -> Iterator[tuple[str, Any]]:
+    """(expected, got) if a text does not hold. Raises ValueError, LookupError."""
     match = _EXPECTATION.match(text)
     if match is None:
         raise ValueError(f"'{text}' is no expectation; write it like rods.AB.axial_force ≈ -28.34 ± 0.01.")
@@ -76,7 +84,7 @@ def _holds(got: Any, relation: str, value: str, slack: str | None) -> bool:
     return math.isfinite(got) and abs(got - wanted) <= tolerance
 
 
-def read(session: Session, path: str) -> Any:
+def read(session: Shown, path: str) -> Any:
     """A quantity by its path: rods.AB.axial_force, particles.B.displacement.y, energy.imbalance, scene."""
     head, _, rest = path.strip().partition(".")
     if head in _OF_SESSION:
@@ -89,12 +97,8 @@ def read(session: Session, path: str) -> Any:
         return len(_one_of(session.model.tables, rest, "tables"))
     if head not in session.model.tables:
         raise LookupError(missing("quantities", head, [*_OF_SESSION, *_SECTIONS, *session.model.tables]))
-    try:
-        target = locate_one(session.model, path.strip())
-    except PathError as error:
-        raise LookupError(f"{path}: {error}") from None
-    value = getattr(target.handles[0], target.field.name)
-    return value["xy".index(target.axis)] if target.axis else value
+    target = locate_one(session.model, path.strip())
+    return target.part(getattr(target.handles[0], target.field.name))
 
 
 def _one_of(found: Mapping[str, Any], name: str, what: str) -> Any:
@@ -103,7 +107,7 @@ def _one_of(found: Mapping[str, Any], name: str, what: str) -> Any:
     return found[name]
 
 
-def _of_force_method(session: Session, quantity: str) -> Any:
+def _of_force_method(session: Shown, quantity: str) -> Any:
     """A quantity of the force method: part, unknown, force, delta_real, … of the last unknown; real.AC, base.AC.
 
     superposed.AC is set 2 + set 3, which is to equal real.AC, set 1.

@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from components.field import Vector
 from components.view import Page, Status, View
 from game.documents import library
 from game.documents.open_documents import ModelFile
-from game.scripts.script import Failure, Script
+from game.editor.frame import Frame
+from game.scripts.playing import Failure, play_line
+from game.scripts.script import Script
+from game.session import Session
 from systems.program.writer import REVIEW_INTERVAL
-
-if TYPE_CHECKING:
-    from game.app import App
 
 FOOTER = 112.0  # points, height of the strip below the picture in which the words of a script stand
 LARGER = 1.25  # its type, relative to all other
@@ -30,14 +30,28 @@ DONE = "That was it. Go on from here as you like; Ctrl+Z goes back through all o
 _UNSEEN = {"expect", "resize", "window"}  # what takes no time to watch
 
 
+class Screen(Protocol):
+    """A window, as a performance knows it: size in points of the display."""
+
+    session: Session
+    size: tuple[int, int]
+
+    @property
+    def closed(self) -> bool: ...
+    @property
+    def room_below(self) -> int: ...
+    def next_frame(self, *, wait: bool = True) -> Frame: ...
+    def point(self, pixel: Vector) -> None: ...
+
+
 class Performance:
     """Plays a script in a window; keys go on at once (Space) or end it (Esc), and else do nothing.
 
     pace: 1 for people; 0 waits for nobody.
     """
 
-    def __init__(self, app: App, script: Script, pace: float = 1.0) -> None:
-        self._app = app
+    def __init__(self, screen: Screen, script: Script, pace: float = 1.0) -> None:
+        self._screen = screen
         self._script = script
         self._pace = pace
         self._hurried = self._ended = False
@@ -53,15 +67,15 @@ class Performance:
             return self._play()
         with library.data_apart() as folder:
             failures = self._play()
-        for desk in self._app.session.desks:
-            if desk.file.path is not None and folder in desk.file.path.parents:
-                desk.file, desk.saved = ModelFile(None, desk.file.name), -1
+        for document in self._screen.session.documents:
+            if document.file.path is not None and folder in document.file.path.parents:
+                document.file, document.saved = ModelFile(None, document.file.name), -1
         return failures
 
     def _play(self) -> list[Failure]:
-        session, failures = self._app.session, list[Failure]()
+        session, failures = self._screen.session, list[Failure]()
         session.performing, session.footer = True, View()
-        grown = min(round(FOOTER), self._app.room_below)
+        grown = min(round(FOOTER), self._screen.room_below)
         self._grow(grown)
         self._say(self._script.title)
         try:
@@ -82,7 +96,7 @@ class Performance:
     # --- one line ------------------------------------------------------------------------------------
 
     def _perform(self, number: int, entry: Mapping[str, Any]) -> list[Failure]:
-        session = self._app.session
+        session = self._screen.session
         self._wait_for_program()
         self._running_since = None
         simulation = session.simulation
@@ -90,12 +104,12 @@ class Performance:
         try:
             if set(entry) == {"type"}:  # letter by letter
                 return [f for letter in entry["type"] for f in self._typed(number, letter)]
-            return self._script.perform(session, number, entry)
+            return play_line(self._script, number, entry, session)
         finally:
             simulation.watchers.remove(self._watch_time)
 
     def _typed(self, number: int, letter: str) -> list[Failure]:
-        failures = self._script.perform(self._app.session, number, {"type": letter})
+        failures = play_line(self._script, number, {"type": letter}, self._screen.session)
         self._wait(0.12)
         return failures
 
@@ -104,13 +118,13 @@ class Performance:
         target = self._target(entry)
         if target is None:
             return
-        view = self._app.session.view
+        view = self._screen.session.view
         start = view.pointer or view.camera.middle
         began, share = time.monotonic(), 0.0
         while share < 1.0 and not self._skipping:
             share = min((time.monotonic() - began) / (REACH * self._pace), 1.0)
             ease = share * share * (3.0 - 2.0 * share)
-            self._app.point(
+            self._screen.point(
                 (start[0] + ease * (target[0] - start[0]), start[1] + ease * (target[1] - start[1]))
             )
             self._frame()
@@ -122,20 +136,20 @@ class Performance:
         at = entry.get("over") or entry.get("click") or (entry.get("drag") or [None])[0]
         if not isinstance(at, list) or len(at) != 2:
             return None
-        x, y = self._app.session.focus[1].camera.to_pixels((float(at[0]), float(at[1]))).tolist()
+        x, y = self._screen.session.focus[1].camera.to_pixels((float(at[0]), float(at[1]))).tolist()
         return x, y
 
     def _watch_what_came(self, entry: Mapping[str, Any]) -> None:
         if "resize" in entry:
             width, height, ratio = (*entry["resize"], 1.0)[:3]
-            self._app.window.size = round(width / ratio), round(height / ratio + FOOTER)
+            self._screen.size = round(width / ratio), round(height / ratio + FOOTER)
         if "say" in entry:
             self._say(str(entry["say"]))
         elif not _UNSEEN & set(entry):
             self._wait(BEAT if "input" not in entry else 0.1 * BEAT)
 
     def _say(self, text: str) -> None:
-        footer = self._app.session.footer
+        footer = self._screen.session.footer
         if text and footer is not None:
             footer.page = Page((text,))
             footer.status = Status(time=None, state="Lesson", hint="Space goes on     Esc ends it")
@@ -157,15 +171,15 @@ class Performance:
 
     def _wait_for_program(self) -> None:
         """Let the picture go on while what the model needs is compiled."""
-        session = self._app.session
+        session = self._screen.session
         while not self._ended and not session.has_program(session.simulation):
             self._frame()
 
     def _watch_time(self) -> int:
         """Show what a run has come to; returns the steps that it may take until the next picture."""
-        simulation = self._app.session.simulation
+        simulation = self._screen.session.simulation
         if self._running_since is None:
-            self._running_since, self._natural = time.monotonic(), self._app.session.pace
+            self._running_since, self._natural = time.monotonic(), self._screen.session.pace
         if self._skipping:
             return REVIEW_INTERVAL
         simulation.watchers.remove(self._watch_time)  # the picture is of the run as it is
@@ -179,14 +193,14 @@ class Performance:
 
     def _frame(self) -> None:
         """A picture, and a look at what the person wants."""
-        app = self._app
-        pointer = app.session.view.pointer
-        pressed = [key for key, _ in app.next_frame(wait=self._pace > 0.0).pressed]
-        app.session.view.pointer = pointer  # the mouse leads nobody astray
+        screen = self._screen
+        pointer = screen.session.view.pointer
+        pressed = [key for key, _ in screen.next_frame(wait=self._pace > 0.0).pressed]
+        screen.session.view.pointer = pointer  # the mouse leads nobody astray
         self._hurried |= any(key in HURRY for key in pressed)
-        self._ended |= "escape" in pressed or app.input.closed
+        self._ended |= "escape" in pressed or screen.closed
 
     def _grow(self, points: int) -> None:
         """Make room for the footer below the picture, or take it away; where there is none, the picture has less."""
-        width, height = self._app.window.size
-        self._app.window.size = width, height + points
+        width, height = self._screen.size
+        self._screen.size = width, height + points

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.derived import DERIVATIONS
-from components.extremes import is_computed_with, is_extreme
 from components.field import Column, Field, Role
 from components.model import Model
+from components.numeric_range import is_computed_with, is_extreme
 from components.world import World
 
 _TABLES = ("particles", "rods", "loads", "environment", "settings", "clock")

@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from components.field import Column, FieldError
 from components.settings import AUTOMATIC
-from game.commands.reports.results import ENERGIES, reported
+from game.commands.reports.results import reported
 from game.documents.document import ModelError
-from game.paths.overrides import OverrideError
-from game.paths.target import EVERY, Target, locate, settable
+from game.paths import ENERGIES, EVERY, PathError, Target, locate, settable
 from game.sweeps.batch import Batch
 from game.sweeps.batch_program import BatchProgram
 from game.sweeps.batched_model import BatchedModel
@@ -139,7 +138,7 @@ class Batches:
         """The program of variants that this one stands for; None: they need runs of their own."""
         if key not in self._programs:
             self._programs[key] = None
-            refused = OverrideError, ModelError, ProgramError  # a run of its own says what is wrong
+            refused = PathError, ModelError, ProgramError  # a run of its own says what is wrong
             with suppress(*refused), self._runner.taken_back():
                 self._runner.override(self._plan.overrides_of(number))
                 simulation = self._runner.simulation

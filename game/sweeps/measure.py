@@ -12,8 +12,8 @@ from typing import Any
 from components.field import Field
 from components.model import Model
 from components.table import Table
-from game.commands.reports.results import ENERGIES, State, reported
-from game.paths.target import EVERY, PathError, locate
+from game.commands.reports.results import State, reported
+from game.paths import EVERY, PathError, energy_named, locate
 from game.sweeps.variation import SweepError
 
 _OF_THE_RUN = ("residual", "collisions")
@@ -62,13 +62,11 @@ def _read(model: Model, path: str) -> list[Measure]:
         return []
     if path in _OF_THE_RUN:
         return [Measure(path, (path,), path, "")]
-    if section == "energy" and rest in ENERGIES:
-        return [Measure(path, ("energy", rest), f"{rest.replace('_', ' ')} energy", "J")]
-    if section == "energy":
-        raise SweepError(f"--measure {path}: there is no energy '{rest}'; choose one of {', '.join(ENERGIES)}.")
-    if section not in _TABLES:
+    if section not in _SECTIONS:
         raise SweepError(f"--measure {path}: {_FORM}, or one of {', '.join(_OF_THE_RUN)}.")
     try:
+        if section == "energy":
+            return [Measure(path, ("energy", energy_named(rest)), f"{rest.replace('_', ' ')} energy", "J")]
         target, rest = locate(model, path, _reported)
         if rest:
             raise PathError(f"'{rest}' follows the quantity; {_FORM}.")

@@ -18,7 +18,7 @@ from game.documents import models
 from game.documents.open_documents import file_of
 from game.mods import MODS, load
 from game.mods.mod import INCLUDED
-from game.paths.overrides import apply_override
+from game.paths import apply_override
 from game.sweeps.measure import Measure, read_measures
 from game.sweeps.variation import (
     FORMS,
@@ -154,7 +154,7 @@ def plan_of(
     samples: int | None,
     seed: int,
 ) -> Plan:
-    """The plan that the arguments of `sweep` describe, checked. Raises SweepError, ModelError, OverrideError."""
+    """The plan that the arguments of `sweep` describe, checked. Raises SweepError, ModelError, PathError."""
     model = models.load(source)
     document = models.document(model)
     overrides = tuple(overrides)

@@ -49,7 +49,7 @@ def sweep(
     a running Dask cluster, which computes instead. progress: told how many are done, of how many, and failed.
 
     Same arguments, same bits, however many workers. Raises SweepError, ModelError,
-    OverrideError, and OSError if the output cannot be written.
+    PathError, and OSError if the output cannot be written.
     """
     plan = plan_of(source, vary, measure, analysis, overrides, samples, seed)
     if workers is not None and workers < 1:

@@ -7,11 +7,10 @@ from contextlib import contextmanager
 
 from components.snapshot import Snapshot
 from game.documents import models
-from game.paths.overrides import apply_override
-from game.registry import SYSTEMS
+from game.paths import apply_override
 from game.sweeps.plan import Plan, Record
 from systems.base import StepSystem
-from systems.catalogue import step_systems
+from systems.catalogue import all_systems
 from systems.run.simulation import Simulation
 from systems.schedule import Schedule
 
@@ -26,7 +25,7 @@ class VariantRunner:
     def __init__(self, plan: Plan) -> None:
         self._plan = plan
         self.model = models.parse(plan.document)
-        systems = [*step_systems(), *(make() for make in SYSTEMS)]
+        systems = all_systems()
         self.step_systems = [system for system in systems if isinstance(system, StepSystem)]
         self.simulation = Simulation(self.model, Schedule(systems))
         self._beginning = Snapshot.take(self.model)
@@ -48,7 +47,7 @@ class VariantRunner:
         ]
 
     def override(self, overrides: Iterable[str]) -> None:
-        """Change the model. Raises OverrideError."""
+        """Change the model. Raises PathError."""
         for override in overrides:
             apply_override(self.model, override)
 

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from components.model import Model
-from game.paths.overrides import read_value
-from game.paths.target import EVERY, PathError, Target, locate, settable
+from game.paths import EVERY, PathError, Target, locate, read_value, settable
 
 Value = float | bool | str | None
 

@@ -11,8 +11,8 @@ from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
 from components.view import View, drawn_positions
+from systems.edit import Refusal
 from systems.edit.picking import PARTICLE_REACH, pick_point
-from systems.edit.refusal import Refusal
 
 SNAP_REACH = 5.0  # points from a grid line
 

@@ -12,8 +12,8 @@ from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, spawn_rods
+from systems.edit import Refusal
 from systems.edit.moving import rows_of
-from systems.edit.refusal import Refusal
 
 
 def distance(first: Particle, second: Particle) -> float:

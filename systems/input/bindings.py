@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cache
 
-from components.spelling import missing
+from components.suggestions import missing
 
 SIMULATION, PAUSE = "simulation", "pause"
 PROPERTIES, SAVE, LOAD, FORCE_METHOD = "properties", "save", "load", "force method"

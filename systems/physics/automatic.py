@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from components.extremes import incomputable
 from components.load import loads_end
 from components.model import Model
+from components.numeric_range import incomputable
 from systems.physics.spectrum import Array, RodOperator
 
 SMALL = 200  # rods up to which error control costs little

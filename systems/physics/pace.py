@@ -7,9 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from components.extremes import incomputable
 from components.load import loads_end
 from components.model import Model
+from components.numeric_range import incomputable
 
 Array = NDArray[np.float64]
 

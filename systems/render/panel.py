@@ -23,9 +23,8 @@ from systems.render.form_layout import (
     message_lines,
 )
 from systems.render.help import draw_help
-from systems.render.layers import BELOW
 from systems.render.marks import Fills, Mark, Panel, Picture, Rectangles, Text
-from systems.render.sheet import measure
+from systems.render.sheet import BELOW, measure
 from systems.render.structure import draw_particles, draw_rods
 from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Colour, Theme, faded

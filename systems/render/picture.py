@@ -10,14 +10,13 @@ from components.view import View, drawn_positions
 from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.labels import Placed, place_labels
-from systems.render.layers import ABOVE, BELOW
 from systems.render.marks import Picture
 from systems.render.overlays import draw_notice, draw_overlays, draw_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
 from systems.render.readouts import draw_readouts
 from systems.render.shape import draw_shape
-from systems.render.sheet import measure
+from systems.render.sheet import ABOVE, BELOW, measure
 from systems.render.structure import draw_ghost, draw_grid, draw_halos, draw_particles, draw_rods, label_names
 from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Theme

@@ -1,23 +1,20 @@
-"""Sheet: a model measured in the pixels of one viewport, and the marks made on it so far."""
+"""Sheet: a model in the pixels of one viewport with the marks made on it so far; and the layers that mods draw."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from components.camera import Viewport
+from components.model import Model
 from components.view import View, drawn_positions
 from systems.render.clip import bounds, clip_rods
 from systems.render.labels import Label, Occupancy, Placed
 from systems.render.marks import Mark, Points
 from systems.render.theme import Colour, Theme
-
-if TYPE_CHECKING:
-    from components.model import Model
 
 Rows = NDArray[np.intp]
 
@@ -140,3 +137,9 @@ def typical_length(start: Points, end: Points) -> float:
 def _smallest_radius(start: Points, end: Points, unit: float) -> float:
     """5 points, so that a particle can be seen and hit; less where it would hide short rods."""
     return float(np.clip(0.18 * typical_length(start, end), 0.6 * unit, 5.0 * unit))
+
+
+Layer = Callable[[Sheet], Iterable[Mark]]  # draws marks with every picture of a model
+
+BELOW: list[Layer] = []  # layers of mods below the elements, in small pictures of a model, too
+ABOVE: list[Layer] = []  # layers of mods above the elements

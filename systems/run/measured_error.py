@@ -48,7 +48,7 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     """
     model = simulation.model
     clock, then = model.clock, beginning.columns
-    met = clock.collisions > then["clock.collisions"][0] or clock.paths is not None
+    met = clock.collisions > then["clock.collisions"][0] or clock.collision_state is not None
     if (
         met
         or simulation.program.watches_events

@@ -16,7 +16,7 @@ from components.field import Role
 from components.load import load_ends
 from components.model import Model
 from systems.entries import ASLEEP
-from systems.islands import HELD, Rows, islands
+from systems.islands import IMMOVABLE, Rows, islands
 from systems.physics.rest import Array, Mask, RestMeasure
 from systems.program.parallel import make_program
 from systems.program.program import Program
@@ -74,8 +74,8 @@ class Sleep:
         if versions != self._versions:
             self._versions = versions
             self._of_particle: Rows = islands(model)
-            self._of_rod: Rows = self._of_particle[model.rods.between].max(axis=1, initial=HELD)
-            self._count = int(self._of_particle.max(initial=HELD))
+            self._of_rod: Rows = self._of_particle[model.rods.between].max(axis=1, initial=IMMOVABLE)
+            self._count = int(self._of_particle.max(initial=IMMOVABLE))
 
     def review(self, program: Dynamics) -> bool:
         """Let those islands sleep, and no others, that are at rest; True if others do than before."""
@@ -84,7 +84,7 @@ class Sleep:
         measure = self._observed(program)
         clock = self.model.clock
         rest = measure.at_rest(self._of_particle, self._of_rod, clock.force_scale, clock.energy_scale)
-        rest[self._under_varying_loads] = rest[HELD] = False
+        rest[self._under_varying_loads] = rest[IMMOVABLE] = False
         return self._let_sleep(rest[self._of_particle], measure.kinetic)
 
     def disturb(self, program: Program) -> bool:
@@ -146,7 +146,7 @@ class Sleep:
 
     def _part_without(self, asleep: Mask, program: Program) -> ReorderedProgram:
         """The program of those that are awake, bound to the model as it is."""
-        moving = ~asleep & (self._of_particle != HELD)
+        moving = ~asleep & (self._of_particle != IMMOVABLE)
         part = self._parts.get(program)
         if part is None:
             made = make_program(self.model, program.systems, program.integrator, program.form, moving)

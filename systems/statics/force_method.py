@@ -13,11 +13,11 @@ import numpy as np
 from scipy.linalg import qr
 from scipy.sparse import csc_matrix, diags
 
-from components.extremes import incomputable
 from components.model import Model
+from components.numeric_range import incomputable
 from components.particle import Particle
 from components.rod import Rod, nodes
-from components.spelling import missing
+from components.suggestions import missing
 from systems.statics.equations import Array, Structure
 from systems.statics.explain import cables_named, describe_motion
 from systems.statics.external import external_forces

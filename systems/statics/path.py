@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from components.model import Model
+from components.suggestions import missing
 from systems.statics.equations import Array, Structure
 from systems.statics.external import External, external_forces
 from systems.statics.follow import Path, Point, Step, Tangent
@@ -38,6 +40,30 @@ class Goal:
 
     value: float
     displaced: tuple[int, int] | None = None
+
+
+def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal:
+    """The end of a curve: a load factor, or a displacement in m such as "B.y=-2.5". Raises ValueError."""
+    if until is None:
+        if not math.isfinite(factor):
+            raise ValueError(f"The load factor is {factor}; give a finite number.")
+        return Goal(factor)
+    place, _, amount = until.partition("=")
+    name, _, axis = place.strip().rpartition(".")
+    try:
+        value = float(amount)
+    except ValueError:
+        value = math.nan
+    if axis not in ("x", "y") or not math.isfinite(value):
+        raise ValueError(f"'{until}' is no displacement; write it like B.y=-2.5, in m.")
+    if name not in model.particles:
+        raise ValueError(missing("particles", name, model.particles.names))
+    particle, direction = model.particles[name], "xy".index(axis)
+    if particle.fixed[direction]:
+        raise ValueError(
+            f"{name} is constrained along {axis}, so it cannot move there; choose a free direction."
+        )
+    return Goal(value, (particle.row, direction))
 
 
 def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DETAIL) -> Curve:

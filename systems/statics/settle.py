@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from components.extremes import incomputable
 from components.field import FieldError
 from components.model import Model
+from components.numeric_range import incomputable
 from systems.statics.bodies import loose_bodies, loose_event
 from systems.statics.contacts import Discs, Sinking
 from systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from components.model import Model
-from components.spelling import missing
+from components.suggestions import missing
 from systems.statics.equations import ROUND_OFF, Array, Flags
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import rod_names

@@ -1,4 +1,4 @@
-"""Who may import whom: components ← systems ← game ← tests, and heavy libraries only where they are used."""
+"""Who may import whom: components ← systems ← game ← tests, no circles, heavy libraries only where they are used."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ import re
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fnmatch import fnmatch
+from graphlib import CycleError, TopologicalSorter
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -21,8 +23,6 @@ KERNELS = (  # numba is imported as soon as they are
     "systems/kernels.py",
     "systems/*/kernels.py",
     "systems/collision/kernels/*.py",
-    "systems/collision/overlaps.py",
-    "systems/collision/free/discs.py",
     "systems/collision/free/pile_equilibrium.py",
 )
 COMPILED = (*KERNELS, "systems/program/*.py")
@@ -96,6 +96,38 @@ def files() -> list[str]:
     return sorted(p.relative_to(ROOT).as_posix() for layer in LAYERS for p in (ROOT / layer).rglob("*.py"))
 
 
+def imports_of(sources: Mapping[str, str]) -> dict[str, set[str]]:
+    """For every module of some files, source by path, the others among them that it imports, anywhere in the file.
+
+    Importing a module of another package runs the __init__.py of that package, too.
+    """
+    paths = {module_name(path): path for path in sources}
+    graph: dict[str, set[str]] = {}
+    for name, path in paths.items():
+        graph[name] = set()
+        for _, wanted in imported(sources[path], path):
+            while wanted and wanted not in paths:
+                wanted = wanted.rpartition(".")[0]
+            graph[name].add(wanted)
+            while (wanted := wanted.rpartition(".")[0]) and not f"{name}.".startswith(f"{wanted}."):
+                graph[name] |= {wanted} & paths.keys()
+        graph[name] -= {name, ""}
+    return graph
+
+
+def module_name(path: str) -> str:
+    return path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+
+
+def circle(graph: Mapping[str, set[str]]) -> list[str]:
+    """Modules that import each other in turn, the first again at the end; none if there is no circle."""
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(reversed(error.args[1]))
+    return []
+
+
 # --- the program -----------------------------------------------------------------------------------------
 
 
@@ -112,11 +144,18 @@ def test_imports_point_one_way(layer: str) -> None:
     assert not broken, "\n".join(broken)
 
 
+def test_no_modules_import_each_other() -> None:
+    """Neither at the top of files nor in functions nor behind TYPE_CHECKING."""
+    paths = [path for path in files() if not path.startswith("tests/")]
+    found = circle(imports_of({path: (ROOT / path).read_text(encoding="utf-8") for path in paths}))
+    assert not found, " → ".join(found)
+
+
 def modules(layer: str) -> list[str]:
     """The modules of a layer that are there without a window and before anything is compiled."""
     backends = (*WINDOW, *KERNELS, "*/__main__.py")
     paths = [path for path in files() if path.split("/")[0] == layer and not within(path, backends)]
-    return [path.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for path in paths]
+    return [module_name(path) for path in paths]
 
 
 @pytest.mark.parametrize(
@@ -185,3 +224,43 @@ def test_a_forbidden_import_is_found(path: str, line: str) -> None:
 )
 def test_an_allowed_import_is_allowed(path: str, line: str) -> None:
     assert not [name for _, name in imported(line, path) if broken_rule(path, name)]
+
+
+@pytest.mark.parametrize(
+    ("sources", "expected"),
+    [
+        ({"game/a.py": "import game.b", "game/b.py": "from game import a"}, ["game.a", "game.b"]),
+        (
+            {"game/a.py": "from game.b import x", "game/b.py": "def f():\n    from game.a import y"},
+            ["game.a", "game.b"],
+        ),
+        (
+            {"game/a.py": "import game.b", "game/b.py": "if TYPE_CHECKING:\n    from game.a import A"},
+            ["game.a", "game.b"],
+        ),
+        (
+            {"game/a.py": "from .b import x", "game/b.py": "from .c import y", "game/c.py": "from .a import z"},
+            ["game.a", "game.b", "game.c"],
+        ),
+        (  # a package is run before its modules
+            {"game/a.py": "import game.b.c", "game/b/__init__.py": "import game.a", "game/b/c.py": ""},
+            ["game.a", "game.b"],
+        ),
+    ],
+    ids=["at the top", "in a function", "for types", "three", "a package"],
+)
+def test_a_circle_is_found(sources: dict[str, str], expected: list[str]) -> None:
+    found = circle(imports_of(sources))
+    assert found[0] == found[-1]
+    assert sorted(found[1:]) == expected
+    graph = imports_of(sources)
+    assert all(later in graph[earlier] for earlier, later in pairwise(found))
+
+
+def test_a_package_may_import_its_modules() -> None:
+    sources = {
+        "game/b/__init__.py": "from game.b.c import x",
+        "game/b/c.py": "from game.b import d",
+        "game/b/d.py": "",
+    }
+    assert circle(imports_of(sources)) == []

@@ -12,12 +12,13 @@ from typing import Any
 from numba import njit
 
 from components.model import Model
-from game import Session, registry
+from game import Session
 from game.documents.document import document
+from game.editor.context import PANELS
 from game.mods import Mod
 from game.mods.guard import guarded_system
 from systems.base import StepSystem, System
-from systems.catalogue import step_systems
+from systems.catalogue import SYSTEMS, step_systems
 from systems.physics.integrators import INTEGRATORS
 from systems.physics.system import Drag
 from systems.program.parallel import make_program
@@ -100,17 +101,17 @@ def machinery() -> list[Row]:
 def frames(*, quick: bool) -> list[Row]:
     """µs of a frame in pause with what is written as mods are, and without, in turns."""
     with_mods = Session.open("isostatic")
-    kept = list(registry.SYSTEMS), list(registry.PANELS)
-    registry.SYSTEMS.clear()
+    kept = list(SYSTEMS), list(PANELS)
+    SYSTEMS.clear()
     without = Session.open("isostatic")
-    registry.SYSTEMS.extend(kept[0])
+    SYSTEMS.extend(kept[0])
     count, best = 200 if quick else 2000, [float("inf")] * 2
     for _ in range(5):
         for at, (session, panels) in enumerate(((with_mods, kept[1]), (without, []))):
-            registry.PANELS[:] = panels
+            PANELS[:] = panels
             took = _seconds(lambda session=session: [session.frame(0.0) for _ in range(count)])  # type: ignore[misc]
             best[at] = min(best[at], 1e6 * took / count)
-    registry.PANELS[:] = kept[1]
+    PANELS[:] = kept[1]
     return [{"with_us": best[0], "without_us": best[1], "difference_us": best[0] - best[1]}]
 
 

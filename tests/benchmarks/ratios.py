@@ -1,6 +1,6 @@
 """Ratios within one run of `pinjoint bench speed` that hold on every machine: `python -m tests.benchmarks.ratios DIR`.
 
-Exits with 1 and says which do not. The bounds leave room for a busy machine; what was measured is in the README.
+Exits with 1 and says which do not. The bounds leave room for a busy machine; what was measured is in README.md beside it.
 """
 
 from __future__ import annotations

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import importlib
+import json
+import math
 from pathlib import Path
 
 import pytest
 
 from components.settings import INTEGRATORS
-from game.commands import benchmarks as bench
+from game.commands import bench
+from game.commands.output import FORMATS, Format
 from tests.benchmarks import collisions, drawing, ratios, speed, stability
 from tests.benchmarks.ceiling import bandwidth, seconds_per_rod
 from tests.benchmarks.models import lattice, mesh
@@ -20,6 +23,31 @@ from tests.stability.cases import damped
 def test_every_benchmark_can_be_run(name: str) -> None:
     """A name that moved is noticed here, not by whoever runs the benchmark next."""
     assert callable(importlib.import_module(f"tests.benchmarks.{name}").report)
+
+
+@pytest.mark.parametrize("format", FORMATS)
+def test_what_was_measured_is_printed_in_every_format(
+    format: Format, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert (bench.CHECKOUT / "pyproject.toml").is_file()
+    tables = {"steps": [{"rods": 3, "us": 0.5}, {"rods": 10, "us": math.nan}]}
+    monkeypatch.setattr(speed, "report", lambda quick: tables)
+    assert bench.command(["speed", "--quick", "--format", format]) == 0
+    printed = capsys.readouterr().out
+    if format == "json":
+        assert json.loads(printed) == {"speed": {"steps": [{"rods": 3, "us": 0.5}, {"rods": 10, "us": None}]}}
+    elif format == "csv":
+        assert printed.splitlines()[:3] == [
+            "benchmark,table,row,quantity,value",
+            "speed,steps,1,rods,3",
+            "speed,steps,1,us,0.5",
+        ]
+    else:
+        assert [line.split() for line in printed.splitlines()[:3]] == [
+            ["==", "speed", "=="],
+            ["steps"],
+            ["rods", "us"],
+        ]
 
 
 @pytest.mark.parametrize("rods", [100, 1_000, 10_000])
@@ -65,7 +93,7 @@ def test_tables_and_the_picture_are_written(tmp_path: Path) -> None:
         "ceiling": [{"rods": 1000, "memory_ns_per_rod": 2.0, "arithmetic_ns_per_rod": 1.0}],
         "peers": [{"peer": "another", "rods": 1000, "ns_per_rod": 200.0}],
     }
-    bench.write("speed", tables, tmp_path)
+    bench.write_files("speed", tables, tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {
         "speed_steps.csv",
         "speed_ceiling.csv",

@@ -20,9 +20,8 @@ from game.documents.autosave import Autosave
 from game.documents.document import document
 from game.included.probes import Sampling
 from game.preparation import Preparation
-from game.registry import SYSTEMS
 from systems.base import Law, Phase, StepSystem, System
-from systems.catalogue import step_systems
+from systems.catalogue import SYSTEMS, step_systems
 from systems.collision.system import Collision, Support
 from systems.edit.hover import Hover
 from systems.edit.pull import Hand, Pull
@@ -80,7 +79,7 @@ def test_the_hand_passes() -> None:
     assert check_system(Pulling, [EVERYTHING]).needed == 1
 
 
-def test_the_forces_of_lasting_contacts_pass() -> None:
+def test_the_forces_of_persistent_contacts_pass() -> None:
     lying = BODIES | {
         "environment": {"acceleration": [0.0, -9.81], "drag": 0.1},
         "settings": {"restitution": 0.0},

@@ -10,7 +10,8 @@ import pytest
 
 from game import Session, mods
 from game.commands.command_line import main
-from game.scripts.script import Recorder, Script
+from game.scripts.playing import Recorder, play
+from game.scripts.script import Script
 from tests.reference import bits
 from tests.systems.test_events import pulled
 
@@ -70,7 +71,7 @@ def test_a_mods_event_happens_at_the_same_time_to_the_bit_in_all_four_ways_of_ru
     recording.write_text(recorded.getvalue(), encoding="utf-8")
     script = Script(recording)
     played = Session.open(script.source)
-    assert script.play(played) == []
+    assert play(script, played) == []
     assert played.simulation.happenings == expected
     assert bits.state(played.model) == bits.state(frames.model)
 

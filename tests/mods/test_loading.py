@@ -10,9 +10,9 @@ import pytest
 
 from components import Particle
 from game import Session, mods
+from game.commands import COMMANDS
 from game.commands.command_line import main
 from game.editor.actions import ACTIONS
-from game.registry import COMMANDS
 from systems.input.bindings import BINDINGS, action_for
 from systems.physics.integrators import VelocityVerlet
 from tests.mods.conftest import Write

@@ -13,7 +13,7 @@ from components.view import Plot
 from game import Session
 from game.commands.command_line import main
 from game.included.probes import ENERGIES, probes_of, record
-from game.paths.quantities import QuantityError, quantity
+from game.paths import PathError, quantity
 from systems.render.marks import Strokes, Text
 from systems.render.picture import compose
 from systems.render.plots import draw_plot, round_ticks
@@ -35,7 +35,7 @@ BOX = (0.0, 0.0, 300.0, 150.0)
     ],
 )
 def test_a_wrong_path_is_explained(path: str, said: str) -> None:
-    with pytest.raises(QuantityError, match=said):
+    with pytest.raises(PathError, match=said):
         quantity(Session.open("isostatic").model, path)
 
 

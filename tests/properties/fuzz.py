@@ -23,8 +23,9 @@ from components.field import Vector
 from components.view import drawn_positions
 from game import Session
 from game.documents import library, models
-from game.documents.open_documents import Desk
-from game.scripts.script import EMPTY, Recorder, Script
+from game.documents.open_documents import OpenDocument
+from game.scripts.playing import Recorder, play, session_of
+from game.scripts.script import EMPTY, Script
 from systems.input.bindings import BINDINGS, LIVE, TEXT
 from systems.render.picture import compose
 from systems.render.theme import load_theme
@@ -75,13 +76,13 @@ class Fuzz:
         self.session = Session.open(source)
         self._file = self.record.open("w", encoding="utf-8")
         self.recorder = Recorder(self.session, self._file, source)
-        self.starts: WeakKeyDictionary[Desk, Print] = WeakKeyDictionary()
+        self.starts: WeakKeyDictionary[OpenDocument, Print] = WeakKeyDictionary()
         self._note_desk()
 
     def _note_desk(self) -> None:
-        desk = self.session.desk
-        if desk not in self.starts:
-            self.starts[desk] = contents(desk.model)
+        document = self.session.document
+        if document not in self.starts:
+            self.starts[document] = contents(document.model)
 
     # --- doing ---------------------------------------------------------------------------------------
 
@@ -138,8 +139,8 @@ class Fuzz:
 
     def check(self) -> None:
         """What holds after every action."""
-        for desk in self.session.desks:
-            check_sound(desk.model)
+        for document in self.session.documents:
+            check_sound(document.model)
         camera = self.session.view.camera
         assert np.isfinite([*camera.centre, camera.scale]).all()
 
@@ -193,7 +194,7 @@ class Fuzz:
         end, entries = contents(session.model), 0
         while True:
             if not session.history.can_undo:
-                assert _same(contents(session.model), self.starts[session.desk])
+                assert _same(contents(session.model), self.starts[session.document])
             if not session.undo():
                 break
             entries += 1
@@ -207,8 +208,8 @@ class Fuzz:
         """The recording, played in another session, ends with the same bits."""
         os.environ[library.DATA_VARIABLE] += "-replayed"
         script = Script(self.record)
-        session = script.open()
-        assert script.play(session) == []
+        session = session_of(script)
+        assert play(script, session) == []
         again = contents(session.model)
         for name, column in end.items():
             if "." in name:

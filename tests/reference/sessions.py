@@ -9,8 +9,8 @@ from game.documents.history.log import Run
 
 def put_states_aside(session: Session, beyond: int) -> None:
     """Let a session that has just begun keep only so many bytes of states in memory, and the others on a shelf."""
-    desk = session.desk
-    desk.history = History(desk.model, desk.simulation, desk._changed, beyond)
+    document = session.document
+    document.history = History(document.model, document.simulation, document._changed, beyond)
 
 
 def states_put_aside(session: Session) -> int:

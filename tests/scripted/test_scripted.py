@@ -13,7 +13,8 @@ from components.field import Role
 from game import Session
 from game.commands.command_line import main
 from game.documents.library import DATA_VARIABLE
-from game.scripts.script import Recorder, Script, ScriptError, lessons
+from game.scripts.playing import Recorder, play, session_of
+from game.scripts.script import Script, ScriptError, lessons
 
 SCRIPTS = sorted(Path(__file__).parent.glob("*.jsonl"))
 
@@ -22,13 +23,13 @@ SCRIPTS = sorted(Path(__file__).parent.glob("*.jsonl"))
 def test_session(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(DATA_VARIABLE, str(tmp_path))
     script = Script(path)
-    assert [str(failure) for failure in script.play(script.open())] == []
+    assert [str(failure) for failure in play(script)] == []
 
 
 @pytest.mark.parametrize("name", lessons())
 def test_lesson(name: str) -> None:
     lesson = Script(name)
-    assert [str(failure) for failure in lesson.play(lesson.open())] == []
+    assert [str(failure) for failure in play(lesson)] == []
     assert lesson.title
     assert lesson.description
 
@@ -147,12 +148,11 @@ def test_wrong_lines_are_explained(tmp_path: Path, line: str, words: str) -> Non
     header = '{"format": "pinjoint session", "version": 1, "model": "isostatic"}\n'
     path.write_text(header + line + "\n", encoding="utf-8")
     with pytest.raises(ScriptError, match=words):
-        play(path)
+        play_file(path)
 
 
-def play(path: Path) -> None:
-    script = Script(path)
-    script.play(script.open())
+def play_file(path: Path) -> None:
+    play(Script(path))
 
 
 def test_a_recording_replays_to_the_same_bits(tmp_path: Path) -> None:
@@ -176,8 +176,8 @@ def test_a_recording_replays_to_the_same_bits(tmp_path: Path) -> None:
     assert all(json.loads(line) for line in file.getvalue().splitlines())
 
     script = Script(path)
-    replayed = script.open()
-    script.play(replayed)
+    replayed = session_of(script)
+    play(script, replayed)
     assert _bits(replayed) == _bits(session)
 
 
@@ -191,8 +191,8 @@ def test_a_window_that_is_resized_replays_to_the_same_bits(tmp_path: Path) -> No
     session.press("p", (700.0, 100.0))
     path = tmp_path / "recorded.jsonl"
     path.write_text(file.getvalue(), encoding="utf-8")
-    replayed = Script(path).open()
-    Script(path).play(replayed)
+    replayed = session_of(Script(path))
+    play(Script(path), replayed)
     assert replayed.view.camera == session.view.camera
     assert _bits(replayed) == _bits(session)
 
@@ -208,8 +208,8 @@ def test_what_was_pasted_from_another_program_is_in_the_recording(tmp_path: Path
     session.press("ctrl+v", (100.0, 100.0))
     path = tmp_path / "recorded.jsonl"
     path.write_text(file.getvalue(), encoding="utf-8")
-    replayed = Script(path).open()
-    Script(path).play(replayed)
+    replayed = session_of(Script(path))
+    play(Script(path), replayed)
     assert replayed.particles.count == session.particles.count > 3
     assert _bits(replayed) == _bits(session)
 

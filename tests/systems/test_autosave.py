@@ -20,14 +20,14 @@ from components.particle import Particle
 from components.rod import spawn_rods
 from game import Session
 from game.documents import library, models
-from game.documents.autosave import LAST_SESSION, Autosave, spare_name
+from game.documents.autosave import LAST_SESSION, Autosave, recovered_name
 from game.documents.open_documents import ModelFile
 from game.editor.scenes.files import FileScene
 from tests.reference.lines import lines_run
 from tests.reference.models import triangle
 
 ROOT = Path(__file__).parents[2]
-INTERVAL = 0.2  # s between spares in these tests
+INTERVAL = 0.2  # s between recovery files in these tests
 
 # A window (without a display) in which somebody never stops editing; it tells each value once it is set.
 WINDOW = """
@@ -98,20 +98,24 @@ def kept(keeper: Autosave, session: Session) -> None:
     """Let frames pass until everything is written."""
     for _ in range(200):
         keeper.process(session.frame(0.0))
-        if all(desk.spare is not None and desk.spare.exists() for desk in session.desks if desk.unsaved):
+        if all(
+            document.recovery is not None and document.recovery.exists()
+            for document in session.documents
+            if document.unsaved
+        ):
             return
         time.sleep(0.01)
     raise AssertionError("Unsaved work was not written within 2 s.")
 
 
 def gone(session: Session, data: Path) -> None:
-    """Let frames pass until there are no spares."""
+    """Let frames pass until there are no recovery files."""
     for _ in range(200):
         session.frame(0.0)
         if not list((data / "autosave").glob("*.json")):
             return
         time.sleep(0.01)
-    raise AssertionError("What was saved still had a spare after 2 s.")
+    raise AssertionError("What was saved still had a recovery file after 2 s.")
 
 
 # --- a program that is killed ------------------------------------------------------------------------
@@ -127,7 +131,7 @@ def test_a_killed_window_loses_at_most_the_last_moments(model_file: Path) -> Non
     recovered = models.load(left)
     value = recovered.rods[0].stiffness
     assert told[0][1] < value <= told[-1][1]  # how long ago, a busy machine decides
-    assert spare_name(left) == "work"
+    assert recovered_name(left) == "work"
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
@@ -168,7 +172,7 @@ def test_closing_the_window_leaves_nothing_but_the_last_session(
 # --- what is kept, and when --------------------------------------------------------------------------
 
 
-def test_what_is_saved_needs_no_spare(data: Path) -> None:
+def test_what_is_saved_needs_no_recovery_file(data: Path) -> None:
     keeper = Autosave(interval=0.0)
     session = Session.open(triangle(), [keeper])
     session.frame(0.0)
@@ -177,11 +181,11 @@ def test_what_is_saved_needs_no_spare(data: Path) -> None:
     kept(keeper, session)
     session.save_as(data / "a.json")
     gone(session, data)
-    keeper.close(session.desks)
+    keeper.close(session.documents)
     assert not (data / "models").exists()
 
 
-def test_that_no_spare_can_be_written_is_said_once(data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_that_no_recovery_file_can_be_written_is_said_once(data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(path: Path, content: bytes) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
@@ -196,10 +200,10 @@ def test_that_no_spare_can_be_written_is_said_once(data: Path, monkeypatch: pyte
         keeper._thread.join(10.0)
         session.frame(0.0)
         assert ("not kept against a crash" in session.notice and "No space left" in session.notice) is said
-    keeper.close(session.desks)
+    keeper.close(session.documents)
 
 
-def test_every_model_with_unsaved_work_has_its_spare(data: Path) -> None:
+def test_every_model_with_unsaved_work_has_its_recovery_file(data: Path) -> None:
     keeper = Autosave(interval=0.0)
     session = Session.open(triangle(), [keeper])
     session.rods["AB"].stiffness = 5.0
@@ -209,34 +213,34 @@ def test_every_model_with_unsaved_work_has_its_spare(data: Path) -> None:
     files = (data / "autosave").glob("*.json")
     found = [models.load(file) for file in files]
     assert sorted(model.rods["AB"].stiffness for model in found) == [5.0, 7.0]
-    keeper.close(session.desks)
+    keeper.close(session.documents)
 
 
-def test_a_model_that_was_saved_and_left_at_once_leaves_no_spare(data: Path) -> None:
+def test_a_model_that_was_saved_and_left_at_once_leaves_no_recovery_file(data: Path) -> None:
     keeper = Autosave(interval=0.0)
     session = Session.open(triangle(), [keeper])
     session.rods["AB"].stiffness = 5.0
     kept(keeper, session)
     session.save_as(data / "a.json")
     session.open_here("tower")
-    keeper.close(session.desks)
+    keeper.close(session.documents)
     assert list((data / "autosave").iterdir()) == []
 
 
-def test_a_spare_is_written_at_most_every_few_seconds(data: Path) -> None:
+def test_a_recovery_file_is_written_at_most_every_few_seconds(data: Path) -> None:
     keeper = Autosave(interval=60.0)
     session = Session.open(triangle(), [keeper])
     session.rods["AB"].stiffness = 5.0
     kept(keeper, session)
-    (spare,) = (data / "autosave").glob("*.json")
+    (file,) = (data / "autosave").glob("*.json")
     for value in range(6, 30):
         session.rods["AB"].stiffness = float(value)
         session.frame(0.0)
     assert keeper._thread is not None
     keeper._thread.join()  # of what would have been written too soon
-    content = models.load(spare)
+    content = models.load(file)
     assert content.rods["AB"].stiffness == 5.0
-    keeper.close(session.desks)
+    keeper.close(session.documents)
 
 
 def test_ten_thousand_rods_do_not_stop_the_picture() -> None:
@@ -247,14 +251,14 @@ def test_ten_thousand_rods_do_not_stop_the_picture() -> None:
     frame = session.frame(0.0)
     assert lines_run(lambda: keeper.process(frame)) < 2000  # none for each rod: a thread writes them
     kept(keeper, session)
-    keeper.close(session.desks)
+    keeper.close(session.documents)
 
 
 # --- recovery ----------------------------------------------------------------------------------------
 
 
 def left_behind(data: Path, stiffness: float) -> Path:
-    """What a program that crashed left: a lock that nobody holds any more, and a spare."""
+    """What a program that crashed left: a lock that nobody holds any more, and a recovery file."""
     folder = data / "autosave"
     folder.mkdir(parents=True)
     (folder / "dead.lock").touch()
@@ -281,7 +285,7 @@ def test_what_was_left_behind_is_offered_first_and_opened(data: Path) -> None:
     session.press("down")
     session.press("return")
     assert session.rods["AB"].stiffness == 5.0
-    assert session.desk.unsaved
+    assert session.document.unsaved
     assert session.file == ModelFile(None, "my work"), "Ctrl+S asks for a name"
     session.rods["AB"].stiffness = 6.0
     kept(keeper, session)
@@ -289,7 +293,7 @@ def test_what_was_left_behind_is_offered_first_and_opened(data: Path) -> None:
     session.press("s")
     session.press("return")
     gone(session, data)
-    keeper.close(session.desks)
+    keeper.close(session.documents)
     assert list((data / "autosave").iterdir()) == []
 
 
@@ -309,14 +313,14 @@ def test_what_was_left_behind_is_discarded_when_asked_twice(data: Path) -> None:
     session.press("return")
     assert not left.exists()
     assert scene.form.tiles[0].title == "New, empty model"
-    keeper.close(session.desks)
+    keeper.close(session.documents)
     assert Autosave().left() == []
 
 
 def test_what_was_not_opened_is_offered_again(data: Path) -> None:
     left = left_behind(data, 5.0)
     keeper = Autosave()
-    keeper.close(with_autosave(keeper).desks)
+    keeper.close(with_autosave(keeper).documents)
     assert left.exists()
     assert Autosave().left() == [left]
 

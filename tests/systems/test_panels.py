@@ -11,7 +11,8 @@ import pytest
 
 from components.view import drawn_positions
 from game import Session
-from game.scripts.script import Recorder, Script
+from game.scripts.playing import Recorder, play, session_of
+from game.scripts.script import Script
 from systems.render.marks import Panel, Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
@@ -127,8 +128,8 @@ def test_a_click_beside_panels_is_recorded_where_it_was(tmp_path: Path) -> None:
     entries = [json.loads(line) for line in path.read_text().splitlines()]
     assert sum(entry.get("input") == "p" for entry in entries) == 2
     script = Script(path)
-    again = script.open()
-    assert script.play(again) == []
+    again = session_of(script)
+    assert play(script, again) == []
     np.testing.assert_array_equal(again.particles.position, session.particles.position)
 
 

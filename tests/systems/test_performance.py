@@ -18,6 +18,7 @@ from game.documents import library, models
 from game.documents.open_documents import ModelFile
 from game.editor.scenes.load import LESSONS
 from game.scripts.performance import FOOTER, Performance
+from game.scripts.playing import play, session_of
 from game.scripts.script import Script, lessons
 from tests.reference.bits import columns, different
 
@@ -39,8 +40,8 @@ def opened(app: App, script: Script) -> Performance:
 def test_a_lesson_comes_to_the_same_bits_as_without_a_window(app: App, name: str) -> None:
     script = Script(name)
     assert opened(app, script).play() == []
-    headless = script.open()
-    script.play(headless)
+    headless = session_of(script)
+    play(script, headless)
     assert different(columns(app.session.model), columns(headless.model)) == []
 
 
@@ -112,7 +113,7 @@ def test_what_a_script_saves_replaces_nothing_of_the_persons(
     assert opened(app, script).play() == []
     assert mine.read_text() == "what I made"
     assert (app.session.file.path, app.session.file.name) == (None, "mine")
-    assert app.session.desk.unsaved
+    assert app.session.document.unsaved
     app.session.press("ctrl+s")
     assert app.session.scene == "save"
     app.session.act("pause")

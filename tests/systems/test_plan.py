@@ -14,8 +14,7 @@ from numba import njit
 
 from game import Session
 from game.commands.command_line import main
-from game.editor.scenes import PHYSICS, Scene
-from game.registry import SCENES
+from game.editor.scenes import PHYSICS, SCENES, Scene
 from systems.base import Commit, Law, Phase, System
 from systems.physics.integrators import SemiImplicitEuler, register_integrator, remove_integrator
 from tests.reference.models import model, particle

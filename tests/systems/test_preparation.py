@@ -24,7 +24,7 @@ from game.editor.view_model import COMPILING
 from game.preparation import Preparation
 from game.prepare import Job, _example
 from game.session import Session
-from systems.collision.driven import compiled as encounter_kernels
+from systems.collision.driven import compiled as driven_kernels
 from systems.input import pygame_input
 from systems.program import compiler as cache
 from systems.program.compiler import CompiledUnit
@@ -98,9 +98,9 @@ def test_where_particles_may_meet_that_is_waited_for_too(app: App, compiler: Com
     session = app.session
     session.open_here("ball_on_truss")
     frames(app, 1)
-    program, encounters, resting = compiler.jobs[1:]
+    program, driven, resting = compiler.jobs[1:]
     assert program[0] == session.simulation.integrator.key
-    assert encounters == ("driven_collisions",)
+    assert driven == ("driven_collisions",)
     assert resting == (*program, "collision.support")  # from when on the ball lies on the truss
     session.press("space")
     frames(app, 3)
@@ -108,8 +108,8 @@ def test_where_particles_may_meet_that_is_waited_for_too(app: App, compiler: Com
     compiler.status = 0
     frames(app, 4)
     assert session.model.clock.steps > 0
-    loaded = encounter_kernels.kernels()  # though nothing has met yet
-    for name in ("gaps", "kinds", "sway", "meeting", "compliance", "forces", "push"):
+    loaded = driven_kernels.kernels()  # though nothing has met yet
+    for name in ("gaps", "kinds", "path_deviation", "time_of_impact", "compliance", "forces", "resolve"):
         assert getattr(loaded, name).signatures
 
 
@@ -186,7 +186,7 @@ def test_what_is_compiled_is_loaded_before_a_key_needs_it(
     for rod in app.session.rods:
         rod.tensile_strength = rod.compressive_strength = None  # so that no picture needs the program
     simulation, before = app.session.simulation, app.session.model.newest(Role.DOCUMENT)
-    saved = app.session.desk.unsaved
+    saved = app.session.document.unsaved
     compiler.status = 0
     frames(app, 2)
     assert not simulation.ready  # it could not be compiled there; here it is when it must be, not before
@@ -194,7 +194,7 @@ def test_what_is_compiled_is_loaded_before_a_key_needs_it(
     frames(app, 1)
     assert simulation.ready
     assert app.session.model.newest(Role.DOCUMENT) == before
-    assert app.session.desk.unsaved == saved
+    assert app.session.document.unsaved == saved
 
 
 def test_what_a_hand_needs_is_loaded_while_nothing_happens(
@@ -245,7 +245,7 @@ def test_what_free_particles_need_is_compiled_by_two_processes_at_once(
     monkeypatch.setattr(CompiledUnit, "is_compiled", lambda unit: unit.name in compiled)
     app.session.adopt(models.load("collision_i"))
     frames(app, 2)
-    assert compiler.jobs[1:] == [("fly",), ("open_window",)]
+    assert compiler.jobs[1:] == [("fly",), ("open_horizon",)]
     compiled.add("fly")
     app.session.press("space")
     frames(app, 2)
@@ -266,7 +266,7 @@ def test_what_piles_need_is_waited_for_once_something_pulls(
     assert steps > 0
     app.session.environment.acceleration = (0.0, -9.81)
     frames(app, 3)
-    assert compiler.jobs[1:] == [("open_window", "take_steps")]
+    assert compiler.jobs[1:] == [("open_horizon", "take_steps")]
     assert app.session.model.clock.steps == steps
     compiler.status = 0
     frames(app, 3)
@@ -397,10 +397,10 @@ def test_a_folder_of_somebody_else_is_not_used(tmp_path: Path, monkeypatch: pyte
 
 
 PARTS = """
-from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, engine
+from systems.collision.free.compiled import EVENTS, PILES, HORIZONS, engine
 
 engine()
-print(*(unit.is_compiled() for unit in (EVENTS, WINDOWS, PILES)))
+print(*(unit.is_compiled() for unit in (EVENTS, HORIZONS, PILES)))
 """
 
 

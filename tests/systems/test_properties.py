@@ -15,7 +15,8 @@ from components.tags import Selected
 from game import Session
 from game.editor.scenes.form import FormScene
 from game.editor.scenes.properties import Properties
-from game.scripts.script import Recorder, Script
+from game.scripts.playing import Recorder, play, session_of
+from game.scripts.script import Script
 from systems.render.form_layout import FormLayout
 from systems.render.marks import Text
 from systems.render.picture import compose
@@ -494,8 +495,8 @@ def test_what_was_typed_in_a_window_can_be_played_again(tmp_path: Path) -> None:
             session.press(key)
     assert session.rods["AB"].compressive_strength == 215.0
     script = Script(path)
-    played = script.open()
-    assert script.play(played) == []
+    played = session_of(script)
+    assert play(script, played) == []
     assert played.rods["AB"].compressive_strength == 215.0
 
 

@@ -155,10 +155,10 @@ def test_ctrl_s_saves_again_without_asking(session: Session, data: Path) -> None
     session.type("a")
     session.press("return")
     session.rods["AB"].stiffness = 5.0
-    assert session.desk.unsaved
+    assert session.document.unsaved
     session.press("ctrl+s")
     assert session.scene == "pause"
-    assert not session.desk.unsaved
+    assert not session.document.unsaved
     assert stiffness_in(data / "models" / "a.json") == 5.0
 
 
@@ -181,7 +181,7 @@ def test_what_another_window_saved_is_only_replaced_when_asked_twice(tmp_path: P
     there.press("ctrl+s")
     here.press("ctrl+s")
     assert "Another window or program has changed 'ours'" in here.notice
-    assert here.desk.unsaved
+    assert here.document.unsaved
     assert stiffness_in(path) == 7.0
     here.press("ctrl+s")
     assert here.notice == "Saved as 'ours'."
@@ -369,8 +369,8 @@ def test_work_that_was_gone_back_from_is_kept_when_another_model_is_opened(sessi
     for _ in range(2):
         session.undo()
     session.open_here("tower")
-    seen = [desk.model for desk in session.desks]
-    assert [len(desk.model.rods) for desk in session.desks][:2] == [6, 3]
+    seen = [document.model for document in session.documents]
+    assert [len(document.model.rods) for document in session.documents][:2] == [6, 3]
     assert seen[0].rods["AC"].stiffness == 6.0
     assert seen[1].rods["AB"].stiffness == 5.0
 
@@ -379,13 +379,13 @@ def test_saved_work_is_not_kept_twice(session: Session) -> None:
     saved_as(session, "a")
     session.open_here("isostatic")
     session.open_here("tower")
-    assert len(session.desks) == 1
+    assert len(session.documents) == 1
 
 
 def test_a_typed_velocity_is_unsaved_work() -> None:
     session = Session.open("collision_iii")
     session.particles[0].velocity = (1.0, 2.0)
-    assert session.desk.unsaved
+    assert session.document.unsaved
     session.open_here("tower")
     session.undo()
     assert session.particles[0].velocity == (1.0, 2.0)
@@ -395,7 +395,7 @@ def test_examples_that_were_only_run_are_not_kept(session: Session) -> None:
     for name in ("isostatic", "tower", "pendulum"):
         session.open_here(name)
         session.run(steps=5)
-    assert len(session.desks) == 1
+    assert len(session.documents) == 1
     assert session.undo()
     assert not session.undo()
     assert session.time == 0.0

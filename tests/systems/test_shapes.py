@@ -15,7 +15,7 @@ from components.model import Model
 from game import Session
 from game.commands.command_line import main
 from game.documents import models
-from game.editor.shapes import DRAWN_SHARE, NoShape, mechanism_shapes, mode_shapes, numbered
+from game.documents.shapes import DRAWN_SHARE, NoShape, mechanism_shapes, mode_shapes, numbered
 from systems.render.marks import Discs
 from systems.render.picture import compose
 from systems.render.theme import load_theme

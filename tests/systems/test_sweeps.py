@@ -16,7 +16,7 @@ from game import Session
 from game.commands.command_line import main
 from game.commands.reports.report import Analysis
 from game.documents import models
-from game.paths.overrides import apply_override
+from game.paths import apply_override
 from game.sweeps import SweepError, sweep
 from game.sweeps.execution import compute, compute_all
 from game.sweeps.plan import plan_of

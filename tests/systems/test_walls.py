@@ -255,7 +255,7 @@ def test_mistakes_in_files_are_explained(components: Any, problem: str) -> None:
 
 
 def test_scripts_and_the_command_line_set_it_by_its_name() -> None:
-    from game.paths.overrides import apply_override
+    from game.paths import apply_override
 
     session = room(FLOOR)
     apply_override(session.model, "walls.floor.restitution=0.75")

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import game  # noqa: F401 (its mods register further histories)
 from components.field import Field, FieldError, Role, same
 from components.handle import Handle
 from components.load import Load

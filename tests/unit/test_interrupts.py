@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import game
-from game.interrupts import unheard
+from game.interrupts import quietly_interrupted
 
 PROGRAM = ["/usr/bin/pinjoint", "-m", str(Path(game.__file__).parent / "__main__.py")]
 
@@ -24,7 +24,7 @@ def heard() -> Iterator[None]:
 @pytest.mark.parametrize("called", PROGRAM)
 def test_the_program_ends_without_a_word(called: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", [called, "run"])
-    with unheard():
+    with quietly_interrupted():
         assert signal.getsignal(signal.SIGINT) is signal.SIG_DFL
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
@@ -33,7 +33,7 @@ def test_the_program_ends_without_a_word(called: str, monkeypatch: pytest.Monkey
 def test_a_program_told_to_ignore_it_goes_on_to(called: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", [called, "run"])
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    with unheard():
+    with quietly_interrupted():
         assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
     assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
 
@@ -41,5 +41,5 @@ def test_a_program_told_to_ignore_it_goes_on_to(called: str, monkeypatch: pytest
 @pytest.mark.parametrize("argv", [["study.py"], ["/lib/pytest/__main__.py"], [""], []])
 def test_scripts_are_left_alone(argv: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", argv)
-    with unheard():
+    with quietly_interrupted():
         assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

@@ -7,23 +7,23 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from game.documents import models
-from systems.islands import HELD, islands
+from systems.islands import IMMOVABLE, islands
 from tests.reference.models import model, particle, rod
 
 
 def walked(count: int, pairs: list[tuple[int, int]], held: set[int]) -> list[int]:
     """The same, one particle and one rod at a time."""
-    found = [HELD] * count
+    found = [IMMOVABLE] * count
     number = 1
     for start in range(count):
-        if start in held or found[start] != HELD:
+        if start in held or found[start] != IMMOVABLE:
             continue
         waiting = [start]
         while waiting:
             at = waiting.pop()
             found[at] = number
             beside = [b if a == at else a for a, b in pairs if at in (a, b)]
-            waiting += [other for other in beside if other not in held and found[other] == HELD]
+            waiting += [other for other in beside if other not in held and found[other] == IMMOVABLE]
         number += 1
     return found
 
@@ -46,7 +46,7 @@ def test_islands_are_what_one_can_walk_to_without_passing_supports(data: st.Data
 def test_trusses_on_one_support_are_two_islands_and_on_one_roller_one() -> None:
     nodes = [particle("A", 0, 0), particle("B", 1, 0), particle("C", 2, 0)]
     rods = [rod("A", "B"), rod("B", "C")]
-    for fixed, expected in (([True, True], [1, HELD, 2]), ([False, True], [1, 1, 1])):
+    for fixed, expected in (([True, True], [1, IMMOVABLE, 2]), ([False, True], [1, 1, 1])):
         nodes[1]["fixed"] = fixed
         assert islands(models.load(model(nodes, rods))).tolist() == expected
 

@@ -7,7 +7,7 @@ import pytest
 from components.commands import Command
 from components.model import Model
 from game.documents import models
-from game.paths.overrides import OverrideError, apply_override
+from game.paths import PathError, apply_override
 from tests.reference.models import model, particle, rod, triangle
 
 
@@ -133,7 +133,7 @@ REFUSED = {
 @pytest.mark.parametrize(("override", "reason"), REFUSED.items(), ids=REFUSED.keys())
 def test_mistakes_are_refused_and_explained(frame: Model, override: str, reason: str) -> None:
     before = models.document(frame)
-    with pytest.raises(OverrideError) as caught:
+    with pytest.raises(PathError) as caught:
         apply_override(frame, override)
     assert str(caught.value).startswith(f"{override}: ")
     assert reason in str(caught.value)
@@ -143,6 +143,6 @@ def test_mistakes_are_refused_and_explained(frame: Model, override: str, reason:
 def test_a_rod_may_lose_its_rest_length_only_while_it_has_a_distance() -> None:
     ends = [particle("A", 0, 0), particle("B", 0, 0)]
     stub = models.parse(model(ends, [rod("A", "B", rest_length=1)]))
-    with pytest.raises(OverrideError, match="its ends are at the same place"):
+    with pytest.raises(PathError, match="its ends are at the same place"):
         apply_override(stub, "rods.AB.rest_length=null")
     assert stub.rods["AB"].prescribed_rest_length == 1.0

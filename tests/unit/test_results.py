@@ -12,8 +12,10 @@ import numpy as np
 import pytest
 
 from components.model import Model
-from game.commands.reports.results import ENERGIES, ResultError, as_csv, as_json, as_table, state
+from game.commands.output import FORMATS, Format, ResultError, formatted
+from game.commands.reports.results import run_lines, run_rows, state
 from game.documents import models
+from game.paths import ENERGIES
 from tests.reference.models import triangle
 
 ENERGY = {name: float(n) for n, name in enumerate(ENERGIES)}
@@ -30,6 +32,10 @@ def solved() -> Model:
     solved.writable("rods.length")[...] = [1.41, 1.42, 2.0]
     solved.writable("rods.yielding")[1] = True
     return solved
+
+
+def written(run: dict[str, Any], format: Format) -> str:
+    return formatted(format, run, run_rows, run_lines)
 
 
 def run(*states: dict[str, Any], **changes: Any) -> dict[str, Any]:
@@ -76,20 +82,20 @@ def test_a_state_holds_every_element_and_the_account(solved: Model) -> None:
 
 def test_json_keeps_full_precision(solved: Model) -> None:
     made = state(solved, ENERGY)
-    again = json.loads(as_json(run(made)))
+    again = json.loads(written(run(made), "json"))
     assert again["states"] == [made]
     assert again["states"][0]["time"].hex() == (0.1 + 0.2).hex()
     assert math.copysign(1, again["states"][0]["particles"]["B"]["velocity"][0]) == -1.0
 
 
 def test_json_has_one_element_a_line(solved: Model) -> None:
-    lines = [line.strip() for line in as_json(run(state(solved, ENERGY))).splitlines()]
+    lines = [line.strip() for line in written(run(state(solved, ENERGY)), "json").splitlines()]
     assert sum(line.startswith('"B": {"position": [1.0, 1.0], ') for line in lines) == 1
 
 
 def test_numbers_of_numpy_become_plain() -> None:
     events = [{"time": np.float64(0.5), "step": np.int64(3), "at": np.array([1.0, 2.0])}]
-    again = json.loads(as_json(run(events=events)))
+    again = json.loads(written(run(events=events), "json"))
     assert again["events"] == [{"time": 0.5, "step": 3, "at": [1.0, 2.0]}]
 
 
@@ -105,12 +111,12 @@ def test_what_is_not_finite_is_refused_by_name(solved: Model) -> None:
         state(solved, ENERGY)
 
 
-@pytest.mark.parametrize("write", [as_json, as_csv, as_table])
-def test_no_format_writes_what_is_not_finite(solved: Model, write: Any) -> None:
+@pytest.mark.parametrize("format", FORMATS)
+def test_no_format_writes_what_is_not_finite(solved: Model, format: Format) -> None:
     made = state(solved, ENERGY)
     made["particles"]["B"]["velocity"][1] = math.inf
-    with pytest.raises(ResultError, match=r"run\.states\[0\]\.particles\.B\.velocity\[1\] is inf"):
-        write(run(made))
+    with pytest.raises(ResultError, match=r"result\.states\[0\]\.particles\.B\.velocity\[1\] is inf"):
+        written(run(made), format)
 
 
 @pytest.mark.parametrize("name", ["work", "imbalance"])
@@ -122,7 +128,7 @@ def test_energies_must_be_there_and_finite(solved: Model, name: str) -> None:
 
 
 def test_the_table_shows_every_element_with_units(solved: Model) -> None:
-    text = as_table(run(state(solved, ENERGY, load_factor=0.5, residual=1e-9), message="All is well."))
+    text = written(run(state(solved, ENERGY, load_factor=0.5, residual=1e-9), message="All is well."), "table")
     lines = text.splitlines()
     assert lines[:4] == [
         "isostatic: equilibrium",
@@ -146,7 +152,7 @@ def test_the_table_shows_every_element_with_units(solved: Model) -> None:
 
 
 def test_the_table_of_a_run_without_states() -> None:
-    assert as_table(run(status="mechanism", time_step=None)).splitlines() == [
+    assert written(run(status="mechanism", time_step=None), "table").splitlines() == [
         "isostatic: mechanism",
         "time 0.3 s, 1200 steps, integrator velocity_verlet",
         "computed in 0.012 s, compiled in 1.5 s",
@@ -155,7 +161,7 @@ def test_the_table_of_a_run_without_states() -> None:
 
 def test_csv_has_one_number_a_line(solved: Model) -> None:
     solved.particles["B"].name = 'B, "the\ntop"'
-    text = as_csv(run(state(solved, ENERGY), state(solved, ENERGY, load_factor=2.0, residual=0.5)))
+    text = written(run(state(solved, ENERGY), state(solved, ENERGY, load_factor=2.0, residual=0.5)), "csv")
     rows = list(csv.DictReader(io.StringIO(text)))
     assert list(rows[0]) == ["time", "load_factor", "element", "name", "quantity", "value", "unit"]
     assert len(rows) == 2 * (3 * 9 + 3 * 5 + 7 + 2)

@@ -68,7 +68,7 @@ def test_the_shown_error_of_verlet_is_within_a_factor_3_of_the_true_one(
     session.run(time=duration)
     true = float(np.hypot(*(session.particles.displacement - expected).T).max())
     assume(true > 1e-11 * largest)
-    found = session.desk.assessment.error()
+    found = session.document.assessment.error()
     assert found is not None
     assert 1 / 3 < found.displacement / true < 3.0
 

@@ -60,7 +60,7 @@ def _limit(problem: Problem, integrator: str) -> float:
 def test_verlets_error_is_known_within_a_factor_2(problem: Problem, share: float) -> None:
     step = share * _limit(problem, "velocity_verlet")
     session = _run(problem, integrator="velocity_verlet", time_step=step)
-    found = session.desk.assessment.error()
+    found = session.document.assessment.error()
     assert found is not None
     assert 0.5 < found.displacement / _true_error(session, problem) < 2.0
     largest = np.hypot(*session.particles.displacement.T).max()
@@ -72,7 +72,7 @@ def test_the_error_of_yielding_between_steps_is_known_within_a_factor_3(steps: i
     problem = yielding_step()
     session = _run(problem, integrator="velocity_verlet", time_step=problem.time / steps)
     assert session.energy.dissipated_plastic > 0.0
-    found = session.desk.assessment.error()
+    found = session.document.assessment.error()
     assert found is not None
     assert 1 / 3 < found.displacement / _true_error(session, problem) < 3.0
 
@@ -91,7 +91,7 @@ def test_the_error_of_other_integrators_is_known_within_a_factor_2(
     problem: Problem, settings: dict[str, Any]
 ) -> None:
     session = _run(problem, **settings)
-    found = session.desk.assessment.error()
+    found = session.document.assessment.error()
     assert found is not None
     assert 0.5 < found.displacement / _true_error(session, problem) < 2.0
 
@@ -99,7 +99,7 @@ def test_the_error_of_other_integrators_is_known_within_a_factor_2(
 def test_measuring_leaves_no_trace() -> None:
     problem = under_damped()
     asked, other = (_run(problem, integrator="velocity_verlet", time_step=0.01) for _ in range(2))
-    asked.desk.assessment.error()
+    asked.document.assessment.error()
     assert bits.different(bits.columns(asked.model), bits.columns(other.model)) == []
     for session in (asked, other):
         session.run(time=0.1)
@@ -111,11 +111,11 @@ def test_measuring_leaves_no_trace() -> None:
 
 def test_there_is_no_error_to_be_known_of_what_was_edited_or_has_not_begun() -> None:
     session = Session.open(under_damped().document | {"settings": {"collisions": False}})
-    assert session.desk.assessment.error() is None
+    assert session.document.assessment.error() is None
     session.run(time=0.1)
     session.rods[0].damping = 0.2
     session.run(time=0.1)
-    assert session.desk.assessment.error() is None
+    assert session.document.assessment.error() is None
 
 
 def test_no_frame_waits_for_the_error_of_a_long_run(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -123,13 +123,13 @@ def test_no_frame_waits_for_the_error_of_a_long_run(monkeypatch: pytest.MonkeyPa
     session.run(steps=100)
     evaluations = session.model.clock.steps * 3 * 12  # the stages of dop853
     monkeypatch.setattr("systems.run.measured_error.IN_A_FRAME", evaluations - 1)
-    assert session.desk.assessment.error() is None
-    assert session.desk.assessment.error(evaluations) is not None
+    assert session.document.assessment.error() is None
+    assert session.document.assessment.error(evaluations) is not None
 
 
 def test_there_is_none_below_what_a_tolerance_can_tell() -> None:
     session = _run(under_damped(), integrator="dop853", tolerance=2 * FINEST_TOLERANCE)
-    assert session.desk.assessment.error() is None
+    assert session.document.assessment.error() is None
 
 
 def test_the_error_is_in_the_report(capsys: pytest.CaptureFixture[str]) -> None:

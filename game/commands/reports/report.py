@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from components.model import Model
-from game.commands.reports.results import ENERGIES, ResultError, Run, State, state
-from game.session import DEFAULT_LIMIT
+from game.commands.output import ResultError
+from game.commands.reports.results import Run, State, state
+from game.paths import ENERGIES
+from game.session import DEFAULT_LIMIT, Session
 from systems.base import StopReason
 from systems.run.measured_error import IN_A_COMMAND
 from systems.run.simulation import Simulation
 
-if TYPE_CHECKING:
-    from game.session import Session
+if TYPE_CHECKING:  # they import scipy
     from systems.statics.events import Event
     from systems.statics.settle import StaticState
 
@@ -26,15 +27,15 @@ FOUND = ("equilibrium", "at rest", "time reached")  # statuses of a run that fou
 
 
 class AnalysisError(ValueError):
-    """What is asked of a model cannot be had; the message says why and the remedy."""
+    """An analysis that a model cannot have; the message says why and the remedy."""
 
 
 @dataclass(frozen=True)
 class Analysis:
-    """What is asked of a model: its equilibria, its state at certain times, or its state at rest.
+    """What to compute of a model: its equilibria, its state at certain times, or its state at rest.
 
     load_factors: settle at each in turn (statics). times: run through these, in s, ascending; None for both:
-    run until at rest, at most `limit` s of simulated time. measures_error: also where that takes long.
+    run until at rest, at most `limit` s of simulated time. measures_error: even where that takes long.
     """
 
     load_factors: tuple[float, ...] | None = None
@@ -43,7 +44,7 @@ class Analysis:
     measures_error: bool = False
 
     def run(self, simulation: Simulation, name: str) -> Run:
-        """Compute it; `name` is what the result calls the model. Raises AnalysisError, ResultError, FieldError."""
+        """The result of the analysis; `name` is what it calls the model. Raises AnalysisError, ResultError, FieldError."""
         if self.load_factors is not None:
             return run_static(simulation, name, self.load_factors)
         if self.times is not None:
@@ -51,14 +52,14 @@ class Analysis:
         return run_until_rest(simulation, name, self.limit)
 
     def run_in(self, session: Session, name: str) -> Run:
-        """Compute it in a session, which adds what theory says about a run through time."""
+        """The same in a session, which adds remarks of theory on a run through time and its measured error."""
         if self.load_factors is not None:
             return self.run(session.simulation, name)
         session.run(steps=0)  # the beginning is noted, for theory beside the run
         with session.without_frames():
             found = self.run(session.simulation, name)
         happened = [asdict(happening) for happening in session.simulation.happenings]
-        error = session.desk.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
+        error = session.document.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
         return {
             **found,
             "message": session.message,
@@ -80,7 +81,7 @@ def run_at(simulation: Simulation, name: str, times: Sequence[float]) -> Run:
     """Run through the given times (s, ascending) and report the state at exactly each of them.
 
     The short last step to a reported time is taken on a copy, so that a report never changes the run.
-    Raises AnalysisError for times that are over.
+    Raises AnalysisError for times before that of the model.
     """
     if times[0] < (present := simulation.model.clock.time):
         raise AnalysisError(
@@ -117,7 +118,7 @@ def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> R
 
 
 def _static_state(simulation: Simulation, found: StaticState) -> State:
-    """In statics, work is what the path of equilibria stores and dissipates."""
+    """An equilibrium as a state. The work of statics is the energy that the path of equilibria stores and dissipates."""
     energy = dict.fromkeys(ENERGIES, 0.0) | {
         "elastic": found.elastic_energy,
         "dissipated_plastic": found.dissipated_plastic,
@@ -152,7 +153,7 @@ def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
 def _run(
     simulation: Simulation, name: str, status: str, states: list[State], *, moves: bool = True
 ) -> dict[str, Any]:
-    """moves: it went through time, by an integrator, which takes a while to choose."""
+    """A result without events. moves: the run went through time, by an integrator; False in statics."""
     clock = simulation.model.clock
     return {
         "model": name,

@@ -1,11 +1,8 @@
-"""Results: what a run found, as data, as JSON, as a table to read and as CSV."""
+"""Results: what a run found, as plain data, as rows for CSV and as tables to read; see output.py."""
 
 from __future__ import annotations
 
-import csv
-import io
-import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -16,17 +13,8 @@ from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
 from components.table import fields_of
-from game.documents.models import laid_out
-
-ENERGIES = (
-    "kinetic",
-    "elastic",
-    "dissipated_damping",
-    "dissipated_plastic",
-    "dissipated_impact",
-    "work",
-    "imbalance",
-)
+from game.commands.output import ResultError, Row, aligned, as_written, plain
+from game.paths import ENERGIES
 
 State = dict[str, Any]
 Run = Mapping[str, Any]
@@ -48,15 +36,11 @@ _IN_TABLES = {Particle.displacement.name: ("mm", 1000.0)}  # else units as in fi
 
 
 def reported(group: str) -> tuple[Field[Any], ...]:
-    """The facts that are reported of the elements of a table: Pinjoint's, then those of mods' components."""
+    """The fields of a table that results report: Pinjoint's own, then those of mods' components."""
     of_mods = (
         field for field in fields_of(_KINDS[group]) if field.component and field.dtype in (float, int, bool)
     )
     return (*_OWN[group], *of_mods)
-
-
-class ResultError(ValueError):
-    """A result that is not a finite number; the message names the element."""
 
 
 # --- one state -----------------------------------------------------------------------------------------
@@ -71,9 +55,9 @@ def state(
 ) -> State:
     """The present state of a model as plain data: SI units with kN, vectors as [x, y].
 
-    energy: J, with the keys of ENERGIES. load_factor: of statics. residual: what is left of the
-    largest force that is out of balance. columns: what is reported in place of the model's own columns,
-    by "table.field". `position` is the original one. Raises ResultError.
+    energy: J, with the keys of ENERGIES. load_factor: of statics. residual: the largest
+    force out of balance, relative to the largest force. columns: by "table.field", columns that are reported
+    in place of the model's own. `position` is the original one. Raises ResultError.
     """
     made = {
         "time": model.clock.time,
@@ -106,41 +90,18 @@ def _elements(model: Model, name: str, given: Mapping[str, Column]) -> dict[str,
     return {name: dict(zip(keys, row, strict=True)) for name, row in zip(table.names, rows, strict=True)}
 
 
-def plain(value: Any, where: str) -> Any:
-    """A value as JSON has them, numpy's included, every number finite."""
-    if isinstance(value, np.ndarray | np.generic):
-        value = value.tolist()
-    if isinstance(value, float) and not math.isfinite(value):
-        raise ResultError(f"{where} is {value}, not finite; report a state before it.")
-    if isinstance(value, str):
-        return value.encode("utf-8", "replace").decode()  # names of files need not be UTF-8
-    if isinstance(value, Mapping):
-        return {str(key): plain(item, f"{where}.{key}") for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(item, f"{where}[{index}]") for index, item in enumerate(value)]
-    return value
-
-
 # --- as text -------------------------------------------------------------------------------------------
 
 
-def as_json(run: Run) -> str:
-    """A run as JSON in full double precision, one element a line. Raises ResultError."""
-    return laid_out(plain(run, "run"), depth=4) + "\n"
+def run_rows(run: Run) -> Iterator[Row]:
+    """A run as tidy rows, one number each, headings first.
 
-
-def as_csv(run: Run) -> str:
-    """A run as tidy CSV: one number a line, in full double precision. Raises ResultError.
-
-    Columns: time (s), load_factor (empty in dynamics), element ("particle", "rod", "energy" or "run"),
+    Columns: time (s), load_factor (None in dynamics), element ("particle", "rod", "energy" or "run"),
     name, quantity (vectors as two: "velocity_x", "velocity_y"), value (yielding: 1 or 0), unit.
     """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["time", "load_factor", "element", "name", "quantity", "value", "unit"])
-    for made in plain(run, "run")["states"]:
-        writer.writerows([made["time"], made["load_factor"], *row] for row in _quantities(made))
-    return text.getvalue()
+    yield "time", "load_factor", "element", "name", "quantity", "value", "unit"
+    for made in run["states"]:
+        yield from ((made["time"], made["load_factor"], *row) for row in _quantities(made))
 
 
 def _quantities(made: State) -> Iterator[tuple[Any, ...]]:
@@ -153,33 +114,31 @@ def _quantities(made: State) -> Iterator[tuple[Any, ...]]:
                     yield noun, name, f"{field.name}_x", value[0], field.unit
                     yield noun, name, f"{field.name}_y", value[1], field.unit
                 else:
-                    yield noun, name, field.name, int(value) if field.dtype is bool else value, field.unit
+                    yield noun, name, field.name, value, field.unit
     for name, value in made["energy"].items():
         yield "energy", "", name, value, "J"
     for name in ("residual", "collisions"):
         yield "run", "", name, made[name], ""
 
 
-def as_table(run: Run) -> str:
+def run_lines(run: Run) -> Iterator[str]:
     """A run as aligned tables to read: displacements in mm, all else in the units of files."""
-    run = plain(run, "run")
-    lines = [f"{run['model']}: {run['status']}"]
-    lines += [run["message"]] if run["message"] else []
+    yield f"{run['model']}: {run['status']}"
+    if run["message"]:
+        yield run["message"]
     if run["integrator"] is None:
-        lines.append("static equilibrium, exact geometry")
+        yield "static equilibrium, exact geometry"
     else:
         step = f" of {as_written(run['time_step'])} s" if run["time_step"] else ""
         taken = f"time {as_written(run['time'])} s, {run['steps']} steps{step}"
-        lines.append(f"{taken}, integrator {run['integrator']}")
+        yield f"{taken}, integrator {run['integrator']}"
     if error := run.get("error_estimate"):
         relative = as_written(error["relative"])
-        lines.append(f"error of the displacements, measured by finer steps: {relative} of the largest")
-    lines.append(
-        f"computed in {as_written(run['wall_seconds'])} s, compiled in {as_written(run['compile_seconds'])} s"
-    )
+        yield f"error of the displacements, measured by finer steps: {relative} of the largest"
+    yield f"computed in {as_written(run['wall_seconds'])} s, compiled in {as_written(run['compile_seconds'])} s"
     for made in run["states"]:
-        lines += ["", *_state_lines(made)]
-    return "\n".join(lines) + "\n"
+        yield ""
+        yield from _state_lines(made)
 
 
 def _state_lines(made: State) -> Iterator[str]:
@@ -214,19 +173,3 @@ def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list
             cells.append(as_written(value if unscaled else value * factor))
         rows.append(cells)
     return rows
-
-
-def as_written(value: Any) -> str:
-    if value is None:
-        return "–"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return f"{value + 0.0:.7g}"  # + 0.0: no minus before a zero
-
-
-def aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
-    """The rows with their first column to the left and the others to the right."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for name, *numbers in rows:
-        cells = [name.ljust(widths[0]), *(n.rjust(w) for n, w in zip(numbers, widths[1:], strict=True))]
-        yield "  ".join(cells).rstrip()

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from components.model import Model
-from game.commands.reports.results import aligned, as_written, plain
+from game.commands import output
+from game.commands.output import aligned, as_written
 from game.session import Session
 from systems.statics.equations import Array
 from systems.statics.events import NoEquilibrium, event_record
@@ -52,8 +53,8 @@ def verify(session: Session, name: str, limit: float, *, simulate: bool = True) 
     """Theory beside the simulation run to rest (at most `limit` s of simulated time), as plain data.
 
     simulate: False for theory alone. `status` is "verified" if the simulation came to rest in the exact
-    equilibrium; "differs from static theory" if it did what a slowly growing load does not do, which `message`
-    tells first; "theory only" without a simulation; else "not verified", and `message` says what is missing.
+    equilibrium; "differs from static theory" if it went another way than under a slowly growing load, which `message`
+    says first; "theory only" without a simulation; else "not verified", and `message` says what is missing.
     """
     model = session.model
     theory = theories(model)
@@ -82,7 +83,7 @@ def verify(session: Session, name: str, limit: float, *, simulate: bool = True) 
 
 
 def _status(comparison: Comparison, simulated: bool, departed: bool) -> str:
-    """What to call answers of which none is missing."""
+    """The status where simulation and theory all have an answer."""
     if not simulated:
         return THEORY_ONLY
     if not differs(comparison):
@@ -139,7 +140,7 @@ def _by_particle(model: Model, field: Array) -> dict[str, list[float]]:
 
 
 def _messages(found: Found) -> Iterator[str]:
-    """What a person should know about the answers."""
+    """Sentences about the answers: departures from statics, missing answers, remarks."""
     if not found["rods"]:
         yield "There are no rods, so statics has nothing to compare. Use: pinjoint run MODEL"
         return
@@ -201,11 +202,28 @@ def _line(model: Model, field: Array) -> dict[str, list[float]]:
 # --- as text -------------------------------------------------------------------------------------------
 
 
-def as_table(found: Found) -> str:
+def lines(found: Found) -> Iterator[str]:
     """What `verify` or `influence` found, as aligned tables to read."""
-    found = plain(found, "verify")
-    lines = _influence_lines(found["influence"]) if "influence" in found else _verify_lines(found)
-    return "\n".join(lines) + "\n"
+    return _influence_lines(found["influence"]) if "influence" in found else _verify_lines(found)
+
+
+def rows(found: Found) -> Iterator[output.Row]:
+    """The same as rows, headings first: one of each quantity of an element, or of each influence on a particle."""
+    if "influence" in found:
+        yield "of", "quantity", "unit", "particle", "along x", "along y"
+        for name, line in found["influence"].items():
+            yield from ((name, line["quantity"], line["unit"], at, *pair) for at, pair in line["of"].items())
+        return
+    yield "element", "name", "quantity", "component", "unit", *_VALUES
+    for quantity, (table, unit) in QUANTITIES.items():
+        for name, quantities in found[table].items():
+            for component, values in _by_component(quantities.get(quantity, {})):
+                yield table[:-1], name, quantity, component, unit, *(values[way] for way in _VALUES)
+
+
+def _by_component(values: Found) -> Iterator[tuple[str, Found]]:
+    """(component, values) of a quantity; the component of a scalar is ""."""
+    yield from [("", values)] if "exact" in values else values.items()
 
 
 def _influence_lines(found: Found) -> Iterator[str]:
@@ -218,7 +236,7 @@ def _influence_lines(found: Found) -> Iterator[str]:
 
 
 def _degrees(found: Found) -> str:
-    """How much the rods and supports determine."""
+    """The degrees of static and kinematic indeterminacy in words."""
     degrees = found["indeterminacy"]
     each = f"internal {degrees['internal']}, external {degrees['external']}"
     static, moving = degrees["static"], degrees["mechanisms"]
@@ -269,8 +287,8 @@ def _tables(found: Found) -> Iterator[tuple[str, str, float, dict[str, Found]]]:
     for quantity, (table, unit) in QUANTITIES.items():
         rows: dict[str, Found] = {}
         for name, quantities in found[table].items():
-            values = quantities.get(quantity, {})
-            rows |= {name: values} if "exact" in values else {f"{name} {axis}": v for axis, v in values.items()}
+            of = _by_component(quantities.get(quantity, {}))
+            rows |= {f"{name} {axis}".rstrip(): values for axis, values in of}
         if rows:
             yield quantity.replace("_", " "), *_IN_TABLES.get(unit, (unit, 1.0)), rows
 

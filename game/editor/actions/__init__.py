@@ -1,34 +1,17 @@
-"""Named actions, by subject: the only way in, for keys, mouse, scripts and mods."""
+"""Named actions, by subject: the only way in, for keys, mouse, scripts and mods; importing them registers them."""
 
-from game.editor.actions import (
-    clipboard,
-    drawing,
-    editing,
-    files,
-    force_method,
-    forms,
-    grids,
-    scenes,
-    selection,
-    time,
-    view,
-)
-from game.editor.actions.registry import ACTIONS, WHILE_DRAWING, Action, action
+from game.editor.actions import editing, force_method, modes, pointer, time, view
+from game.editor.context import ACTIONS, WHILE_DRAWING, Action, action
 
 __all__ = [
     "ACTIONS",
     "WHILE_DRAWING",
     "Action",
     "action",
-    "clipboard",
-    "drawing",
     "editing",
-    "files",
     "force_method",
-    "forms",
-    "grids",
-    "scenes",
-    "selection",
+    "modes",
+    "pointer",
     "time",
     "view",
 ]

@@ -1,83 +1,158 @@
-"""Actions that make, change and delete elements."""
+"""Actions that make, change, copy and delete elements."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import numpy as np
 
 from components.field import Vector
+from components.grid import Grid
+from components.handle import Handle
 from components.particle import Particle
-from game.editor.actions.registry import action
+from game.editor.clipboard import Part, as_text, part_in, part_of, paste, selected_rows
+from game.editor.context import Context, action
+from systems.edit import Refusal
 from systems.edit.moving import Movable, nudged
 from systems.edit.picking import pick_particle
-from systems.edit.placing import place
-from systems.edit.refusal import Refusal
+from systems.edit.placing import place, snapped
 from systems.edit.rods import delete
 from systems.edit.supports import next_support
 from systems.forms.properties import heading
 
-if TYPE_CHECKING:
-    from game.session import Session
-
 
 @action("place", while_drawing=True)
-def _place(session: Session, pixel: Vector) -> None:
-    """Under the pointer; from the toolbar, with the clicks that follow."""
-    if session.view.strip.contains(pixel):
-        take_up(session, "place")
+def _place(context: Context, pixel: Vector) -> None:
+    """A particle under the pointer; from the toolbar, under the clicks that follow."""
+    if context.view.strip.contains(pixel):
+        context.take_up("place")
         return
-    particle = place(session.model, session.view, pixel)
+    particle = place(context.model, context.view, pixel)
     x, y = particle.position
-    session.notice = f"{session.name(particle)}: ({100.0 * x:g}, {100.0 * y:g}) cm"
+    context.notice = f"{context.name(particle)}: ({100.0 * x:g}, {100.0 * y:g}) cm"
 
 
 @action("delete")
-def _delete(session: Session, pixel: Vector) -> None:
-    doomed = session.selected
+def _delete(context: Context, pixel: Vector) -> None:
+    doomed = context.selected
     if not doomed:
         raise Refusal("Nothing is selected; click what is to be deleted first.")
-    before = {table.name: table.count for table in session.model.tables.values()}
-    named = session.name(doomed[0])
-    delete(session.model, doomed)
-    gone = {name: count - session.model.tables[name].count for name, count in before.items()}
-    told = [f"{count} {name if count > 1 else name[:-1]}" for name, count in gone.items() if count]
-    session.notice = f"{named} deleted." if sum(gone.values()) == 1 else f"{', '.join(told)} deleted."
+    before = {table.name: table.count for table in context.model.tables.values()}
+    named = context.name(doomed[0])
+    delete(context.model, doomed)
+    gone = {name: count - context.model.tables[name].count for name, count in before.items()}
+    gone_by_kind = [f"{count} {name if count > 1 else name[:-1]}" for name, count in gone.items() if count]
+    context.notice = f"{named} deleted." if sum(gone.values()) == 1 else f"{', '.join(gone_by_kind)} deleted."
 
 
 @action("support")
-def _support(session: Session, pixel: Vector) -> None:
-    """Of the particle under the pointer, or of the selected ones; without any, of those clicked or dragged next."""
-    hit = pick_particle(session.model, session.view, pixel)
-    chosen = [handle for handle in session.selected if isinstance(handle, Particle)]
+def _support(context: Context, pixel: Vector) -> None:
+    """The next support of the particle under the pointer, else of the selected ones; without any, take up the tool."""
+    hit = pick_particle(context.model, context.view, pixel)
+    chosen = [handle for handle in context.selected if isinstance(handle, Particle)]
     if hit is not None and hit not in chosen:
         chosen = [hit]
     if not chosen:
-        take_up(session, "support")
+        context.take_up("support")
         return
-    support = next_support(session.model, chosen)
-    session.notice = f"{_all_of(session, chosen)}: {support}"
+    support = next_support(context.model, chosen)
+    context.notice = f"{_all_of(context, chosen)}: {support}"
 
 
-def take_up(session: Session, tool: str) -> None:
-    """Let clicks use a tool from now on; if they do already, put it away."""
-    session.leave_gesture()
-    session.view.tool = "" if session.view.tool == tool else tool
+def _all_of(context: Context, particles: list[Particle]) -> str:
+    return context.name(particles[0]) if len(particles) == 1 else f"{len(particles)} particles"
 
 
-def _all_of(session: Session, particles: list[Particle]) -> str:
-    return session.name(particles[0]) if len(particles) == 1 else f"{len(particles)} particles"
-
-
-def nudge(session: Session, direction: Vector, *, far: bool) -> bool:
-    """Move what is selected by about a pixel, or (far) a grid spacing; False if nothing is."""
-    model = session.model
-    chosen = Movable(model, session.selected)
+def nudge(context: Context, direction: Vector, *, far: bool) -> bool:
+    """Move the selected elements by about a pixel or, if far, a grid spacing; False if none are selected."""
+    model = context.model
+    chosen = Movable(model, context.selected)
     if not len(chosen):
         return False
-    positions = nudged(model, session.view, chosen.positions, direction, far=far)
+    positions = nudged(model, context.view, chosen.positions, direction, far=far)
     moved = [*chosen.particles, *chosen.others]
-    with session.history.as_one(("nudge", *(handle.entity for handle in moved))):
+    with context.history.as_one(("nudge", *(handle.entity for handle in moved))):
         chosen.place(positions)
     x, y = positions[0].tolist()
-    named = _all_of(session, chosen.particles) if not chosen.others else heading(model, moved)
-    session.notice = f"{named[:1].upper()}{named[1:]}: ({100.0 * x:g}, {100.0 * y:g}) cm"
+    named = _all_of(context, chosen.particles) if not chosen.others else heading(model, moved)
+    context.notice = f"{named[:1].upper()}{named[1:]}: ({100.0 * x:g}, {100.0 * y:g}) cm"
     return True
+
+
+# --- grids -----------------------------------------------------------------------------------------------
+
+
+@action("new grid")
+def _new_grid(context: Context, pixel: Vector) -> None:
+    with context.model.transaction("new grid"):
+        for grid in context.model.grids:
+            if grid.shown:
+                grid.shown = False
+        context.model.create(Grid)
+
+
+@action("next grid")
+def _next_grid(context: Context, pixel: Vector) -> None:
+    """Show the grid after the shown one; after the last, none; after none, the first."""
+    grids = list(context.model.grids)
+    shown = [index for index, grid in enumerate(grids) if grid.shown]
+    following = shown[-1] + 1 if shown else 0
+    with context.model.transaction("next grid"):
+        for index, grid in enumerate(grids):
+            if grid.shown != (index == following):
+                grid.shown = index == following
+
+
+# --- clipboard ----------------------------------------------------------------------------------------
+
+
+BESIDE = 30.0  # points to the right and down, where a duplicate appears
+
+
+@action("copy")
+def _copy(context: Context, pixel: Vector) -> None:
+    _put_on_clipboard(context)
+    context.notice = "Copied; Ctrl+V pastes it at the pointer."
+
+
+@action("cut")
+def _cut(context: Context, pixel: Vector) -> None:
+    _put_on_clipboard(context)
+    delete(context.model, context.selected)
+    context.notice = "Cut; Ctrl+V pastes it at the pointer."
+
+
+@action("paste")
+def _paste(context: Context, pixel: Vector) -> None:
+    """Paste around the pointer, from the toolbar around the middle of the view; the first place snaps to the grid."""
+    if context.view.strip.contains(pixel):
+        pixel = context.view.canvas.middle
+    source = _clipboard(context)
+    position = source.position
+    middle = 0.5 * (position.min(axis=0) + position.max(axis=0))
+    x, y = (position[0] + context.view.camera.to_model(pixel) - middle).tolist()
+    offset = np.subtract(snapped(context.model, context.view, (x, y)), position[0]).tolist()
+    _show(context, paste(context.model, source, (offset[0], offset[1])), "Pasted")
+
+
+@action("duplicate")
+def _duplicate(context: Context, pixel: Vector) -> None:
+    view = context.view
+    beside = BESIDE * view.pixel_ratio / view.camera.scale
+    source = part_of(context.model, selected_rows(context.model))
+    _show(context, paste(context.model, source, snapped(context.model, view, (beside, -beside))), "Duplicated")
+
+
+def _put_on_clipboard(context: Context) -> None:
+    rows = selected_rows(context.model)
+    context.clipboard = text = as_text(context.model, rows)
+    context.copied = text, part_of(context.model, rows)
+
+
+def _clipboard(context: Context) -> Part:
+    """The part on the clipboard; its text is parsed only if it was not copied here."""
+    text, copied = context.clipboard, context.copied
+    return copied[1] if copied is not None and copied[0] == text else part_in(text)
+
+
+def _show(context: Context, made: list[Handle], done: str) -> None:
+    context.select(*made)
+    context.notice = f"{done}: {len(made)} elements; drag them where they belong."

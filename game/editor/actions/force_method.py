@@ -6,63 +6,62 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from components.field import Vector
-from game.editor.actions.registry import action
+from game.editor.context import Context, action
 from game.editor.scenes.force_method import ForceMethod
 from game.force_method import PARTS
+from systems.edit import Refusal
 from systems.edit.picking import pick
-from systems.edit.refusal import Refusal
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # it imports scipy
     from game.force_method.guide import Guide
-    from game.session import Session
 
 
-def _guide(session: Session) -> Guide | None:
-    scene = session.scenes.active
+def _guide(context: Context) -> Guide | None:
+    scene = context.scenes.active
     return scene.guide if isinstance(scene, ForceMethod) else None
 
 
-def _work(session: Session, text: str, do: Callable[[], object]) -> None:
-    scene = session.scenes.active
+def _work(context: Context, text: str, do: Callable[[], object]) -> None:
+    scene = context.scenes.active
     assert isinstance(scene, ForceMethod)
-    scene.work(session, text, do)
+    scene.work(context, text, do)
 
 
 @action("next part")
-def _next_part(session: Session, pixel: Vector) -> None:
-    guide = _guide(session)
+def _next_part(context: Context, pixel: Vector) -> None:
+    guide = _guide(context)
     if guide is None:
         return
     if guide.part == PARTS:
-        session.scenes.request("pause")
+        context.scenes.request("pause")
     elif guide.part == 2:
         guide.next()
     else:
-        _work(session, f"Computing part {guide.part + 1}", guide.next)
+        _work(context, f"Computing part {guide.part + 1}", guide.next)
 
 
 @action("pick unknown")
-def _pick_unknown(session: Session, pixel: Vector) -> None:
-    guide = _guide(session)
+def _pick_unknown(context: Context, pixel: Vector) -> None:
+    guide = _guide(context)
     if guide is not None and guide.part == 2:
-        model, view = session.focus
+        model, view = context.focus
         hit = pick(model, view, pixel) if view.camera.viewport.contains(pixel) else None
-        _work(session, "Releasing it and solving anew", lambda: guide.pick(hit))
+        _work(context, "Releasing it and solving anew", lambda: guide.pick(hit))
 
 
 @action("release x")
-def _release_x(session: Session, pixel: Vector) -> None:
-    _pick_axis(session, 0)
+def _release_x(context: Context, pixel: Vector) -> None:
+    _pick_axis(context, 0)
 
 
 @action("release y")
-def _release_y(session: Session, pixel: Vector) -> None:
-    _pick_axis(session, 1)
+def _release_y(context: Context, pixel: Vector) -> None:
+    _pick_axis(context, 1)
 
 
 @action("release another")
-def _release_another(session: Session, pixel: Vector) -> None:
-    guide = _guide(session)
+def _release_another(context: Context, pixel: Vector) -> None:
+    guide = _guide(context)
     if guide is not None and not guide.can_release_another:
         raise Refusal(
             "Every unknown is released." if guide.part == PARTS else "Go through all parts first, with K."
@@ -71,16 +70,16 @@ def _release_another(session: Session, pixel: Vector) -> None:
         guide.release_another()
 
 
-def _pick_axis(session: Session, axis: int) -> None:
-    guide = _guide(session)
+def _pick_axis(context: Context, axis: int) -> None:
+    guide = _guide(context)
     if guide is not None:
-        _work(session, "Releasing it and solving anew", lambda: guide.pick_axis(axis))
+        _work(context, "Releasing it and solving anew", lambda: guide.pick_axis(axis))
 
 
 @action("toggle diagrams of sets")
-def _toggle_diagrams(session: Session, pixel: Vector) -> None:
-    guide = _guide(session)
+def _toggle_diagrams(context: Context, pixel: Vector) -> None:
+    guide = _guide(context)
     if guide is not None:
-        session.view.all_diagrams = not session.view.all_diagrams
+        context.view.all_diagrams = not context.view.all_diagrams
         for one in guide.shown:
-            one.view.all_diagrams = session.view.all_diagrams
+            one.view.all_diagrams = context.view.all_diagrams

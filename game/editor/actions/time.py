@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from components.field import Vector
 from game.editor.actions.editing import nudge
-from game.editor.actions.registry import Action, action
-from systems.edit.refusal import Refusal
-
-if TYPE_CHECKING:
-    from game.session import Session
-
+from game.editor.context import Action, Context, action
+from systems.edit import Refusal
 
 PACE_STEP = 2.0
 FAR = 0.2  # s shown, by which time is skipped forward or back
@@ -22,10 +16,10 @@ MANY = 2000  # elements of which finding the pace that suits them would take lon
 def _arrow(direction: Vector, steps: int, *, far: bool) -> Action:
     """An arrow key moves what is selected; with nothing selected, to the right is forward in time."""
 
-    def act(session: Session, pixel: Vector) -> None:
-        if nudge(session, direction, far=far) or steps == 0:
+    def act(context: Context, pixel: Vector) -> None:
+        if nudge(context, direction, far=far) or steps == 0:
             return
-        _step(session, steps * (_far(session) if far else 1))
+        _step(context, steps * (_far(context) if far else 1))
 
     return act
 
@@ -40,73 +34,73 @@ for _name, _direction, _steps in (
     action(f"far arrow {_name}")(_arrow(_direction, _steps, far=True))
 
 
-def _far(session: Session) -> int:
+def _far(context: Context) -> int:
     """How many steps to skip; fewer in large models, so that one does not wait."""
-    model = session.model
+    model = context.model
     elements, size = model.particles.count + model.rods.count + 1, model.clock.step_size
     most = max(MOST_WORK // elements, 1)
     if elements > MANY or size == 0.0:
         return most if size > 0.0 else 1
-    return min(max(round(FAR * session.pace / size), 1), most)
+    return min(max(round(FAR * context.pace / size), 1), most)
 
 
-def _step(session: Session, steps: int) -> None:
-    done = session.step(steps)
-    clock = session.model.clock
-    session.notice = f"Step {clock.steps}, t = {clock.time:.6g} s"
+def _step(context: Context, steps: int) -> None:
+    done = context.step(steps)
+    clock = context.model.clock
+    context.notice = f"Step {clock.steps}, t = {clock.time:.6g} s"
     if not done and steps < 0:
-        session.notice += ": as far back as steps go. Ctrl+Z takes back what was done here, R restarts."
+        context.notice += ": as far back as steps go. Ctrl+Z takes back what was done here, R restarts."
     elif not done:
-        session.notice = session.simulation.message
+        context.notice = context.simulation.message
 
 
 @action("step")
-def _step_forward(session: Session, pixel: Vector) -> None:
-    _step(session, 1)
+def _step_forward(context: Context, pixel: Vector) -> None:
+    _step(context, 1)
 
 
 @action("step back")
-def _step_back(session: Session, pixel: Vector) -> None:
-    _step(session, -1)
+def _step_back(context: Context, pixel: Vector) -> None:
+    _step(context, -1)
 
 
 @action("restart")
-def _restart(session: Session, pixel: Vector) -> None:
-    if session.at_beginning:
+def _restart(context: Context, pixel: Vector) -> None:
+    if context.at_beginning:
         raise Refusal("This is the beginning: no time has passed. Ctrl+Z takes back edits and settling.")
-    session.restart()
-    session.notice = "Back at the beginning; all edits are kept."
+    context.restart()
+    context.notice = "Back at the beginning; all edits are kept."
 
 
 @action("faster", while_drawing=True)
-def _faster(session: Session, pixel: Vector) -> None:
-    session.clock.faster(PACE_STEP)
+def _faster(context: Context, pixel: Vector) -> None:
+    context.clock.faster(PACE_STEP)
 
 
 @action("slower", while_drawing=True)
-def _slower(session: Session, pixel: Vector) -> None:
-    session.clock.faster(1.0 / PACE_STEP)
+def _slower(context: Context, pixel: Vector) -> None:
+    context.clock.faster(1.0 / PACE_STEP)
 
 
 @action("natural pace", while_drawing=True)
-def _natural_pace(session: Session, pixel: Vector) -> None:
-    session.clock.factor = 1.0
+def _natural_pace(context: Context, pixel: Vector) -> None:
+    context.clock.factor = 1.0
 
 
 @action("undo")
-def _undo(session: Session, pixel: Vector) -> None:
-    title = session.undo()
-    session.notice = f"Undone: {title}" if title else "There is nothing to undo."
+def _undo(context: Context, pixel: Vector) -> None:
+    title = context.undo()
+    context.notice = f"Undone: {title}" if title else "There is nothing to undo."
 
 
 @action("redo")
-def _redo(session: Session, pixel: Vector) -> None:
-    title = session.redo()
-    session.notice = f"Done again: {title}" if title else "There is nothing to do again."
+def _redo(context: Context, pixel: Vector) -> None:
+    title = context.redo()
+    context.notice = f"Done again: {title}" if title else "There is nothing to do again."
 
 
 @action("settle")
-def _settle(session: Session, pixel: Vector) -> None:
+def _settle(context: Context, pixel: Vector) -> None:
     """To the static equilibrium under the full load, without waiting."""
-    session.settle()
-    session.view.follow(session.model)
+    context.settle()
+    context.view.follow(context.model)

@@ -2,101 +2,95 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from components.field import Vector
-from game.editor.actions.registry import Action, action
-from game.editor.shapes import NoShape
+from game.documents.shapes import NoShape
+from game.editor.context import Action, Context, action
 from game.editor.view_model import pages_of_help
-from systems.edit.refusal import Refusal
+from systems.edit import Refusal
 from systems.render.theme import load_theme
-
-if TYPE_CHECKING:
-    from game.session import Session
-
 
 ZOOM_STEP = 1.2
 THEMES = ("light", "dark", "colour-blind", "colour-blind-dark")  # in the order in which one follows another
 
 
 @action("fit", while_drawing=True)
-def _fit(session: Session, pixel: Vector) -> None:
-    session.scenes.active.fit(session)
+def _fit(context: Context, pixel: Vector) -> None:
+    context.scenes.active.fit(context)
 
 
 @action("zoom in", while_drawing=True)
-def _zoom_in(session: Session, pixel: Vector) -> None:
-    session.scenes.active.zoom(session, ZOOM_STEP, pixel)
+def _zoom_in(context: Context, pixel: Vector) -> None:
+    context.scenes.active.zoom(context, ZOOM_STEP, pixel)
 
 
 @action("zoom out", while_drawing=True)
-def _zoom_out(session: Session, pixel: Vector) -> None:
-    session.scenes.active.zoom(session, 1.0 / ZOOM_STEP, pixel)
+def _zoom_out(context: Context, pixel: Vector) -> None:
+    context.scenes.active.zoom(context, 1.0 / ZOOM_STEP, pixel)
 
 
 @action("toggle legend", while_drawing=True)
-def _toggle_legend(session: Session, pixel: Vector) -> None:
-    session.view.legend = not session.view.legend
+def _toggle_legend(context: Context, pixel: Vector) -> None:
+    context.view.legend = not context.view.legend
 
 
 @action("toggle theory", while_drawing=True)
-def _toggle_theory(session: Session, pixel: Vector) -> None:
-    session.view.theory = not session.view.theory
+def _toggle_theory(context: Context, pixel: Vector) -> None:
+    context.view.theory = not context.view.theory
 
 
 @action("toggle energy", while_drawing=True)
-def _toggle_energy(session: Session, pixel: Vector) -> None:
-    session.view.energy = not session.view.energy
+def _toggle_energy(context: Context, pixel: Vector) -> None:
+    context.view.energy = not context.view.energy
 
 
 @action("next shape", while_drawing=True)
-def _next_shape(session: Session, pixel: Vector) -> None:
+def _next_shape(context: Context, pixel: Vector) -> None:
     """Mechanisms, then natural modes, then none."""
     try:
-        session.desk.shapes.next()
+        context.document.shapes.next()
     except NoShape as error:
         raise Refusal(str(error)) from None
-    session.view.shape = session.desk.shapes.shown
+    context.view.shape = context.document.shapes.shown
 
 
 @action("next theme", while_drawing=True)
-def _next_theme(session: Session, pixel: Vector) -> None:
+def _next_theme(context: Context, pixel: Vector) -> None:
     """The one after the present one."""
-    view = session.view
+    view = context.view
     after = (*THEMES[THEMES.index(view.theme) + 1 :], THEMES[0]) if view.theme in THEMES else THEMES
     view.theme = after[0]
-    session.notice = f"Theme: {load_theme(view.theme).title}"
+    context.notice = f"Theme: {load_theme(view.theme).title}"
 
 
 @action("toggle help", while_drawing=True)
-def _toggle_help(session: Session, pixel: Vector) -> None:
+def _toggle_help(context: Context, pixel: Vector) -> None:
     """The next page; after the last, none."""
-    session.view.help = (session.view.help + 1) % (len(pages_of_help(session)) + 1)
+    context.view.help = (context.view.help + 1) % (len(pages_of_help(context)) + 1)
 
 
 @action("close help", while_drawing=True)
-def _close_help(session: Session, pixel: Vector) -> None:
-    session.view.help = 0
+def _close_help(context: Context, pixel: Vector) -> None:
+    context.view.help = 0
 
 
 @action("pan", while_drawing=True)
-def _pan(session: Session, pixel: Vector) -> None:
+def _pan(context: Context, pixel: Vector) -> None:
     """Here `pixel` is how far the pointer was dragged."""
-    session.scenes.active.pan(session, pixel)
+    context.scenes.active.pan(context, pixel)
 
 
 @action("toggle full screen", while_drawing=True)
-def _toggle_full_screen(session: Session, pixel: Vector) -> None:
-    if session.window is not None:
-        session.window.toggle_full_screen()
+def _toggle_full_screen(context: Context, pixel: Vector) -> None:
+    if context.window is not None:
+        context.window.toggle_full_screen()
 
 
 def _magnify(by: int) -> Action:
     """Larger or smaller type, symbols and panels, in a window."""
 
-    def act(session: Session, pixel: Vector) -> None:
-        if session.window is not None:
-            session.notice = f"Size of type and symbols: {session.window.magnify(by)}"
+    def act(context: Context, pixel: Vector) -> None:
+        if context.window is not None:
+            context.notice = f"Size of type and symbols: {context.window.magnify(by)}"
 
     return act
 
@@ -106,11 +100,11 @@ for _name, _by in (("larger", 1), ("smaller", -1), ("usual size", 0)):
 
 
 @action("screenshot", while_drawing=True)
-def _screenshot(session: Session, pixel: Vector) -> None:
-    if session.window is None:
+def _screenshot(context: Context, pixel: Vector) -> None:
+    if context.window is None:
         return
     try:
-        session.notice = f"Picture saved: {session.window.screenshot()}"
+        context.notice = f"Picture saved: {context.window.screenshot()}"
     except OSError as error:
         raise Refusal(
             f"No picture was saved: {error.filename}: {error.strerror}. Start Pinjoint in a folder where you may write."

@@ -1,117 +1,134 @@
-"""Drawing: rods from particle to particle; forces and velocities as arrows."""
+"""Drawing: rods from particle to particle, forces and velocities as arrows, supports, elements of mods."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from components.field import Vector
 from components.handle import Handle
 from components.particle import Particle
 from components.view import Preview, drawn_positions
-from game.editor.gestures.base import Gesture
+from game.editor.context import Context, Gesture
+from systems.edit import Refusal
 from systems.edit.arrows import arrow_end, arrow_value, usual_force, usual_speed
-from systems.edit.picking import pick_particle
+from systems.edit.picking import PARTICLE_REACH, pick_particle
 from systems.edit.placing import snapped_to_points
-from systems.edit.refusal import Refusal
 from systems.edit.rods import check_ends, distance, join
+from systems.edit.supports import NAMES, next_support, support, support_towards
 
-if TYPE_CHECKING:
-    from game.session import Session
+SMALLEST_RIM = 5.0  # points, of a particle as it is drawn
 
 
 class Drawing(Gesture):
-    """What clicks and drags draw while a tool is in hand."""
+    """A drawing by clicks, drags or the key of a tool. tool: the name of the tool and of its action."""
 
     tool: ClassVar[str]
 
     @classmethod
-    def begin(cls, session: Session, pixel: Vector) -> Drawing | None:
-        """A new one that begins at a pixel; None if it cannot begin there, or another of its kind is to go on."""
+    def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
+        """A new drawing from a pixel; None if none can begin there, or one of this kind is to go on."""
         raise NotImplementedError
+
+    @classmethod
+    def use(cls, context: Context, pixel: Vector) -> None:
+        """The action of the tool: finish its drawing, else begin one at a pixel, else take the tool up or put it away."""
+        gesture = context.gesture
+        if isinstance(gesture, Drawing) and gesture.tool == cls.tool:
+            gesture.finish(context, pixel)
+            return
+        context.leave_gesture()
+        context.gesture = cls.begin(context, pixel)
+        if context.gesture is None:
+            context.take_up(cls.tool)
+
+    def finish(self, context: Context, pixel: Vector) -> None:
+        """End at a pixel; where that is refused, the drawing goes on."""
+        self.drop(context, pixel)
+        context.gesture = None
 
 
 class DrawFromParticle(Drawing):
-    """What begins at a particle."""
+    """A drawing that begins at a particle."""
 
-    def __init__(self, session: Session, particle: Particle) -> None:
+    def __init__(self, context: Context, particle: Particle) -> None:
         self.particle = particle
 
     @classmethod
-    def begin(cls, session: Session, pixel: Vector) -> Drawing | None:
-        particle = pick_particle(session.model, session.view, pixel)
-        return cls(session, particle) if particle is not None else None
+    def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
+        particle = pick_particle(context.model, context.view, pixel)
+        return cls(context, particle) if particle is not None else None
 
-    def start(self, session: Session) -> Vector:
-        """Where that particle is drawn (m). Raises Refusal if it is gone."""
+    def start(self, context: Context) -> Vector:
+        """Where the particle is drawn (m). Raises Refusal if it was deleted."""
         if not self.particle.exists:
             raise Refusal("The particle where this began was deleted meanwhile; begin at another one.")
-        return drawn_at(session, self.particle)
+        return drawn_at(context, self.particle)
 
 
 class DrawRod(DrawFromParticle):
-    """From one particle to another."""
+    """A rod from one particle to another."""
 
     tool = "rod"
 
-    def __init__(self, session: Session, particle: Particle) -> None:
-        super().__init__(session, particle)
+    def __init__(self, context: Context, particle: Particle) -> None:
+        super().__init__(context, particle)
         self.hint = f"rod from {particle.name}: L or click over another particle     Esc cancel"
 
-    def drop(self, session: Session, pixel: Vector) -> None:
-        self.start(session)
-        other = pick_particle(session.model, session.view, pixel)
+    def drop(self, context: Context, pixel: Vector) -> None:
+        self.start(context)
+        other = pick_particle(context.model, context.view, pixel)
         if other is None:
             raise Refusal("A rod ends at a particle; point at one. P makes a new one.")
-        rod = join(session.model, self.particle, other)
-        session.notice = f"{session.name(rod)}: {rod.rest_length:.6g} m"
+        rod = join(context.model, self.particle, other)
+        context.notice = f"{context.name(rod)}: {rod.rest_length:.6g} m"
 
-    def preview(self, session: Session, pixel: Vector) -> Preview | None:
-        start = self.start(session)
-        other = pick_particle(session.model, session.view, pixel)
+    def preview(self, context: Context, pixel: Vector) -> Preview | None:
+        start = self.start(context)
+        other = pick_particle(context.model, context.view, pixel)
         if other is None or other is self.particle:
-            end = session.view.camera.to_model(pixel)
+            end = context.view.camera.to_model(pixel)
             return Preview("rod", start, end, f"{math.dist(start, end):.3g} m")
         try:
-            check_ends(session.model, self.particle, other)
+            check_ends(context.model, self.particle, other)
             label = f"{distance(self.particle, other):.6g} m"
         except Refusal:
             label = "joined already"
-        return Preview("rod", start, drawn_at(session, other), label)
+        return Preview("rod", start, drawn_at(context, other), label)
 
 
 class DrawArrow(DrawFromParticle):
-    """A vector of a particle, as an arrow from it."""
+    """A vector of a particle, drawn as an arrow from the particle."""
 
     title: ClassVar[str]
     unit: ClassVar[str]
 
-    def __init__(self, session: Session, particle: Particle) -> None:
-        super().__init__(session, particle)
+    def __init__(self, context: Context, particle: Particle) -> None:
+        super().__init__(context, particle)
         key = self.tool[0].upper()
         self.hint = f"{self.tool} of {particle.name}: {key} or click where its arrow ends     Esc cancel"
 
-    def usual(self, session: Session) -> float:
+    def usual(self, context: Context) -> float:
         """The size that an arrow of comfortable length stands for."""
         raise NotImplementedError
 
-    def value(self, session: Session, pixel: Vector) -> Vector:
-        """What the arrow to a pixel stands for."""
-        return arrow_value(session.view, self.start(session), pixel, self.usual(session))
+    def value(self, context: Context, pixel: Vector) -> Vector:
+        """The vector that the arrow to a pixel stands for."""
+        return arrow_value(context.view, self.start(context), pixel, self.usual(context))
 
-    def told(self, value: Vector) -> str:
-        """A value as it is shown."""
+    def shown(self, value: Vector) -> str:
+        """The text of a vector."""
         return f"({value[0]:g}, {value[1]:g}) {self.unit}"
 
-    def drop(self, session: Session, pixel: Vector) -> None:
-        value = self.value(session, pixel)
-        session.model.assign([self.particle], self.tool, [value])
-        session.notice = f"{self.title} {self.particle.name}: {self.told(value)}"
+    def drop(self, context: Context, pixel: Vector) -> None:
+        value = self.value(context, pixel)
+        context.model.assign([self.particle], self.tool, [value])
+        context.notice = f"{self.title} {self.particle.name}: {self.shown(value)}"
 
-    def preview(self, session: Session, pixel: Vector) -> Preview | None:
-        value, start = self.value(session, pixel), self.start(session)
-        end = arrow_end(session.view, start, value, self.usual(session))
-        return Preview(self.tool, start, end, self.told(value))
+    def preview(self, context: Context, pixel: Vector) -> Preview | None:
+        value, start = self.value(context, pixel), self.start(context)
+        end = arrow_end(context.view, start, value, self.usual(context))
+        return Preview(self.tool, start, end, self.shown(value))
 
 
 class DrawForce(DrawArrow):
@@ -119,8 +136,8 @@ class DrawForce(DrawArrow):
 
     tool, title, unit = "force", "Force on", "kN"
 
-    def usual(self, session: Session) -> float:
-        return usual_force(session.model)
+    def usual(self, context: Context) -> float:
+        return usual_force(context.model)
 
 
 class DrawVelocity(DrawArrow):
@@ -128,16 +145,16 @@ class DrawVelocity(DrawArrow):
 
     tool, title, unit = "velocity", "Velocity of", "m/s"
 
-    def __init__(self, session: Session, particle: Particle) -> None:
+    def __init__(self, context: Context, particle: Particle) -> None:
         if all(particle.fixed):
             raise Refusal(f"{particle.name} is held in both directions and cannot move; C frees it.")
-        super().__init__(session, particle)
+        super().__init__(context, particle)
 
-    def usual(self, session: Session) -> float:
-        return usual_speed(session.model)
+    def usual(self, context: Context) -> float:
+        return usual_speed(context.model)
 
-    def value(self, session: Session, pixel: Vector) -> Vector:
-        x, y = super().value(session, pixel)
+    def value(self, context: Context, pixel: Vector) -> Vector:
+        x, y = super().value(context, pixel)
         held = self.particle.fixed
         return 0.0 if held[0] else x, 0.0 if held[1] else y
 
@@ -148,27 +165,27 @@ class DrawElement(Drawing):
     kind: ClassVar[type[Handle]]
     key: ClassVar[str]
 
-    def __init__(self, session: Session, pixel: Vector) -> None:
-        self.from_ = snapped_to_points(session.model, session.view, pixel)
+    def __init__(self, context: Context, pixel: Vector) -> None:
+        self.from_ = snapped_to_points(context.model, context.view, pixel)
         self.hint = f"{self.kind.noun}: {self.key.upper()} or click where it ends     Esc cancel"
 
     @classmethod
-    def begin(cls, session: Session, pixel: Vector) -> Drawing | None:
-        if isinstance(session.gesture, cls) or session.view.strip.contains(pixel):
+    def begin(cls, context: Context, pixel: Vector) -> Drawing | None:
+        if isinstance(context.gesture, cls) or context.view.strip.contains(pixel):
             return None
-        return cls(session, pixel)
+        return cls(context, pixel)
 
-    def drop(self, session: Session, pixel: Vector) -> None:
-        end = snapped_to_points(session.model, session.view, pixel)
+    def drop(self, context: Context, pixel: Vector) -> None:
+        end = snapped_to_points(context.model, context.view, pixel)
         if end == self.from_:
             raise Refusal(f"A {self.kind.noun} goes from one point to another; end it elsewhere.")
         first, last = self.kind.points
-        [made] = session.model.create(self.kind, 1, **{first: [self.from_], last: [end]})
-        session.select(made)
-        session.notice = f"{session.name(made)}: {_length_and_angle(self.from_, end)}"
+        [made] = context.model.create(self.kind, 1, **{first: [self.from_], last: [end]})
+        context.select(made)
+        context.notice = f"{context.name(made)}: {_length_and_angle(self.from_, end)}"
 
-    def preview(self, session: Session, pixel: Vector) -> Preview | None:
-        end = snapped_to_points(session.model, session.view, pixel)
+    def preview(self, context: Context, pixel: Vector) -> Preview | None:
+        end = snapped_to_points(context.model, context.view, pixel)
         return Preview("rod", self.from_, end, _length_and_angle(self.from_, end))
 
 
@@ -178,10 +195,62 @@ def _length_and_angle(start: Vector, end: Vector) -> str:
 
 
 def drawing_of(kind: type[Handle], tool: str, key: str) -> type[DrawElement]:
-    """What draws elements of a kind with two points; `tool` is the name of its action."""
+    """The drawing of elements of a kind with two points, by a tool and its key."""
     return type(f"Draw{kind.__name__}", (DrawElement,), {"kind": kind, "tool": tool, "key": key})
 
 
+def drawn_at(context: Context, particle: Particle) -> Vector:
+    """Where a particle is drawn (m)."""
+    x, y = drawn_positions(context.model)[particle.row].tolist()
+    return x, y
+
+
+class DrawSupport(DrawFromParticle):
+    """The support of a particle, or of all selected particles if it is one of them.
+
+    A drag that ends on the particle counts as a click, which takes the next kind of support.
+    """
+
+    tool = "support"
+
+    def __init__(self, context: Context, particle: Particle) -> None:
+        super().__init__(context, particle)
+        selected = [handle for handle in context.selected if isinstance(handle, Particle)]
+        self._particles = selected if particle in selected else [particle]
+        self.hint = "ground below or above: held in y     at a side: in x     between: both     Esc cancel"
+
+    def drop(self, context: Context, pixel: Vector) -> None:
+        along = self._along(context, pixel)
+        particles = [particle for particle in self._particles if particle.exists]
+        if along is None:
+            name = next_support(context.model, particles)
+        else:
+            name = support(context.model, particles, support_towards(along))
+        others = f" and {len(particles) - 1} more" if len(particles) > 1 else ""
+        context.notice = f"{context.name(self.particle)}{others}: {name}"
+
+    def preview(self, context: Context, pixel: Vector) -> Preview | None:
+        """The symbol of the support on the side of the pointer, with its point on the rim of the particle."""
+        along, (x, y) = self._along(context, pixel), self.start(context)
+        if along is None:
+            return None
+        fixed, camera = support_towards(along), context.view.camera
+        level = abs(along[0]) > abs(along[1])
+        side = (math.copysign(1.0, along[0]), 0.0) if level else (0.0, math.copysign(1.0, along[1]))
+        rim = max(self.particle.radius, SMALLEST_RIM * context.view.pixel_ratio / camera.scale)
+        start = x + rim * side[0], y + rim * side[1]
+        end = start[0] + side[0] / camera.scale, start[1] + side[1] / camera.scale
+        return Preview("pinned" if all(fixed) else "roller", start, end, NAMES[fixed])
+
+    def _along(self, context: Context, pixel: Vector) -> Vector | None:
+        """The vector from the particle to a pixel (m); None if the pixel lies on the particle."""
+        start, end = self.start(context), context.view.camera.to_model(pixel)
+        reach = PARTICLE_REACH * context.view.pixel_ratio / context.view.camera.scale
+        along = end[0] - start[0], end[1] - start[1]
+        return along if math.hypot(*along) > max(reach, self.particle.radius) else None
+
+
+# By tool: the status line while clicks use it, and what it draws ("place" draws nothing, "support" has an action).
 TOOL_HINTS = {
     "place": "click where particles are to be     Esc done",
     "support": "supports: drag from a particle to its ground, or click for the next kind     Esc done",
@@ -190,9 +259,3 @@ TOOL_HINTS = {
     "velocity": "velocities: drag an arrow from a particle     V or Esc done",
 }
 TOOLS: dict[str, type[Drawing]] = {kind.tool: kind for kind in (DrawRod, DrawForce, DrawVelocity)}
-
-
-def drawn_at(session: Session, particle: Particle) -> Vector:
-    """Where a particle is drawn (m)."""
-    x, y = drawn_positions(session.model)[particle.row].tolist()
-    return x, y

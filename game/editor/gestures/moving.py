@@ -1,77 +1,76 @@
-"""Moving by dragging: particles while time stands still, a hand that pulls one while it passes."""
+"""Dragging: elements while time stands still, a hand that pulls a particle while it passes, a box to select."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from components.field import FieldError, Vector
+from components.handle import Handle
 from components.particle import Particle
 from components.view import Preview, drawn_positions
-from game.editor.gestures.base import Gesture
+from game.editor.context import Context, Gesture
+from systems.edit import Refusal
 from systems.edit.moving import Movable
 from systems.edit.picking import Grip
 from systems.edit.placing import check_free, snapped, snapped_to_points
 from systems.edit.pull import hand_on
-from systems.edit.refusal import Refusal
-
-if TYPE_CHECKING:
-    from components.handle import Handle
-    from game.session import Session
+from systems.edit.selecting import inside
 
 
 class _Placing(Gesture):
-    """A drag whose every move changes the document; one entry of the log, however far it goes."""
+    """A drag of which every move changes the document; all its moves are one entry of the log."""
 
     hint = "let go to place     Esc put back"
 
-    def drop(self, session: Session, pixel: Vector) -> None:
-        self.move(session, pixel)
+    def drop(self, context: Context, pixel: Vector) -> None:
+        self.move(context, pixel)
 
-    def cancel(self, session: Session) -> None:
-        session.history.retract(self)
+    def cancel(self, context: Context) -> None:
+        context.history.retract(self)
 
-    def leave(self, session: Session) -> None:
-        """What was moved stays where it is."""
+    def leave(self, context: Context) -> None:
+        """The elements stay where they are."""
 
 
 class Move(_Placing):
-    """Dragging elements moves their original positions."""
+    """Drags elements, by their original positions."""
 
-    def __init__(self, session: Session, hit: Handle, pixel: Vector) -> None:
-        selected = session.selected
+    def __init__(self, context: Context, hit: Handle, pixel: Vector) -> None:
+        selected = context.selected
         chosen = selected if hit in selected else [hit]
         if chosen == [hit]:
-            session.select(hit)
-        self._movable = Movable(session.model, chosen)
+            context.select(hit)
+        self._movable = Movable(context.model, chosen)
         self._start = self._movable.positions
-        self._leader = self._movable.index(hit)  # the one that keeps to the grid
-        self._grip = np.subtract(self._start[self._leader], session.view.camera.to_model(pixel))
+        self._leader = self._movable.index(
+            hit
+        )  # index of the element under the pointer, which keeps to the grid
+        self._grip = np.subtract(self._start[self._leader], context.view.camera.to_model(pixel))
 
-    def move(self, session: Session, pixel: Vector) -> None:
-        model, view = session.model, session.view
+    def move(self, context: Context, pixel: Vector) -> None:
+        model, view = context.model, context.view
         wanted = np.add(view.camera.to_model(pixel), self._grip)
         target = snapped(model, view, (float(wanted[0]), float(wanted[1])))
         try:
-            self._check_free(session, target)
-            with session.history.as_one(self):
+            self._check_free(context, target)
+            with context.history.as_one(self):
                 self._movable.place(self._start + np.subtract(target, self._start[self._leader]))
         except (Refusal, FieldError) as error:
-            session.notice = str(error)
+            context.notice = str(error)
         else:
-            session.notice = self._told(target)
+            context.notice = self._place_of(target)
 
-    def _check_free(self, session: Session, target: Vector) -> None:
-        """Raise Refusal if the particle that keeps to the grid would come to lie on another."""
+    def _check_free(self, context: Context, target: Vector) -> None:
+        """Raise Refusal if the leading particle would come to lie on another."""
         particles = self._movable.particles
         if self._leader < len(particles):
             leader = particles[self._leader]
-            x, y = np.subtract(drawn_positions(session.model)[leader.row], leader.position).tolist()
-            check_free(session.model, session.view, (target[0] + x, target[1] + y), besides=particles)
+            x, y = np.subtract(drawn_positions(context.model)[leader.row], leader.position).tolist()
+            check_free(context.model, context.view, (target[0] + x, target[1] + y), besides=particles)
 
-    def _told(self, target: Vector) -> str:
+    def _place_of(self, target: Vector) -> str:
         particles, count = self._movable.particles, len(self._movable)
         leader = particles[self._leader] if self._leader < len(particles) else self._movable.others[0]
         others = f" and {count - 1} more" if count > 1 else ""
@@ -79,59 +78,76 @@ class Move(_Placing):
 
 
 class MovePoint(_Placing):
-    """Dragging one point of an element, such as the end of a wall."""
+    """Drags one point of an element, such as the end of a wall."""
 
-    def __init__(self, session: Session, grip: Grip) -> None:
-        session.select(grip.element)
+    def __init__(self, context: Context, grip: Grip) -> None:
+        context.select(grip.element)
         self._held = grip
 
-    def move(self, session: Session, pixel: Vector) -> None:
+    def move(self, context: Context, pixel: Vector) -> None:
         element, point = self._held.element, self._held.point
-        target = snapped_to_points(session.model, session.view, pixel, besides=element)
+        target = snapped_to_points(context.model, context.view, pixel, besides=element)
         try:
-            with session.history.as_one(self):
-                session.model.assign([element], point, [target])
+            with context.history.as_one(self):
+                context.model.assign([element], point, [target])
         except FieldError as error:
-            session.notice = str(error)
+            context.notice = str(error)
         else:
             x, y = (100.0 * value for value in target)
-            session.notice = f"{session.name(element)}, {point}: ({x:.6g}, {y:.6g}) cm"
+            context.notice = f"{context.name(element)}, {point}: ({x:.6g}, {y:.6g}) cm"
 
 
 class PullParticle(Gesture):
-    """Dragging a particle while time passes pulls it by a spring; see systems/edit/pull.py."""
+    """Pulls a particle by a spring while time passes; see systems/edit/pull.py."""
 
     hint = "pull with the pointer     let go to release"
 
-    def __init__(self, session: Session, particle: Particle) -> None:
-        if session.settings.displacement_scale == 0.0:
+    def __init__(self, context: Context, particle: Particle) -> None:
+        if context.settings.displacement_scale == 0.0:
             raise Refusal("Displacements are drawn at scale 0, so nothing can be pulled; set it above 0.")
         self._particle = particle
-        session.simulation.advance(0)
-        session.desk.assessment.disturb()
-        session.timeline.hold(hand_on(session.model, session.view, particle, lambda: session.pace))
+        context.simulation.advance(0)
+        context.document.assessment.disturb()
+        context.timeline.hold(hand_on(context.model, context.view, particle, lambda: context.pace))
 
-    def move(self, session: Session, pixel: Vector) -> None:
-        x, y = session.view.camera.to_model(pixel)
-        original, scale = self._particle.position, session.settings.displacement_scale
-        hand = session.pull.hand
+    def move(self, context: Context, pixel: Vector) -> None:
+        x, y = context.view.camera.to_model(pixel)
+        original, scale = self._particle.position, context.settings.displacement_scale
+        hand = context.pull.hand
         if hand is not None:
             anchor = ((x - original[0]) / scale, (y - original[1]) / scale)
-            session.timeline.hold(hand.at(anchor))
+            context.timeline.hold(hand.at(anchor))
 
-    def drop(self, session: Session, pixel: Vector) -> None:
-        session.timeline.hold(None)
+    def drop(self, context: Context, pixel: Vector) -> None:
+        context.timeline.hold(None)
 
-    def cancel(self, session: Session) -> None:
-        session.timeline.hold(None)
+    def cancel(self, context: Context) -> None:
+        context.timeline.hold(None)
 
-    def preview(self, session: Session, pixel: Vector) -> Preview | None:
-        hand = session.pull.hand
+    def preview(self, context: Context, pixel: Vector) -> Preview | None:
+        hand = context.pull.hand
         if hand is None or not self._particle.exists:
             return None
-        scale = session.settings.displacement_scale
+        scale = context.settings.displacement_scale
         start, end = (
             (self._particle.position[0] + scale * u[0], self._particle.position[1] + scale * u[1])
             for u in (self._particle.displacement, hand.anchor)
         )
-        return Preview("pull", start, end, f"{math.hypot(*session.pull.force):.4g} kN")
+        return Preview("pull", start, end, f"{math.hypot(*context.pull.force):.4g} kN")
+
+
+class BoxSelect(Gesture):
+    """Selects the elements inside a box. adding: the elements selected before stay selected."""
+
+    hint = "let go to select what is inside     Esc cancel"
+
+    def __init__(self, context: Context, pixel: Vector, *, adding: bool) -> None:
+        self._corner = context.view.camera.to_model(pixel)
+        self._adding = adding
+
+    def drop(self, context: Context, pixel: Vector) -> None:
+        found = inside(context.model, self._corner, context.view.camera.to_model(pixel))
+        context.select(*(context.selected if self._adding else ()), *found)
+
+    def preview(self, context: Context, pixel: Vector) -> Preview | None:
+        return Preview("box", self._corner, context.view.camera.to_model(pixel))

@@ -1,6 +1,8 @@
 """Scenes: the modes of the program, a state machine with pause as its hub."""
 
-from game.editor.scenes.base import PHYSICS, Scene, SceneError, Scenes, Stage
+from collections.abc import Callable
+
+from game.editor.context import PHYSICS, Scene, SceneError, Scenes, Stage
 from game.editor.scenes.files import Pictures
 from game.editor.scenes.force_method import ForceMethod, Sets
 from game.editor.scenes.load import Load
@@ -8,10 +10,11 @@ from game.editor.scenes.pause import Pause
 from game.editor.scenes.properties import Properties
 from game.editor.scenes.save import Save
 from game.editor.scenes.simulation import Simulation
-from game.registry import SCENES
 from systems.base import System
 
-__all__ = ["PHYSICS", "Scene", "SceneError", "Scenes", "Stage", "all_scenes", "scene_systems"]
+__all__ = ["PHYSICS", "SCENES", "Scene", "SceneError", "Scenes", "Stage", "all_scenes", "scene_systems"]
+
+SCENES: list[Callable[[], Scene]] = []  # that mods add; made anew for every session
 
 
 def all_scenes() -> list[Scene]:

@@ -5,19 +5,17 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from components.box import FILE_NAME, Box
 from components.form import Form, Tile
 from components.model import Model
 from game.documents import library, models
+from game.editor.context import Context
 from game.editor.scenes.form import FormScene
 from systems.base import Phase, System
 from systems.forms import typing
 from systems.render.form_layout import tile_columns
-
-if TYPE_CHECKING:
-    from game.session import Session
 
 SAVED = "Saved models"
 LARGEST_PICTURED = 4 * 2**20  # bytes of a file that is read for its picture
@@ -31,8 +29,8 @@ class FileScene(FormScene):
         super().__init__()
         self._unread: list[Tile] = []
 
-    def exit(self, session: Session) -> None:
-        super().exit(session)
+    def exit(self, context: Context) -> None:
+        super().exit(context)
         self._unread = []
 
     def new_form(self, heading: str, name: str, tiles: Iterable[dict[str, Any]]) -> Form:
@@ -56,28 +54,28 @@ class FileScene(FormScene):
 
     # --- typing and choosing -----------------------------------------------------------------------
 
-    def type(self, session: Session, text: str) -> None:
+    def type(self, context: Context, text: str) -> None:
         if self.form.selected is None:
             typing.select(self.form, self.box)
-        super().type(session, text)
+        super().type(context, text)
 
-    def changed(self, session: Session) -> None:
+    def changed(self, context: Context) -> None:
         self.say("")
         self.form.choose(None)
 
-    def move(self, session: Session, direction: str) -> None:
+    def move(self, context: Context, direction: str) -> None:
         """Arrows choose a tile; left and right move the caret until one is chosen."""
         if direction in ("left", "right") and self.form.chosen is None and self.form.selected is not None:
-            super().move(session, direction)
+            super().move(context, direction)
             return
-        tile = self._neighbour(session, direction)
+        tile = self._neighbour(context, direction)
         if tile is not None:
             self.form.choose(tile)
-            self.reveal(session, tile)
+            self.reveal(context, tile)
 
-    def _neighbour(self, session: Session, direction: str) -> Tile | None:
+    def _neighbour(self, context: Context, direction: str) -> Tile | None:
         """The tile next to the chosen one; the first that is seen if none is chosen yet."""
-        layout = self.layout(session)
+        layout = self.layout(context)
         columns = tile_columns((layout.right - layout.left) / layout.unit)
         tiles = [tile for tile in self.form.tiles if not tile.hidden]
         chosen = self.form.chosen
@@ -86,28 +84,28 @@ class FileScene(FormScene):
         at = tiles.index(chosen) + {"left": -1, "right": 1, "up": -columns, "down": columns}[direction]
         return tiles[min(max(at, 0), len(tiles) - 1)]
 
-    def next_box(self, session: Session, by: int) -> None:
+    def next_box(self, context: Context, by: int) -> None:
         """Tab: there is one box only, so it selects or accepts that."""
         typing.select(self.form, self.box if self.form.selected is None else None)
 
     # --- pictures ----------------------------------------------------------------------------------
 
-    def busy(self, session: Session) -> bool:
-        return self._next_unread(session) is not None
+    def busy(self, context: Context) -> bool:
+        return self._next_unread(context) is not None
 
-    def read_pictures(self, session: Session) -> None:
+    def read_pictures(self, context: Context) -> None:
         """Read the next pictures that are looked for, few in a frame so that typing stays fluent."""
         until = time.perf_counter() + READING
-        while (tile := self._next_unread(session)) is not None:
+        while (tile := self._next_unread(context)) is not None:
             self._unread.remove(tile)
             _read_picture(tile)
             if time.perf_counter() >= until:
                 break
 
-    def _next_unread(self, session: Session) -> Tile | None:
+    def _next_unread(self, context: Context) -> Tile | None:
         if not self._unread:
             return None
-        seen = [place.item for place in self.layout(session).places]
+        seen = [place.item for place in self.layout(context).places]
         return next((tile for tile in self._unread if tile in seen), None)
 
 

@@ -11,15 +11,14 @@ from components.camera import Camera, Viewport
 from components.field import Vector
 from components.model import Model
 from components.view import Page, Status, View, drawn_positions
-from game.editor.scenes.base import Scene
+from game.editor.context import Context, Scene
 from game.force_method import PARTS, words
 from systems.base import Phase, System
 from systems.render.overlays import heading_height
 from systems.render.page import page_height
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # it imports scipy
     from game.force_method.guide import Guide, Mechanism, Set
-    from game.session import Session
 
 WIDE = 1.1  # width / height from which the sets stand side by side
 MOST_OF_HEIGHT = 0.45  # that the working takes; more is scrolled
@@ -63,11 +62,11 @@ class ForceMethod(Scene):
     def _told(self) -> str:
         return words.message(self.shown_guide) if self.shown_guide else self._problem
 
-    def enter(self, session: Session) -> None:
+    def enter(self, context: Context) -> None:
         self._problem, self._mechanism, self._page_of = "", None, -1
-        self.work(session, "Solving the structure", partial(self._begin, session))
+        self.work(context, "Solving the structure", partial(self._begin, context))
 
-    def _begin(self, session: Session) -> None:
+    def _begin(self, context: Context) -> None:
         from game.force_method.guide import (  # scipy is imported only here
             Guide,
             Mechanism,
@@ -77,14 +76,14 @@ class ForceMethod(Scene):
         from systems.statics.force_method import ForceMethodError
 
         try:
-            self.shown_guide = Guide(session.model, session.schedule, session.view)
+            self.shown_guide = Guide(context.model, context.schedule, context.view)
         except ForceMethodError as error:
             self._problem = str(error)
             if error.motion is not None:
-                copy = base_structure(session.model, [])
-                self._mechanism = Mechanism(copy, error.motion, view_like(session.view))
+                copy = base_structure(context.model, [])
+                self._mechanism = Mechanism(copy, error.motion, view_like(context.view))
 
-    def exit(self, session: Session) -> None:
+    def exit(self, context: Context) -> None:
         self.shown_guide = self._mechanism = self._work = None
 
     @property
@@ -98,62 +97,62 @@ class ForceMethod(Scene):
         if work is not None:
             work.do()
 
-    def work(self, session: Session, text: str, do: Callable[[], object]) -> None:
+    def work(self, context: Context, text: str, do: Callable[[], object]) -> None:
         """Do something: if it may take a while, once a picture has said so, or when somebody asks for the guide."""
-        if session.model.rods.count <= LARGE:
+        if context.model.rods.count <= LARGE:
             do()
         else:
-            self._work = _Work(f"{text} with {session.model.rods.count} rods …", do)
+            self._work = _Work(f"{text} with {context.model.rods.count} rods …", do)
 
     def _moving(self) -> list[Set | Mechanism]:
         if self.shown_guide is not None:
             return self.shown_guide.moving
         return [self._mechanism] if self._mechanism is not None else []
 
-    def advance(self, session: Session, elapsed: float) -> None:
+    def advance(self, context: Context, elapsed: float) -> None:
         """Let the time of one frame pass in the sets that move; work that takes a while is announced first."""
         if self._work is not None and not self._work.said:
             self._work.said = True
             return
         self.finish()
         for moving in self._moving():
-            moving.view.forces_known = moving.simulation is None or session.has_program(moving.simulation)
+            moving.view.forces_known = moving.simulation is None or context.has_program(moving.simulation)
             if moving.view.forces_known:
                 moving.advance(elapsed)
 
-    def busy(self, session: Session) -> bool:
+    def busy(self, context: Context) -> bool:
         return self._work is not None or bool(self._moving())
 
-    def hint(self, session: Session) -> str:
+    def hint(self, context: Context) -> str:
         return words.hint(self.shown_guide) if self.shown_guide else "Esc back to pause"
 
     # --- what is seen ------------------------------------------------------------------------------
 
-    def focus(self, session: Session) -> tuple[Model, View]:
+    def focus(self, context: Context) -> tuple[Model, View]:
         """Set 1, from which an unknown is picked."""
-        self._lay_out(session)
+        self._lay_out(context)
         if self.shown_guide is None:
             return self._blank, self._foot
         return self.shown_guide.sets[0].model, self.shown_guide.sets[0].view
 
-    def stages(self, session: Session) -> list[tuple[Model, View]]:
+    def stages(self, context: Context) -> list[tuple[Model, View]]:
         """The message, the sets, and the working with the status line."""
-        return [(self._blank, self._head), *self._lay_out(session), (self._blank, self._foot)]
+        return [(self._blank, self._head), *self._lay_out(context), (self._blank, self._foot)]
 
-    def _lay_out(self, session: Session) -> list[tuple[Model, View]]:
+    def _lay_out(self, context: Context) -> list[tuple[Model, View]]:
         """Place everything in the window; returns what stands in the middle."""
-        guide, ratio, whole = self.shown_guide, session.view.pixel_ratio, session.view.canvas
-        self._head.heading = session.notice or self._told
+        guide, ratio, whole = self.shown_guide, context.view.pixel_ratio, context.view.canvas
+        self._head.heading = context.notice or self._told
         part = f"Part {guide.part} of {PARTS}" if guide else "Not possible"
         if self._work is not None:
             self._head.heading, part = self._work.text, "Working"
-        self._foot.status = Status(time=None, state=part, hint=self.hint(session))
+        self._foot.status = Status(time=None, state=part, hint=self.hint(context))
         self._foot.page = self._working()
         head = round(heading_height(self._head.heading, whole.width, ratio))
         wanted = page_height(self._foot.page, whole.width, ratio)
         foot = min(wanted, round(MOST_OF_HEIGHT * whole.height))
         if foot < wanted:
-            self._foot.status = replace(self._foot.status, hint=f"Wheel more rows     {self.hint(session)}")
+            self._foot.status = replace(self._foot.status, hint=f"Wheel more rows     {self.hint(context)}")
         middle = Viewport(whole.left, whole.top + head, whole.width, max(whole.height - head - foot, 1))
         _place(self._head, Viewport(whole.left, whole.top, whole.width, head), ratio)
         _place(self._foot, Viewport(whole.left, middle.top + middle.height, whole.width, foot), ratio)
@@ -200,31 +199,31 @@ class ForceMethod(Scene):
 
     # --- looking closer: all sets alike ----------------------------------------------------------------
 
-    def cameras(self, session: Session) -> list[Camera]:
+    def cameras(self, context: Context) -> list[Camera]:
         """Those of the sets; what one shows, the others do."""
-        return [view.camera for _, view in self._lay_out(session)]
+        return [view.camera for _, view in self._lay_out(context)]
 
-    def zoom(self, session: Session, factor: float, pixel: Vector) -> None:
+    def zoom(self, context: Context, factor: float, pixel: Vector) -> None:
         foot = self._foot.camera.viewport
         if foot.contains(pixel):
-            self._scroll(session, 1 if factor < 1.0 else -1)
+            self._scroll(context, 1 if factor < 1.0 else -1)
             return
-        cameras = self.cameras(session)
+        cameras = self.cameras(context)
         under = next((c.viewport for c in cameras if c.viewport.contains(pixel)), cameras[0].viewport)
         for camera in cameras:
             v = camera.viewport
             camera.zoom(factor, (pixel[0] - under.left + v.left, pixel[1] - under.top + v.top))
 
-    def _scroll(self, session: Session, rows: int) -> None:
+    def _scroll(self, context: Context, rows: int) -> None:
         last = max(len(self._page.table) - 2, 0)
         self._first = min(max(self._first + rows, 0), last)
 
-    def pan(self, session: Session, pixels: Vector) -> None:
-        for camera in self.cameras(session):
+    def pan(self, context: Context, pixels: Vector) -> None:
+        for camera in self.cameras(context):
             camera.pan(pixels)
 
-    def fit(self, session: Session) -> None:
-        for model, view in self._lay_out(session):
+    def fit(self, context: Context) -> None:
+        for model, view in self._lay_out(context):
             _fit(model, view)
 
 

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from components.box import WORD, Box
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.form import Form, Tile
-from components.spelling import missing
+from components.suggestions import missing
 from components.view import View
-from game.editor.scenes.base import Scene, Stage
+from game.editor.context import Context, Scene, Stage
 from systems.forms import typing
 from systems.render.form_layout import FormLayout, lay_out, row_of
 from systems.render.panel import caret_at
-
-if TYPE_CHECKING:
-    from game.session import Session
 
 
 class FormScene(Scene):
@@ -34,99 +31,99 @@ class FormScene(Scene):
         """What its heading says, and why the text of a box is refused."""
         return " ".join(filter(None, [self.form.heading.message, *(box.problem for box in self.form.boxes)]))
 
-    def enter(self, session: Session) -> None:
-        self.form = self.make_form(session)
+    def enter(self, context: Context) -> None:
+        self.form = self.make_form(context)
 
-    def exit(self, session: Session) -> None:
+    def exit(self, context: Context) -> None:
         self.form = Form("")
 
     # --- what a kind of form decides ---------------------------------------------------------------
 
-    def make_form(self, session: Session) -> Form:
+    def make_form(self, context: Context) -> Form:
         """The boxes and tiles to begin with."""
         raise NotImplementedError
 
-    def leave(self, session: Session) -> None:
+    def leave(self, context: Context) -> None:
         """Esc while no box is selected."""
-        session.scenes.request("pause")
+        context.scenes.request("pause")
 
-    def accept(self, session: Session) -> None:
+    def accept(self, context: Context) -> None:
         """Return: accept the selected box."""
         typing.accept(self.form)
 
-    def changed(self, session: Session) -> None:
+    def changed(self, context: Context) -> None:
         """The text of a box was changed."""
 
-    def choose(self, session: Session, tile: Tile) -> None:
+    def choose(self, context: Context, tile: Tile) -> None:
         """A tile was clicked."""
 
-    def viewport(self, session: Session) -> Viewport:
+    def viewport(self, context: Context) -> Viewport:
         """The part of the window that the form takes."""
-        return session.view.camera.viewport
+        return context.view.camera.viewport
 
-    def helped(self, session: Session) -> Viewport:
-        return self.viewport(session)
+    def helped(self, context: Context) -> Viewport:
+        return self.viewport(context)
 
-    def move(self, session: Session, direction: str) -> None:
+    def move(self, context: Context, direction: str) -> None:
         """An arrow key: "left", "right", "up" or "down"."""
         box = self.form.selected
         if direction in ("up", "down"):
             by = 1 if direction == "down" else -1
             if box is not None and box.accepts == WORD:
                 typing.turn_word(self.form, box, by)
-                self.changed(session)
+                self.changed(context)
             else:
-                self.next_box(session, by)
+                self.next_box(context, by)
         else:
             typing.step_caret(self.form, 1 if direction == "right" else -1)
-            self._reveal_selected(session)
+            self._reveal_selected(context)
 
     # --- pictures ----------------------------------------------------------------------------------
 
-    def stages(self, session: Session) -> Sequence[Stage]:
-        return [(self.form, self.form_view(session))]
+    def stages(self, context: Context) -> Sequence[Stage]:
+        return [(self.form, self.form_view(context))]
 
-    def form_view(self, session: Session) -> View:
+    def form_view(self, context: Context) -> View:
         """How the form is shown."""
-        return replace(session.view, camera=Camera(viewport=self.viewport(session)))
+        return replace(context.view, camera=Camera(viewport=self.viewport(context)))
 
-    def layout(self, session: Session) -> FormLayout:
+    def layout(self, context: Context) -> FormLayout:
         """Where its boxes and tiles are now."""
-        return lay_out(self.form, self.viewport(session), session.view.pixel_ratio)
+        return lay_out(self.form, self.viewport(context), context.view.pixel_ratio)
 
-    def resized(self, session: Session) -> None:
+    def resized(self, context: Context) -> None:
         """Keep the selected box in sight."""
-        self._reveal_selected(session)
+        self._reveal_selected(context)
 
     # --- input -------------------------------------------------------------------------------------
 
-    def type(self, session: Session, text: str) -> None:
+    def type(self, context: Context, text: str) -> None:
         typing.write(self.form, text)
-        self._reveal_selected(session)
-        self.changed(session)
+        self._reveal_selected(context)
+        self.changed(context)
 
-    def erase(self, session: Session, *, after: bool = False) -> None:
+    def erase(self, context: Context, *, after: bool = False) -> None:
         """Backspace, or Delete."""
         typing.erase(self.form, after=after)
-        self._reveal_selected(session)
-        self.changed(session)
+        self._reveal_selected(context)
+        self.changed(context)
 
-    def cancel(self, session: Session) -> None:
+    def cancel(self, context: Context) -> None:
         """Esc: give the selected box back what it held; without one, leave."""
         if self.form.selected is None:
-            self.leave(session)
+            self.leave(context)
         else:
             typing.restore(self.form)
-            self.changed(session)
+            self.changed(context)
 
-    def next_box(self, session: Session, by: int) -> None:
+    def next_box(self, context: Context, by: int) -> None:
         """Tab: select the next box, or the previous one."""
         typing.move_on(self.form, by)
-        self._reveal_selected(session)
+        self._reveal_selected(context)
 
-    def click(self, session: Session, pixel: Vector) -> None:
+    def click(self, context: Context, pixel: Vector) -> None:
         """Select a box (a switch also turns), put its caret, or choose a tile."""
-        place = next((p for p in self.layout(session).places if p.contains(pixel)), None)
+        place = next((p for p in self.layout(context).places if p.contains(pixel)), None)
         match place.item if place is not None else None:
             case Box() as box:
                 again = box is self.form.selected
@@ -134,15 +131,15 @@ class FormScene(Scene):
                     typing.select(self.form, box)
                 if box.accepts == WORD and (again or box.words == typing.YES_NO):
                     typing.turn_word(self.form, box)
-                    self.changed(session)
+                    self.changed(context)
                 elif again and place is not None:
-                    typing.place_caret(self.form, caret_at(place, box, pixel[0], session.view.pixel_ratio))
+                    typing.place_caret(self.form, caret_at(place, box, pixel[0], context.view.pixel_ratio))
             case Tile() as tile:
-                self.choose(session, tile)
+                self.choose(context, tile)
             case _:
-                self.click_beside(session, pixel)
+                self.click_beside(context, pixel)
 
-    def click_beside(self, session: Session, pixel: Vector) -> None:
+    def click_beside(self, context: Context, pixel: Vector) -> None:
         """A click that hit neither a box nor a tile."""
         typing.accept(self.form)
 
@@ -150,55 +147,55 @@ class FormScene(Scene):
     def boxes(self) -> dict[str, str]:
         return {box.title: box.text for box in self.form.boxes}
 
-    def click_box(self, session: Session, title: str) -> None:
+    def click_box(self, context: Context, title: str) -> None:
         """Select the box with that title, as a click on it does. Raises LookupError."""
         wanted = title.strip().lower()
         for box in self.form.boxes:
             if box.title.lower() == wanted:
-                self.reveal(session, box)
+                self.reveal(context, box)
                 typing.select(self.form, box)
                 return
         titles = [box.title for box in self.form.boxes]
         raise LookupError(missing("boxes", title, titles))
 
-    def scroll(self, session: Session, rows: int) -> None:
+    def scroll(self, context: Context, rows: int) -> None:
         """Let so many rows go by."""
         heading = self.form.heading
-        heading.first = max(self.layout(session).first + rows, 0)
-        heading.first = self.layout(session).first
+        heading.first = max(self.layout(context).first + rows, 0)
+        heading.first = self.layout(context).first
 
-    def page(self, session: Session, by: int) -> None:
+    def page(self, context: Context, by: int) -> None:
         """Let all rows that are seen but one go by."""
-        self.scroll(session, by * max(self.layout(session).shown - 1, 1))
+        self.scroll(context, by * max(self.layout(context).shown - 1, 1))
 
-    def reveal(self, session: Session, item: Box | Tile) -> None:
+    def reveal(self, context: Context, item: Box | Tile) -> None:
         """Scroll until a box or tile is seen, with the heading of its section if it is the first there."""
-        layout, heading = self.layout(session), self.form.heading
+        layout, heading = self.layout(context), self.form.heading
         if layout.place_of(item) is not None:
             return
         row, above = row_of(self.form, item, layout)
         heading.first = min(layout.first, above)
-        while heading.first < row and self.layout(session).place_of(item) is None:
+        while heading.first < row and self.layout(context).place_of(item) is None:
             heading.first += 1
 
-    def _reveal_selected(self, session: Session) -> None:
+    def _reveal_selected(self, context: Context) -> None:
         """What is typed into is seen."""
         if self.form.selected is not None:
-            self.reveal(session, self.form.selected)
+            self.reveal(context, self.form.selected)
 
     # --- clipboard ---------------------------------------------------------------------------------
 
-    def copy(self, session: Session) -> None:
+    def copy(self, context: Context) -> None:
         """Put the text of the selected box on the clipboard."""
         if self.form.selected is not None:
-            session.clipboard = self.form.selected.text
+            context.clipboard = self.form.selected.text
 
-    def cut(self, session: Session) -> None:
+    def cut(self, context: Context) -> None:
         """Copy, then empty the box."""
-        self.copy(session)
+        self.copy(context)
         typing.mark_all(self.form)
-        self.erase(session)
+        self.erase(context)
 
-    def paste(self, session: Session) -> None:
+    def paste(self, context: Context) -> None:
         """Type what is on the clipboard."""
-        self.type(session, session.clipboard)
+        self.type(context, context.clipboard)

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from components.tags import Selected
-from game.editor.scenes.base import Scene
-
-if TYPE_CHECKING:
-    from game.session import Session
+from game.editor.context import Context, Scene
 
 
 class Pause(Scene):
@@ -18,14 +13,14 @@ class Pause(Scene):
     heading = "Pause"
     targets = ("simulation", "properties", "save", "load", "force method")
 
-    def hint(self, session: Session) -> str:
-        if session.model.particles.count == 0:
+    def hint(self, context: Context) -> str:
+        if context.model.particles.count == 0:
             return (
                 "P new particle under the pointer     L rod from one to another     C support     F force"
                 "     D open a model     F1 all keys"
             )
-        selected = session.model.rows_tagged(Selected)
-        kinds = [session.model.tables[name].kind for name, rows in selected.items() if len(rows)]
+        selected = context.model.rows_tagged(Selected)
+        kinds = [context.model.tables[name].kind for name, rows in selected.items() if len(rows)]
         if kinds and all(kind.points for kind in kinds):
             return "drag it or its ends     Return properties     Esc deselect     F1 keys"
         if kinds:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from components.form import Form, Tile
 from game.documents import library, models
+from game.editor.context import Context
 from game.editor.scenes.files import FileScene, saved_tiles
 from systems.forms import typing
-
-if TYPE_CHECKING:
-    from game.session import Session
 
 
 class Save(FileScene):
@@ -23,27 +19,27 @@ class Save(FileScene):
         super().__init__()
         self._confirmed = ""
 
-    def make_form(self, session: Session) -> Form:
+    def make_form(self, context: Context) -> Form:
         self._confirmed = ""
-        form = self.new_form("Save", session.file.name, saved_tiles())
+        form = self.new_form("Save", context.file.name, saved_tiles())
         form.boxes[0].explanation = f"A file in {library.models_folder()}"
         return form
 
-    def choose(self, session: Session, tile: Tile) -> None:
+    def choose(self, context: Context, tile: Tile) -> None:
         """A tile's name may be used again, or changed a little."""
         self.form.choose(None)
         typing.select(self.form, self.box)
         typing.put(self.form, self.box, tile.file)
-        self.changed(session)
+        self.changed(context)
 
-    def move(self, session: Session, direction: str) -> None:
-        super().move(session, direction)
+    def move(self, context: Context, direction: str) -> None:
+        super().move(context, direction)
         chosen = self.form.chosen
         if chosen is not None and self.box.text != chosen.file:
             typing.put(self.form, self.box, chosen.file)
             self.say("")
 
-    def accept(self, session: Session) -> None:
+    def accept(self, context: Context) -> None:
         """Return: save."""
         name = self.box.text.strip()
         try:
@@ -53,7 +49,7 @@ class Save(FileScene):
                 self.say(f"There is a model '{name}' already. Return again replaces it; Esc does not.")
                 return
             path.parent.mkdir(parents=True, exist_ok=True)
-            session.save_as(path)
+            context.save_as(path)
         except OSError as error:
             self.say(
                 f"{library.models_folder()} cannot be made: {error.strerror}. Start Pinjoint with {library.DATA_VARIABLE}"
@@ -63,11 +59,11 @@ class Save(FileScene):
         except (library.NameRefused, models.ModelError) as error:
             self.say(str(error))
             return
-        session.scenes.request("pause")
+        context.scenes.request("pause")
 
-    def changed(self, session: Session) -> None:
-        super().changed(session)
+    def changed(self, context: Context) -> None:
+        super().changed(context)
         self._confirmed = ""
 
-    def hint(self, session: Session) -> str:
+    def hint(self, context: Context) -> str:
         return "Type a name     Return save     Esc back"

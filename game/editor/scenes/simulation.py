@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from game.editor.scenes.base import Scene
-
-if TYPE_CHECKING:
-    from game.session import Session
+from game.editor.context import Context, Scene
 
 
 class Simulation(Scene):
@@ -16,8 +11,8 @@ class Simulation(Scene):
     name = "simulation"
     targets = ("pause",)
 
-    def busy(self, session: Session) -> bool:
-        return not session.simulation.halted
+    def busy(self, context: Context) -> bool:
+        return not context.simulation.halted
 
-    def hint(self, session: Session) -> str:
+    def hint(self, context: Context) -> str:
         return "Space pause     + − speed     I forces     R restart     F1 keys"

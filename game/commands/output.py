@@ -1,0 +1,145 @@
+"""Output: where a command writes its result, and the three formats that all of them share: table, json, csv."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import io
+import math
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from game.commands.arguments import UsageError
+from game.documents.models import laid_out, replace
+
+Format = Literal["table", "json", "csv"]
+FORMATS: tuple[Format, ...] = ("table", "json", "csv")
+Row = Sequence[Any]  # of a table or of CSV
+Rows = Callable[[Any], Iterable[Row]]
+
+
+class ResultError(ValueError):
+    """A result that is not a finite number; the message names the element."""
+
+
+# --- options -------------------------------------------------------------------------------------------
+
+
+def writable(text: str) -> str:
+    """The name of a file that can be written; checked before anything is computed for it."""
+    path = Path(text)
+    if path.is_dir():
+        reason = "it is a folder"
+    elif not path.parent.is_dir():
+        reason = f"there is no folder {path.parent}"
+    elif not os.access(path if path.exists() else path.parent, os.W_OK):
+        reason = "permission denied"
+    else:
+        return text
+    raise argparse.ArgumentTypeError(f"{text} cannot be written, {reason}; choose another file")
+
+
+def add_format(parser: argparse.ArgumentParser, default: Format = "table") -> None:
+    """The option --format alone, of commands whose --output is something else than a file."""
+    parser.add_argument(
+        "--format", choices=FORMATS, default=default, help=f"of what is printed; default {default}"
+    )
+
+
+def add_output(parser: argparse.ArgumentParser, default: Format = "table") -> None:
+    """The options --format and --output, which `write_result` obeys."""
+    add_format(parser, default)
+    parser.add_argument(
+        "--output", type=writable, metavar="FILE", help="write to a file instead of standard output"
+    )
+
+
+# --- writing -------------------------------------------------------------------------------------------
+
+
+def write_result(
+    options: argparse.Namespace, data: Any, rows: Rows, lines: Callable[[Any], Iterable[str]] | None = None
+) -> None:
+    """Write a result to the file and in the format of `add_output`. Raises UsageError, ResultError.
+
+    data: the result, which JSON shows. rows: what makes rows of values of it, headings first, for CSV.
+    lines: what makes the lines of a text to read of it; None: the rows in columns. Both get plain data.
+    """
+    write(formatted(options.format, data, rows, lines), options.output)
+
+
+def formatted(
+    chosen: Format, data: Any, rows: Rows, lines: Callable[[Any], Iterable[str]] | None = None
+) -> str:
+    """The text of a result in a format; see `write_result`. Raises ResultError."""
+    data = plain(data, "result")
+    if chosen == "json":
+        return laid_out(data, depth=4) + "\n"
+    if chosen == "csv":
+        return _as_csv(rows(data))
+    made = lines(data) if lines else aligned([[as_written(value) for value in row] for row in rows(data)])
+    return "".join(f"{line}\n" for line in made)
+
+
+def write(text: str, path: str | None) -> None:
+    """Write a text to a file, whole or not at all, or to standard output if None. Raises UsageError."""
+    try:
+        if path is None:
+            sys.stdout.write(text)
+            sys.stdout.flush()
+        else:
+            replace(path, text.encode())
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        place = path or "Standard output"
+        raise UsageError(f"{place} cannot be written: {error.strerror}. Choose another file.") from None
+
+
+# --- values as text ------------------------------------------------------------------------------------
+
+
+def _as_csv(rows: Iterable[Row]) -> str:
+    """Full double precision; True and False are 1 and 0."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    for row in rows:
+        writer.writerow([int(value) if isinstance(value, bool) else value for value in row])
+    return text.getvalue()
+
+
+def aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Rows of texts in columns, the first to the left and the others to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for name, *numbers in rows:
+        cells = [name.ljust(widths[0]), *(n.rjust(w) for n, w in zip(numbers, widths[1:], strict=True))]
+        yield "  ".join(cells).rstrip()
+
+
+def as_written(value: Any) -> str:
+    """A value as tables show it: numbers with 7 digits, "–" for none."""
+    if value is None:
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return value if isinstance(value, str) else f"{value + 0.0:.7g}"  # + 0.0: no minus before a zero
+
+
+def plain(value: Any, where: str) -> Any:
+    """A value as JSON has them, numpy's included, every number finite. Raises ResultError, which names `where`."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ResultError(f"{where} is {value}, not finite; report a state before it.")
+    if isinstance(value, str):
+        return value.encode("utf-8", "replace").decode()  # names of files need not be UTF-8
+    if isinstance(value, Mapping):
+        return {str(key): plain(item, f"{where}.{key}") for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item, f"{where}[{index}]") for index, item in enumerate(value)]
+    return value

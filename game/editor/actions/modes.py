@@ -1,0 +1,140 @@
+"""Actions that move between the modes, on files, and in the boxes and tiles of forms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from components.field import Vector
+from game.documents.models import ModelError
+from game.documents.open_documents import stamp_of
+from game.editor.context import Context, SceneError, action
+from game.editor.scenes.form import FormScene
+from game.editor.scenes.properties import Properties
+from systems.edit import Refusal
+from systems.forms import typing
+
+
+@action("pause")
+@action("back")
+def _pause(context: Context, pixel: Vector) -> None:
+    context.scenes.request("pause")
+
+
+@action("escape", while_drawing=True)
+def _escape(context: Context, pixel: Vector) -> None:
+    """Cancel the drawing, else put the tool away, else end the run or deselect; with nothing to end, run."""
+    if context.cancel_gesture():
+        return
+    if context.scene == "simulation":
+        context.scenes.request("pause")
+    elif context.selected:
+        context.select()
+    else:
+        context.scenes.request("simulation")
+
+
+@action("toggle run")
+def _toggle_run(context: Context, pixel: Vector) -> None:
+    context.scenes.request("pause" if context.scene == "simulation" else "simulation")
+
+
+@action("force method")
+def _force_method(context: Context, pixel: Vector) -> None:
+    if context.model.particles.count == 0:
+        raise Refusal("There is nothing to solve yet; draw a structure with P and L, or open one with D.")
+    context.scenes.request("force method")
+
+
+# --- files -----------------------------------------------------------------------------------------------
+
+
+def _to_pause_and(context: Context, scene: str) -> None:
+    context.scenes.request(*(("pause", scene) if context.scene == "simulation" else (scene,)))
+
+
+@action("save")
+def _save(context: Context, pixel: Vector) -> None:
+    _to_pause_and(context, "save")
+
+
+@action("load")
+def _load(context: Context, pixel: Vector) -> None:
+    _to_pause_and(context, "load")
+
+
+@action("save again")
+def _save_again(context: Context, pixel: Vector) -> None:
+    """Save to the same file; a model without one is named first, and a file that was changed since is asked about."""
+    file = context.file
+    if file.path is None:
+        _to_pause_and(context, "save")
+        return
+    there = stamp_of(file.path)
+    if there not in ((), file.stamp):
+        context.document.file = replace(file, stamp=there)
+        raise Refusal(
+            f"Another window or program has changed '{file.name}' since. Ctrl+S again replaces that; S asks for another"
+            " name."
+        )
+    try:
+        context.save_as(file.path)
+    except ModelError as error:
+        context.notice = str(error)
+
+
+@action("new")
+def _new(context: Context, pixel: Vector) -> None:
+    context.open_here(None)
+
+
+@action("properties")
+def _properties(context: Context, pixel: Vector) -> None:
+    """The properties of the selected elements, or the environment; leaving them leads back to this scene."""
+    properties = context.scenes["properties"]
+    assert isinstance(properties, Properties)
+    properties.opened_from(context.scene)
+    _to_pause_and(context, "properties")
+
+
+# --- boxes and tiles -------------------------------------------------------------------------------------
+
+
+def _form_scene(context: Context) -> FormScene:
+    scene = context.scenes.active
+    if not isinstance(scene, FormScene):
+        raise SceneError(f"In {scene.name} there are no boxes; go to properties, save or load first.")
+    return scene
+
+
+def _on_form(name: str, act: Callable[[FormScene, Context], object]) -> None:
+    @action(name)
+    def _act(context: Context, pixel: Vector) -> None:
+        act(_form_scene(context), context)
+
+
+_on_form("accept", lambda scene, context: scene.accept(context))
+_on_form("cancel", lambda scene, context: scene.cancel(context))
+_on_form("next box", lambda scene, context: scene.next_box(context, 1))
+_on_form("previous box", lambda scene, context: scene.next_box(context, -1))
+_on_form("erase", lambda scene, context: scene.erase(context))
+_on_form("erase after", lambda scene, context: scene.erase(context, after=True))
+_on_form("go left", lambda scene, context: scene.move(context, "left"))
+_on_form("go right", lambda scene, context: scene.move(context, "right"))
+_on_form("go up", lambda scene, context: scene.move(context, "up"))
+_on_form("go down", lambda scene, context: scene.move(context, "down"))
+_on_form("to the beginning", lambda scene, context: typing.place_caret(scene.form, 0))
+_on_form("to the end", lambda scene, context: typing.place_caret(scene.form, typing.MOST_CHARACTERS))
+_on_form("mark all", lambda scene, context: typing.mark_all(scene.form))
+_on_form("copy text", lambda scene, context: scene.copy(context))
+_on_form("cut text", lambda scene, context: scene.cut(context))
+_on_form("paste text", lambda scene, context: scene.paste(context))
+_on_form("scroll up", lambda scene, context: scene.scroll(context, -1))
+_on_form("scroll down", lambda scene, context: scene.scroll(context, 1))
+_on_form("page up", lambda scene, context: scene.page(context, -1))
+_on_form("page down", lambda scene, context: scene.page(context, 1))
+
+
+@action("click form")
+def _click_form(context: Context, pixel: Vector) -> None:
+    _form_scene(context).click(context, pixel)

@@ -1,0 +1,581 @@
+"""Context: a session as actions, gestures and scenes know it; and what these three are.
+
+They are given the context of the session and change it; `game.session.Session` is a context that scripts drive.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+from components.camera import Viewport
+from components.field import Vector
+from components.form import Form
+from components.handle import Handle
+from components.model import Model
+from components.settings import Settings
+from components.tags import Selected
+from components.toolbar import Toolbar
+from components.view import Preview, Readout, View
+from game.documents import models
+from game.documents.autosave import Autosave
+from game.documents.document import missing_mods
+from game.documents.history.history import History
+from game.documents.history.timeline import Timeline
+from game.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
+from game.editor.clipboard import Part
+from game.editor.host import Prepares, Window
+from game.scripts.script import Script
+from systems.base import Mod
+from systems.collision.impacts import Impacts
+from systems.edit.pull import Pull
+from systems.physics.pace import natural_pace
+from systems.run.energy import Energy
+from systems.run.real_time import TimeScale
+from systems.run.simulation import Simulation
+from systems.run.system import Time
+from systems.schedule import Schedule
+
+if TYPE_CHECKING:  # it imports scipy
+    from systems.statics.events import Event
+
+Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
+
+# --- actions ---------------------------------------------------------------------------------------------
+
+Action = Callable[["Context", Vector], None]
+
+ACTIONS: dict[str, Action] = {}
+WHILE_DRAWING: set[str] = set()  # names of actions that what is being drawn or dragged survives
+
+
+def action(name: str, *, while_drawing: bool = False) -> Callable[[Action], Action]:
+    """Register a function(context, pixel) as a named action; `pixel` is where the pointer is.
+
+    while_drawing: it goes on with what is being drawn or dragged, or only looks; all others end that first.
+    """
+
+    def register(function: Action) -> Action:
+        if name in ACTIONS:
+            raise ValueError(f"There is an action '{name}' already.")
+        ACTIONS[name] = function
+        if while_drawing:
+            WHILE_DRAWING.add(name)
+        return function
+
+    return register
+
+
+# --- gestures --------------------------------------------------------------------------------------------
+
+
+class Gesture:
+    """One drag, or one use of a tool. Pixels are where the pointer is.
+
+    hint: the next possible step, for the status line.
+    """
+
+    hint = "let go to finish     Esc cancel"
+
+    def move(self, context: Context, pixel: Vector) -> None:
+        """The pointer was dragged to a pixel."""
+
+    def drop(self, context: Context, pixel: Vector) -> None:
+        """Finish at a pixel. Raises Refusal or FieldError if that cannot be; then nothing has changed."""
+
+    def cancel(self, context: Context) -> None:
+        """End it as if it had never begun."""
+
+    def leave(self, context: Context) -> None:
+        """Something else was begun before it was finished."""
+        self.cancel(context)
+
+    def preview(self, context: Context, pixel: Vector) -> Preview | None:
+        """What is drawn while it goes on, with the pointer at a pixel."""
+        return None
+
+
+# --- scenes ----------------------------------------------------------------------------------------------
+
+# The systems that let time pass, for scenes that want what happens in a simulation.
+PHYSICS = ("run.*", "physics.*", "plasticity.*", "loads.*", "collision.*", "edit.pull")
+
+
+class SceneError(ValueError):
+    """A transition that does not exist; the message says from where to where, and what does."""
+
+
+class Scene:
+    """One mode. Systems say by their `scenes` in which they are active; keys are in input/bindings.py.
+
+    heading: the word shown top left in red. targets: scenes that may follow. sources: further scenes that
+    this one may follow, which need not know it. systems: names, or patterns such as "physics.*", of systems that
+    are active in it although they do not name it; PHYSICS lists those that let time pass.
+    mod: the mod that brought it, if one did; set by the program.
+    """
+
+    name: ClassVar[str]
+    heading: str = ""
+    targets: ClassVar[tuple[str, ...]] = ("pause",)
+    sources: ClassVar[tuple[str, ...]] = ()
+    systems: ClassVar[tuple[str, ...]] = ()
+    mod: Mod | None = None
+
+    @property
+    def message(self) -> str:
+        """What it asks, tells or refuses in a place of its own; "" if nothing."""
+        return ""
+
+    def enter(self, context: Context) -> None:
+        """Called once when the scene becomes the active one."""
+
+    def exit(self, context: Context) -> None:
+        """Called once when it stops being the active one."""
+
+    def finish(self) -> None:
+        """Do now what was put off until a picture has announced it."""
+
+    def zoom(self, context: Context, factor: float, pixel: Vector) -> None:
+        """Look closer, so that what is under a pixel stays there."""
+        context.view.camera.zoom(factor, pixel)
+        context.view.fitted = False
+
+    def pan(self, context: Context, pixels: Vector) -> None:
+        """Move the picture by so many pixels (right, down)."""
+        context.view.camera.pan(pixels)
+        context.view.fitted = False
+
+    def fit(self, context: Context) -> None:
+        """Show everything."""
+        context.view.fit(context.model)
+
+    def helped(self, context: Context) -> Viewport:
+        """The part of the window in which its keys are shown."""
+        return context.view.canvas
+
+    def resized(self, context: Context) -> None:
+        """The window has another size."""
+
+    def busy(self, context: Context) -> bool:
+        """True while frames change something without a person's doing."""
+        return False
+
+    def focus(self, context: Context) -> tuple[Model, View]:
+        """The model that a pointer picks from, and its view."""
+        return context.model, context.view
+
+    def type(self, context: Context, text: str) -> None:
+        """Text was typed."""
+
+    def click_box(self, context: Context, title: str) -> None:
+        """Select the box with that title. Raises LookupError."""
+        raise LookupError(f"In {self.name} there are no boxes; go to properties, save or load first.")
+
+    @property
+    def boxes(self) -> dict[str, str]:
+        """What the boxes contain, by their titles."""
+        return {}
+
+    def stages(self, context: Context) -> Sequence[Stage]:
+        """What is shown: models and forms, each in its view."""
+        return [(context.model, context.view)]
+
+    def hint(self, context: Context) -> str:
+        """The next possible step, for the status line."""
+        return ""
+
+
+class Scenes:
+    """The state machine: exactly one scene is active; a requested transition waits for `apply`."""
+
+    def __init__(self, scenes: Sequence[Scene]) -> None:
+        self._by_name = {scene.name: scene for scene in scenes}
+        self.active = scenes[0]
+        self._requested: list[str] = []
+
+    def __getitem__(self, name: str) -> Scene:
+        return self._by_name[name]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all scenes."""
+        return tuple(self._by_name)
+
+    def request(self, *names: str) -> None:
+        """Ask for a transition, or a chain of them. Raises SceneError if one is not legal."""
+        here = self._by_name[self._requested[-1]] if self._requested else self.active
+        for name in names:
+            if name not in self._by_name:
+                known = ", ".join(self._by_name)
+                raise SceneError(f"There is no scene '{name}'; there are {known}.")
+            if name not in here.targets and here.name not in self._by_name[name].sources:
+                targets = ", ".join(here.targets)
+                raise SceneError(f"From {here.name} one cannot go to {name}, only to {targets}.")
+            here = self._by_name[name]
+        self._requested.extend(names)
+
+    def apply(self, context: Context) -> None:
+        """Make the requested transitions: exit, then enter. From a scene of a mod that is switched off, to pause."""
+        if self.active.mod is not None and self.active.mod.off and not self._requested:
+            self.request("pause")
+        while self._requested:
+            name = self._requested.pop(0)
+            self.active.exit(context)
+            self.active = self._by_name[name]
+            self.active.enter(context)
+            if context.time_passes:
+                context.history.begin_run()
+            else:
+                context.history.end_run()
+
+
+# --- the context -----------------------------------------------------------------------------------------
+
+_TIME = Time()
+FAULTS: list[str] = []  # sentences about mods that failed while the program ran, the oldest first
+PANELS: list[Callable[[Context], Sequence[Readout]]] = []  # that mods add beside the model
+
+
+class Context:
+    """The open documents, what is seen of them, and what a person is doing with them.
+
+    schedule: all systems. scenes: the mode, and its transitions. gesture: what is being drawn or dragged.
+    notice: the last sentence said. copied: what was put on the clipboard last, as text and as data.
+    window, autosave, preparation: what a window gives, see host.py; None without one. performing: a script is
+    shown in the window, so input is not for the scenes and no time passes by itself. footer: the strip below
+    the picture meanwhile. lesson: the script that a person asked for. awaited: the simulation that cannot go on
+    before its step program is compiled. faults_seen: how many faults of mods were shown and taken away.
+    """
+
+    def __init__(
+        self, model: Model, schedule: Schedule, pull: Pull, scenes: Sequence[Scene], view: View, file: ModelFile
+    ) -> None:
+        self.schedule = schedule
+        self.pull = pull
+        self.documents = OpenDocuments(model, schedule, pull, file)
+        self.scenes = Scenes(scenes)
+        self.view = view
+        self.gesture: Gesture | None = None
+        self._clipboard = ""
+        self.copied: tuple[str, Part] | None = None
+        self.notice = ""
+        self.window: Window | None = None
+        self.autosave: Autosave | None = None
+        self.preparation: Prepares | None = None
+        self.performing = False
+        self.footer: View | None = None
+        self.lesson: Script | None = None
+        self.awaited: Simulation | None = None
+        self.faults_seen = len(FAULTS)
+
+    # --- documents ---------------------------------------------------------------------------------
+
+    @property
+    def document(self) -> OpenDocument:
+        """The document that is open, with its run, its log and its file."""
+        return self.documents.current
+
+    @property
+    def file(self) -> ModelFile:
+        """Where the model is saved again, and its name."""
+        return self.document.file
+
+    def save(self, path: str | Path) -> None:
+        """Write the model, with its present state, to a file."""
+        self.simulation.account_for_edits()
+        models.save(self.model, Path(path))
+
+    def save_as(self, path: str | Path) -> None:
+        """Write the model to a file that is its own from now on. Raises ModelError."""
+        path = Path(path)
+        self.save(path)
+        self.document.file = ModelFile.at(path)
+        self.document.saved = self.model.revision
+        self.notice = f"Saved as '{path.stem}'."
+
+    def open_here(self, source: Source | None) -> None:
+        """Go on with another model, a new one if None; undo goes back to this one. Raises ModelError."""
+        if source is None:
+            self.adopt(Model())
+        else:
+            self.adopt(models.load(source), file_of(source))
+
+    def adopt(self, model: Model, file: ModelFile = ModelFile()) -> None:  # noqa: B008
+        """Go on with another model. Unsaved work stays open; undo goes back to it."""
+        self.leave_gesture()
+        self.documents.add(model, file)
+        self.begin_document()
+
+    def begin_document(self) -> None:
+        """Show the document that is open now, from the first frame on."""
+        self.make_room()
+        self.view.fit(self.model)
+        if missing := missing_mods(self.model):
+            self.notice = (
+                f"This model holds data of mods that are not loaded: {', '.join(missing)}. They are kept and"
+                " saved again, but have no effect."
+            )
+        self._go_on()
+
+    @property
+    def model(self) -> Model:
+        """The model that is open."""
+        return self.document.model
+
+    @property
+    def simulation(self) -> Simulation:
+        """Its run."""
+        return self.document.simulation
+
+    @property
+    def timeline(self) -> Timeline:
+        """The moments of its run to go back to."""
+        return self.document.timeline
+
+    @property
+    def history(self) -> History:
+        """Its undo log."""
+        return self.document.history
+
+    @property
+    def settings(self) -> Settings:
+        """How the model is computed and drawn."""
+        return self.model.settings
+
+    @property
+    def time(self) -> float:
+        """Simulated time (s)."""
+        return self.model.clock.time
+
+    @property
+    def clock(self) -> TimeScale:
+        """How fast time passes in the window."""
+        return self.document.live.clock
+
+    @property
+    def energy(self) -> Energy:
+        """The energy account of the run."""
+        return self.simulation.energy
+
+    @property
+    def impacts(self) -> Impacts:
+        """The impacts of the run so far, in columns."""
+        return self.simulation.impacts
+
+    @property
+    def remarks(self) -> tuple[Event, ...]:
+        """What the run did that a slowly growing load would not have done, once it is at rest."""
+        return self.document.assessment.remarks
+
+    @property
+    def fault(self) -> str:
+        """The mod that failed last and why, until Escape is pressed; "" if none did."""
+        return FAULTS[-1] if len(FAULTS) > self.faults_seen else ""
+
+    # --- time --------------------------------------------------------------------------------------
+
+    @property
+    def time_passes(self) -> bool:
+        """True while frames let time pass in the document that is open."""
+        return self.schedule.is_active(_TIME, self.scene)
+
+    @property
+    def at_beginning(self) -> bool:
+        """True if no time has passed, or restarting took it back."""
+        return self.document.at_beginning
+
+    @property
+    def pace(self) -> float:
+        """Simulated seconds per second shown that suit the model as it is now, whatever a person chose."""
+        return natural_pace(self.model)  # found anew: the clock's may be from any earlier frame
+
+    def settle(self, factors: Sequence[float] | float = (1.0,)) -> str:
+        """Go to the static equilibrium at each load factor in turn, without letting time pass.
+
+        Can be undone. Returns "equilibrium", or "mechanism", "collapse" or "limit reached" with the last
+        good state; `message` says more. Time moves on to the end of the last load history. Raises ValueError.
+        """
+        status, self.notice = self.document.settle(factors)
+        return status
+
+    def restart(self) -> None:
+        """Go back to the beginning of time, keeping all edits. Can be undone."""
+        if not self.at_beginning:
+            self.document.restart()
+            self._go_on()
+
+    def step(self, steps: int = 1) -> bool:
+        """Go by so many fixed steps, back if negative; False if one cannot go back that far (or is at rest).
+
+        Going back stops where something was edited: undo takes that back.
+        """
+        steps = operator.index(steps)
+        target = self.model.clock.steps + steps
+        self.act_in_scene()
+        self.document.note_beginning()
+        if not self.has_program(self.simulation):
+            return False
+        self.history.end_run()
+        self.history.begin_run(single=True)
+        self.get_ready()  # so that the checkpoint to which stepping back may return is
+        if steps >= 0:
+            with self.timeline.recording():
+                self.simulation.advance(steps)
+        else:
+            self.timeline.go_to(max(target, self.timeline.first))
+        self.history.end_run()
+        self._go_on()
+        return bool(self.model.clock.steps == target)
+
+    def _go_on(self) -> None:
+        """Begin a new run in the log, if time passes in this scene."""
+        if self.time_passes:
+            self.history.begin_run()
+
+    def act_in_scene(self) -> None:
+        """Let time pass under the systems of the active scene; where time stands still, under those of simulation."""
+        self.simulation.act_in(self.scene if self.time_passes else "simulation")
+
+    def get_ready(self) -> None:
+        """Account for edits as if a frame had begun, so that what follows does not depend on when frames do."""
+        self.document.note_beginning()
+        if not self.simulation.halted and self.has_program(self.simulation):
+            self.simulation.advance(0)
+
+    def advance(self, elapsed: float) -> None:
+        """Let the time of one frame pass in the model, under the laws that act in the active scene."""
+        self.act_in_scene()
+        self.document.note_beginning()
+        if self.simulation.halted or not self.has_program(self.simulation):
+            return
+        with self.timeline.recording():
+            self.document.live.frame(elapsed)
+
+    def has_program(self, simulation: Simulation) -> bool:
+        """False while the step program is compiled elsewhere, which is said; without a window it is compiled here."""
+        self.awaited = None if self.waited_for(simulation) is None else simulation
+        return self.awaited is None
+
+    def waited_for(self, simulation: Simulation) -> float | None:
+        """Seconds that a step program has been waited for, or None if it can be had at once."""
+        return self.preparation.waits_for(simulation) if self.preparation is not None else None
+
+    # --- editing -----------------------------------------------------------------------------------
+
+    @property
+    def can_undo(self) -> bool:
+        """True if there is something to take back."""
+        return self.history.can_undo or self.documents.can_move(-1)
+
+    @property
+    def can_redo(self) -> bool:
+        """True if there is something to repeat."""
+        return self.history.can_redo or self.documents.can_move(1)
+
+    def undo(self) -> str:
+        """Take back the last edit or run, or the opening of the document; returns what it was, or ""."""
+        return self._through_log(self.history.undo()) if self.history.can_undo else self._to_document(-1)
+
+    def redo(self) -> str:
+        """Repeat what was taken back; returns what it was, "" if there is nothing."""
+        return self._through_log(self.history.redo()) if self.history.can_redo else self._to_document(1)
+
+    def _through_log(self, title: str) -> str:
+        self._go_on()
+        return title
+
+    def _to_document(self, by: int) -> str:
+        self.leave_gesture()
+        opening = self.documents.move(by)
+        if opening:
+            self.begin_document()
+        return opening
+
+    @property
+    def selected(self) -> list[Handle]:
+        """The selected elements, in order of creation."""
+        return self.model.tagged(Selected)
+
+    @property
+    def has_selected(self) -> bool:
+        """True if anything is selected."""
+        return self.model.any_tagged(Selected)
+
+    def select(self, *handles: Handle) -> None:
+        """Select exactly these elements; none: deselect."""
+        self.model.tag_only(handles, Selected)
+
+    def name(self, handle: Handle) -> str:
+        """An element as a sentence begins with it, such as "Rod AB"."""
+        described = self.model.describe(handle)
+        return described[:1].upper() + described[1:]
+
+    def leave_gesture(self) -> None:
+        """End what is being drawn or dragged before something else begins."""
+        gesture, self.gesture = self.gesture, None
+        if gesture is not None:
+            gesture.leave(self)
+
+    def cancel_gesture(self) -> bool:
+        """Take back what is being drawn or dragged, else put the tool away; False if there is neither."""
+        gesture, self.gesture = self.gesture, None
+        if gesture is not None:
+            gesture.cancel(self)
+        elif self.view.tool:
+            self.view.tool = ""
+        else:
+            return False
+        return True
+
+    def take_up(self, tool: str) -> None:
+        """Let clicks use a tool from now on; if they use it already, put it away."""
+        self.leave_gesture()
+        self.view.tool = "" if self.view.tool == tool else tool
+
+    @property
+    def clipboard(self) -> str:
+        """What was copied, here or, with a window, in any program."""
+        return self.window.copied() if self.window is not None else self._clipboard
+
+    @clipboard.setter
+    def clipboard(self, text: str) -> None:
+        self._clipboard = text
+        if self.window is not None:
+            self.window.copy(text)
+
+    # --- what is seen --------------------------------------------------------------------------------
+
+    @property
+    def scene(self) -> str:
+        """The name of the active scene."""
+        return self.scenes.active.name
+
+    @property
+    def busy(self) -> bool:
+        """True while frames change something without a person's doing."""
+        return self.scenes.active.busy(self)
+
+    @property
+    def focus(self) -> tuple[Model, View]:
+        """The model that a pointer picks from, and its view."""
+        return self.scenes.active.focus(self)
+
+    @property
+    def pointer(self) -> Vector:
+        """The pixel where the pointer is; the middle of the view if it is outside."""
+        return self.view.pointer or self.view.camera.middle
+
+    def panels(self) -> Iterator[Readout]:
+        """What mods show beside the model now."""
+        return (readout for panel in PANELS for readout in panel(self))
+
+    def make_room(self) -> None:
+        """Let the model stand beside the panels, if there are any that would cover it.
+
+        After actions, and never because of time or frames, so that a recording is replayed in the same picture.
+        """
+        view = self.view
+        wanted = view.theory or view.energy or any(readout.is_large for readout in self.panels())
+        view.share(self.model, shares=view.legend and wanted)

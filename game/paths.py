@@ -1,0 +1,292 @@
+"""Paths: what texts such as particles.B.force.x name, on the command line, in sweeps, in scripts and in plots.
+
+`locate` reads the path of a fact of elements; `apply_override` sets such facts, `quantity` reads numbers of
+a session, which may also be its time or an energy.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Collection, Container, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import msgspec
+
+from components.field import Field, FieldError, Role
+from components.handle import Handle
+from components.model import Model
+from components.suggestions import missing, remedy
+from components.table import Table
+from systems.run.energy import Energy
+
+EVERY = "*"  # in place of a name: all elements of the table
+TIME = "time"  # the path of the simulated time
+ENERGIES = (  # that are reported, in this order
+    "kinetic",
+    "elastic",
+    "dissipated_damping",
+    "dissipated_plastic",
+    "dissipated_impact",
+    "work",
+    "imbalance",
+)
+OVERRIDE_FORM = "write it like particles.B.force=120,-160 or settings.restitution=0.5"
+QUANTITY_FORM = "write it like rods.AB.axial_force, particles.B.displacement.y, energy.kinetic or time"
+
+_SET_BY_TIME = ("clock",)  # tables
+_FLAGS = {"true": True, "false": False}
+
+
+class PathError(LookupError):
+    """A path that names nothing, or that cannot have a value; the message says why and what to write."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """What a path names: one fact of the elements of a table, or its component along an axis.
+
+    handles: the elements; element: their name in the path, "*" for all, "" where there is one only.
+    key: the name of the fact in the path. axis: "x", "y" or "" for the whole.
+    """
+
+    table: Table[Any]
+    handles: list[Handle]
+    element: str
+    field: Field[Any]
+    key: str
+    axis: str
+
+    def path(self, element: str) -> str:
+        """The path to the same fact of another element."""
+        return ".".join(part for part in (self.table.name, element, self.key, self.axis) if part)
+
+    def part(self, value: Any) -> Any:
+        """The component of a value that the path names; the whole value if the path has no axis."""
+        return value["xy".index(self.axis)] if self.axis else value
+
+
+Keys = Callable[[Table[Any]], Mapping[str, Field[Any]]]  # the facts of a table that may be named, by key
+
+
+def settable(table: Table[Any]) -> Mapping[str, Field[Any]]:
+    """The facts that a person can set, by the keys of model files."""
+    fields = () if table.name in _SET_BY_TIME else table.fields_in(Role.DOCUMENT, Role.STATE)
+    return {field.name if field.component else field.key: field for field in fields if field.references is None}
+
+
+def readable(table: Table[Any]) -> Mapping[str, Field[Any]]:
+    """All facts, by the names of the attributes of elements."""
+    return table.fields
+
+
+def locate(model: Model, text: str, keys: Keys) -> tuple[Target, str]:
+    """The target of the path with which a text begins, and the rest of the text: from "=" or "~" on, or "".
+
+    Names of elements may contain dots, spaces and "=". Raises PathError.
+    """
+    section, _, rest = text.partition(".")
+    tables = {name: known for name, table in model.tables.items() if (known := keys(table))}
+    name = _known(section.strip(), tables, "table")
+    table, known = model.tables[name], tables[name]
+    element, rest = _element(table, rest, known)
+    handles = list(table) if element in ("", EVERY) else [table[element]]
+    path = _before_value(rest)
+    key, _, axis = path.strip().partition(".")
+    if keys is settable:
+        _refuse_unsettable(table, key, known)
+    field = known[_known(key, known, "key")]
+    if axis and (not field.shape or axis not in ("x", "y")):
+        parts = f"{key}.x or {key}.y" if field.shape else f"{key} only"
+        raise PathError(f"{field.title} has no part '{axis}'; write {parts}.")
+    return Target(table, handles, element, field, key, axis), rest[len(path) :]
+
+
+def locate_one(model: Model, path: str, keys: Keys = readable) -> Target:
+    """The target of a path of one element, with nothing after it. Raises PathError, which quotes the path."""
+    with _quoted(path):
+        target, rest = locate(model, path, keys)
+        if rest:
+            raise PathError(f"'{rest}' follows the path; leave it out.")
+        if target.element == EVERY:
+            raise PathError(f"it names every {target.table.kind.noun}; write a name in place of {EVERY}.")
+    return target
+
+
+def energy_named(name: str) -> str:
+    """The name of an energy that is reported. Raises PathError."""
+    return _known(name, ENERGIES, "energy")
+
+
+@contextmanager
+def _quoted(text: str) -> Iterator[None]:
+    """Begin the message of an error with the text that a person wrote."""
+    try:
+        yield
+    except (PathError, FieldError) as error:
+        raise PathError(f"{text}: {error}") from None
+
+
+def _known(name: str, names: Collection[str], what: str) -> str:
+    if name not in names:
+        raise PathError(f"there is no {what} '{name}'; {remedy(name, names)}")
+    return name
+
+
+def _element(table: Table[Any], rest: str, known: Container[str]) -> tuple[str, str]:
+    """The name of the element that `rest` begins with ("" where there is one only), and what follows it."""
+    if table.kind.single:
+        return "", rest
+    cuts = [index for index, character in enumerate(rest) if character == "."]
+    named = [cut for cut in cuts if rest[:cut] == EVERY or rest[:cut] in table]
+    if not named:
+        _refuse_name(table, rest)
+    # Of the names "B" and "B.1", the longest that a key follows is meant.
+    with_key = [cut for cut in named if _before_value(rest[cut + 1 :]).strip().partition(".")[0] in known]
+    cut = (with_key or named)[-1]
+    return rest[:cut], rest[cut + 1 :]
+
+
+def _before_value(rest: str) -> str:
+    return re.split("[=~]", rest, maxsplit=1)[0]  # "=" gives a value, "~" a distribution of values
+
+
+def _refuse_name(table: Table[Any], rest: str) -> None:
+    parts = _before_value(rest).split(".")
+    name = ".".join(parts[: -2 if parts[-1] in ("x", "y") else -1])
+    if not name:
+        raise PathError(
+            f"it names no {table.kind.noun}; write {table.name}.NAME.{rest or 'KEY'}, or {EVERY} for every name."
+        )
+    raise PathError(missing(table.name, name, table.names))
+
+
+def _refuse_unsettable(table: Table[Any], key: str, known: Mapping[str, Any]) -> None:
+    if key not in known and key in table.fields:
+        made_by = "is computed" if table.fields[key].role is Role.DERIVED else "refers to other elements"
+        raise PathError(f"'{key}' {made_by} and cannot be set here; choose one of {', '.join(known)}.")
+
+
+# --- setting -------------------------------------------------------------------------------------------
+
+
+def apply_override(model: Model, override: str) -> None:
+    """Give a fact of one element, or of all elements of a table ("*"), the value that a person typed.
+
+    override: `<table>.<name or *>.<key>=<value>`, `settings.<key>=<value>` or `environment.<key>=<value>`,
+        with keys and units of model files; `<key>.x` and `<key>.y` are single components, `null` and
+        `none` mean no value of its own. Names may contain dots, spaces and "=".
+
+    One undoable command. Raises PathError, which quotes the override.
+    """
+    with _quoted(override):
+        target, rest = locate(model, override, settable)
+        if not rest.startswith("="):
+            raise PathError(f"it has no value; {OVERRIDE_FORM}.")
+        model.assign(target.handles, target.field.name, _values(target, rest[1:].strip()))
+
+
+def read_value(target: Target, text: str) -> Any:
+    """The value that a text means for a fact; the text itself if it means none, which the field then refuses."""
+    whole = target.field.shape and not target.axis
+    return _vector(target.field, text) if whole else _scalar(target.field, text)
+
+
+def _values(target: Target, text: str) -> list[Any]:
+    """One value per element."""
+    new = read_value(target, text)
+    if not target.axis:
+        return [new] * len(target.handles)
+    old = [getattr(handle, target.field.name) for handle in target.handles]
+    return [(new, y) if target.axis == "x" else (x, new) for x, y in old]
+
+
+def _vector(field: Field[Any], text: str) -> tuple[Any, ...]:
+    inside = text.removeprefix("[").removesuffix("]")
+    return tuple(_scalar(field, part) for part in inside.split(","))
+
+
+def _scalar(field: Field[Any], text: str) -> Any:
+    """The value that a text means for a field; the text itself if it means none, which the field then refuses."""
+    text = text.strip()
+    if field.dtype is str:
+        return text
+    if text.lower() in ("null", "none"):
+        return None
+    if field.dtype is bool:
+        return _FLAGS.get(text.lower(), text)
+    try:
+        return msgspec.json.decode(text) if field.dtype is object else field.dtype(text)
+    except (ValueError, UnicodeEncodeError):
+        return text
+
+
+# --- reading -------------------------------------------------------------------------------------------
+
+
+class Readable(Protocol):
+    """A session, as far as quantities read it."""
+
+    @property
+    def model(self) -> Model: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def energy(self) -> Energy: ...
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number that can be read at any moment.
+
+    path: as a person writes it. name: the fact and the element. unit: that on screen. read: the value in that
+    unit; NaN while the element is deleted.
+    """
+
+    path: str
+    name: str
+    unit: str
+    read: Callable[[Readable], float]
+
+    @property
+    def title(self) -> str:
+        """Name and unit."""
+        return f"{self.name} ({self.unit})" if self.unit else self.name
+
+
+def quantity(model: Model, path: str) -> Quantity:
+    """The quantity that a path leads to. Raises PathError."""
+    if path == TIME:
+        return Quantity(path, "t", "s", lambda session: session.time)
+    table, _, rest = path.partition(".")
+    if table == "energy":
+        with _quoted(path):
+            name = energy_named(rest)
+        return Quantity(path, name.replace("_", " "), "J", lambda session: session.energy.as_dict()[name])
+    if table not in model.tables or not rest:
+        raise PathError(f"There is no quantity '{path}'; {QUANTITY_FORM}.")
+    target = locate_one(model, path, _numbers)
+    if target.field.shape and not target.axis:
+        raise PathError(f"{path}: write {target.key}.x or {target.key}.y.")
+    return _of_element(path, target)
+
+
+def _numbers(table: Table[Any]) -> Mapping[str, Field[Any]]:
+    return {name: field for name, field in table.fields.items() if field.dtype in (float, int, bool)}
+
+
+def _of_element(path: str, target: Target) -> Quantity:
+    handle, field = target.handles[0], target.field
+    unit, factor = field.shown
+    of = handle.world.describe(handle)
+    name = f"{field.title}{f' {target.axis}' if target.axis else ''} of {of}"
+
+    def read(session: Readable) -> float:
+        if not handle.exists or handle.world is not session.model:
+            return math.nan
+        value = session.model.column(f"{handle.table}.{field.name}")[handle.row]
+        return float(target.part(value)) * factor
+
+    return Quantity(path, name, unit, read)
