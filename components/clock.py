@@ -2,9 +2,21 @@
 
 from __future__ import annotations
 
-from components.field import Field, Role
+from collections.abc import Mapping
+from typing import Any
+
+from components.field import Field, FieldError, Role
 from components.handle import Handle
 from components.paths import Paths, check_paths
+
+
+def check_events(value: Any, where: str) -> Mapping[str, tuple[str, ...]]:
+    """Names of elements by the name of an event, from what a model file holds. Raises FieldError."""
+    if isinstance(value, Mapping) and all(isinstance(names, list | tuple) for names in value.values()):
+        found = {str(event): tuple(names) for event, names in value.items()}
+        if all(isinstance(name, str) for names in found.values() for name in names):
+            return found
+    raise FieldError(f'{where}: write the names of elements by event, such as {{"mymod.breaking": ["AB"]}}.')
 
 
 class Clock(Handle):
@@ -87,6 +99,15 @@ class Clock(Handle):
     )
     collisions: Field[int] = Field(
         dtype=int, default=0, role=Role.STATE, title="collisions", doc="Impacts so far."
+    )
+    events: Field[Mapping[str, tuple[str, ...]] | None] = Field(
+        dtype=object,
+        default=None,
+        nullable=True,
+        role=Role.STATE,
+        title="events",
+        doc="The elements whose quantity is negative, by the name of the event.",
+        checker=check_events,
     )
     paths: Field[Paths | None] = Field(
         dtype=object,

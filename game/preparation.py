@@ -201,7 +201,7 @@ def _units(simulation: Simulation) -> tuple[Units, ...]:
 
 
 def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
-    form = form_of(simulation.model, simulation.driver)
+    form = form_of(simulation.model, simulation.driver, plan)
     warmth = (WARM,) if is_warm(simulation.model) else ()
     return simulation.integrator, form, *warmth, *(system.name for system in plan)
 

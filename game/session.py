@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -31,7 +32,7 @@ from game.documents.history.history import History
 from game.documents.history.timeline import Timeline
 from game.documents.open_documents import Desk, Desks, ModelFile, file_of
 from game.editor.actions import ACTIONS, WHILE_DRAWING
-from game.editor.frame import Frame, frame_systems
+from game.editor.frame import Frame, Unseen, frame_systems
 from game.editor.gestures import Gesture
 from game.editor.host import Autosaves, Prepares, Window
 from game.editor.scenes import Scenes, Stage, all_scenes, scene_systems
@@ -39,7 +40,7 @@ from game.editor.toolbar import toolbar_of
 from game.editor.view_model import make_room, show
 from game.mods.mod import FAULTS
 from game.registry import SYSTEMS
-from systems.base import Phase, StopReason, System
+from systems.base import EVENT_INTERVAL, Phase, StopReason, System
 from systems.catalogue import step_systems
 from systems.collision.impacts import Impacts
 from systems.edit.pull import Pull
@@ -309,19 +310,41 @@ class Session:
         self.history.begin_run()
         self.timeline.begin()
         reached = "time reached"
-        if until is not None:
-            reached = "limit reached"
-            self.simulation.run_until_rest(self.time + limit)
-        elif time is not None:
-            self.simulation.run_to(self.time + time)
-        elif steps is not None:
-            self.simulation.advance(steps)
+        with self.without_frames():
+            if until is not None:
+                reached = "limit reached"
+                self.simulation.run_until_rest(self.time + limit)
+            elif time is not None:
+                self.simulation.run_to(self.time + time)
+            elif steps is not None:
+                self.simulation.advance(steps)
         if self.simulation.reason is not StopReason.REST and steps is None:
             self.timeline.clear()  # the last step was a short one, which stepping back does not take again
         if not self.time_passes:
             self.history.end_run()
         ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
         return ended.get(self.simulation.reason, reached)
+
+    @contextmanager
+    def without_frames(self) -> Iterator[None]:
+        """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
+        simulation, frame = self.simulation, Unseen(self, 0.0)
+        if self.performing or not self.schedule.runs_headless(Phase.EVENTS, simulation.scene, self.model):
+            yield
+            return
+
+        def follow() -> int:
+            beyond = self.model.clock.steps % EVENT_INTERVAL
+            if beyond == 0:
+                self.schedule.run(Phase.EVENTS, frame, headless=True)
+            return EVENT_INTERVAL - beyond
+
+        simulation.watchers.append(follow)
+        try:
+            yield
+        finally:
+            simulation.watchers.remove(follow)
+        self.schedule.run(Phase.EVENTS, frame, headless=True)
 
     def settle(self, factors: Sequence[float] | float = (1.0,)) -> str:
         """Go to the static equilibrium at each load factor in turn, without letting time pass.

@@ -17,7 +17,7 @@ A law is a declaration and a compiled function of one row:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from enum import Enum, IntEnum
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
@@ -27,9 +27,22 @@ from numpy.typing import NDArray
 from systems.entries import ACCOUNTS
 
 if TYPE_CHECKING:
+    from components.handle import Handle
     from components.model import Model
 
-__all__ = ["ACCOUNTS", "Commit", "Integrator", "Law", "Mod", "Phase", "StepSystem", "StopReason", "System"]
+__all__ = [
+    "ACCOUNTS",
+    "EVENT_INTERVAL",
+    "Commit",
+    "Event",
+    "Integrator",
+    "Law",
+    "Mod",
+    "Phase",
+    "StepSystem",
+    "StopReason",
+    "System",
+]
 
 
 class Phase(Enum):
@@ -50,6 +63,7 @@ class StopReason(IntEnum):
     REST = 2  # nothing moves any more
     DIVERGED = 3  # energy came from nowhere, or a number is not finite
     UNRESOLVED = 4  # no step, however small, has a finite result
+    EVENT = 5  # the quantity of an Event changed sign
 
 
 class Mod(Protocol):
@@ -61,6 +75,9 @@ class Mod(Protocol):
 
     def switch_off(self, reason: str, error: BaseException | None = None) -> None:
         """Let nothing of it be called any more."""
+
+
+EVENT_INTERVAL = 16  # steps, at multiples of which systems of phase EVENTS run where there are no frames
 
 
 class System(esper.Processor):  # type: ignore[misc,unused-ignore]
@@ -162,6 +179,31 @@ class Commit(StepSystem):
     account: ClassVar[str] = "dissipated_plastic"
     branch: ClassVar[str | Callable[..., Any]] = ""
     margin: ClassVar[str | Callable[..., Any]] = ""
+
+
+class Event(StepSystem):
+    """What happens at the instant at which a quantity of a rod or particle changes sign.
+
+    The kernel maps scalars of one row to the quantity, which has no unit and a size of about 1, such as
+    1 − N / strength. Of rods `elongation` (m), `rate` (m/s) and `axial_force` (kN) are provided. Every row counts as
+    positive when a run begins: one that is negative then has changed sign after the first step.
+
+    Integrators that control their steps end one where a quantity passes 0, within 1e-11; the others end the first
+    step that has passed it. The run stops there, and `happen` may change the model by commands, before it goes on:
+    at the same time, with the same bits, in the window at any frame rate, in scripts and on the command line.
+    clock.events keeps, in the state, which rows are negative.
+
+    each: "rods" or "particles".
+    """
+
+    each: ClassVar[str] = "rods"
+
+    def happen(self, model: Model, fallen: Sequence[Handle], risen: Sequence[Handle]) -> None:
+        """Do what follows for the elements whose quantity became negative, and positive again.
+
+        It should depend on the model alone, since steps that are taken back and run again call it again.
+        """
+        raise NotImplementedError
 
 
 class Integrator(StepSystem):

@@ -88,6 +88,15 @@ class Search(IntEnum):
     LIMIT = 9  # s; the longest step allowed
 
 
+class Side(IntEnum):
+    """Whether the quantity of an Event is positive or negative in a row, and whether it changed in the last step."""
+
+    POSITIVE = 0
+    NEGATIVE = 1
+    FELL = 2  # to negative, which nobody was told yet
+    ROSE = 3
+
+
 class Mark(IntEnum):
     """What is noted of a rod for one law with branches, as a step begins; so many columns for each such law."""
 

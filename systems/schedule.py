@@ -191,6 +191,11 @@ class Schedule:
 
     # --- running ---------------------------------------------------------------------------------
 
+    def runs_headless(self, phase: Phase, scene: str, model: Model) -> bool:
+        """True if systems of a phase run in a scene where there are no frames."""
+        systems = (system for system in self._ordered[phase] if not isinstance(system, StepSystem))
+        return any(s.headless and self.is_active(s, scene) and s.needs(model) for s in systems)
+
     def run(self, phase: Phase, frame: Moving, *, headless: bool = False) -> None:
         """Run one phase of a frame, timing each system; each is asked for when its turn comes.
 

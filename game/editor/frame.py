@@ -36,6 +36,15 @@ class Frame:
         return self.session.model
 
 
+class Unseen(Frame):
+    """A frame of a run without frames: nothing is pressed or drawn, and systems of the run's scene are active."""
+
+    @property
+    def scene(self) -> str:
+        """The scene whose systems act in the run."""
+        return self.session.simulation.scene
+
+
 class Actions(System):
     """Turns what was pressed into actions, and makes the transitions between scenes that were requested."""
 

@@ -13,7 +13,7 @@ from components.snapshot import Snapshot
 from game.editor.scenes import Scene
 from game.mods.mod import INCLUDED, Mod
 from game.mods.watchdog import interrupted_after, stop_after
-from systems.base import Integrator, StepSystem, System
+from systems.base import Event, Integrator, StepSystem, System
 from systems.physics.integrators import VelocityVerlet
 
 if TYPE_CHECKING:
@@ -25,41 +25,50 @@ PATIENCE = 2.0  # s that a frame system may take; a longer one is interrupted
 def guarded_system(mod: Mod, system: System) -> System:
     """The system of a mod, so wrapped that it is left out once the mod is switched off.
 
-    The commands of a frame system are one step of undo. If it raises or takes too long they are dropped
-    whole, and the columns that it declares it writes are as before.
+    The commands of a frame system, or of an event, are one step of undo. If it raises or takes too long they are
+    dropped whole, and the columns that it declares it writes are as before.
     """
     needs, process = system.needs, system.process
-    arrays = system.arrays if isinstance(system, StepSystem) else None
+    what = f"the system '{system.name}'"
 
     def needed(model: Model) -> bool:
         return bool(mod.call(f"the question whether '{system.name}' is needed", needs, model, otherwise=False))
 
     def processed(frame: Any) -> None:
-        model: Model = frame.session.model
-        tables = {column.partition(".")[0] for column in (*system.writes, *system.adds)}
-        before = Snapshot.take(model, *tables & model.tables.keys()) if tables else None
-        try:
-            with model.transaction(system.name):
-                if mod.source == INCLUDED:
-                    process(frame)
-                else:
-                    _watched(process, frame, model)
-        except Exception as error:  # whatever a stranger's code raises
-            if before is not None:
-                before.restore(model)
-            mod.fail(f"the system '{system.name}'", error)
+        _change_whole(mod, system, what, frame.session.model, lambda: process(frame))
 
     system.mod = mod
     vars(system)["needs"] = needed
-    if arrays is None:
-        vars(system)["process"] = processed
-    else:
-        asked = f"the question for the arrays of '{system.name}'"
+    if isinstance(system, StepSystem):
+        arrays, asked = system.arrays, f"the question for the arrays of '{system.name}'"
         vars(system)["arrays"] = lambda model: mod.call(asked, arrays, model, otherwise={})
+    else:
+        vars(system)["process"] = processed
+    if isinstance(system, Event):
+        happen = system.happen
+        vars(system)["happen"] = lambda model, *elements: _change_whole(
+            mod, system, what, model, lambda: happen(model, *elements)
+        )
     return system
 
 
-def _watched(process: Callable[[Any], None], frame: Any, model: Model) -> None:
+def _change_whole(mod: Mod, system: System, what: str, model: Model, change: Callable[[], None]) -> None:
+    """Let a system change a model, by all of its commands or by none."""
+    tables = {column.partition(".")[0] for column in (*system.writes, *system.adds)}
+    before = Snapshot.take(model, *tables & model.tables.keys()) if tables & model.tables.keys() else None
+    try:
+        with model.transaction(system.name):
+            if mod.source == INCLUDED:
+                change()
+            else:
+                _watched(change, model)
+    except Exception as error:  # whatever a stranger's code raises
+        if before is not None:
+            before.restore(model)
+        mod.fail(what, error)
+
+
+def _watched(change: Callable[[], None], model: Model) -> None:
     """Interrupt it if it takes long, and put back what it deleted past the tables.
 
     Never in the middle of a command; one that does nothing but give commands is stopped before the next.
@@ -67,7 +76,7 @@ def _watched(process: Callable[[Any], None], frame: Any, model: Model) -> None:
     model.before_command = stop_after(PATIENCE)
     try:
         with interrupted_after(PATIENCE, lambda: not model.changing):
-            process(frame)
+            change()
     finally:
         model.before_command = None
         model.check_entities()

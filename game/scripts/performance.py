@@ -85,13 +85,14 @@ class Performance:
         session = self._app.session
         self._wait_for_program()
         self._running_since = None
-        session.simulation.watch = self._watch_time
+        simulation = session.simulation
+        simulation.watchers.append(self._watch_time)
         try:
             if set(entry) == {"type"}:  # letter by letter
                 return [f for letter in entry["type"] for f in self._typed(number, letter)]
             return self._script.perform(session, number, entry)
         finally:
-            session.simulation.watch = None
+            simulation.watchers.remove(self._watch_time)
 
     def _typed(self, number: int, letter: str) -> list[Failure]:
         failures = self._script.perform(self._app.session, number, {"type": letter})
@@ -167,9 +168,9 @@ class Performance:
             self._running_since, self._natural = time.monotonic(), self._app.session.pace
         if self._skipping:
             return REVIEW_INTERVAL
-        simulation.watch = None  # the picture is of the run as it is
+        simulation.watchers.remove(self._watch_time)  # the picture is of the run as it is
         self._frame()
-        simulation.watch = self._watch_time
+        simulation.watchers.append(self._watch_time)
         shown = time.monotonic() - self._running_since
         faster = 2.0 ** max(shown - PATIENCE * self._pace, 0.0)
         step = simulation.model.clock.step_size

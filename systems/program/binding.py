@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from components.field import Role
 from components.model import Model
-from systems.base import ACCOUNTS, Commit, Integrator, Law, StepSystem
+from systems.base import ACCOUNTS, Commit, Event, Integrator, Law, StepSystem
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
 PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for
@@ -22,6 +22,8 @@ PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called f
     "commit": _TO_COMMITS,
     "branch": ("elongation", "rate", "dt"),
     "margin": ("elongation", "rate", "dt", "branch"),
+    "event of rods": ("elongation", "rate", "axial_force"),
+    "event of particles": (),
 }
 PROVIDED = {name for names in PROVIDED_TO.values() for name in names}
 TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
@@ -32,6 +34,8 @@ _RESULTS = {
     "particles": "a pair, the force (fx, fy) in kN",
     "loads": "one number, the factor of the load",
     "commit": "a pair, the new value of the column and the energy dissipated (kN·m)",
+    "event of rods": "one number, whose sign counts",
+    "event of particles": "one number, whose sign counts",
 }
 
 
@@ -52,6 +56,7 @@ class StepRole(Enum):
     REPLACING = "replaces the axial force of a rod, which it is given"
     LATE_HISTORY = "is the history of a rod, by its axial force"
     RATE = "adds to the force of a rod's dampers"
+    EVENT = "stops the run where it changes sign"
 
 
 HISTORIES = (StepRole.HISTORY, StepRole.LATE_HISTORY)
@@ -79,8 +84,15 @@ class Bound:
 
     @property
     def each(self) -> str:
-        """The table that a law's kernel is called for each row of; "" for other roles."""
-        return self.system.each if isinstance(self.system, Law) else ""
+        """The table for each row of which the kernel of a law or an event is called; "" for other roles."""
+        return self.system.each if isinstance(self.system, Law | Event) else ""
+
+    @property
+    def purpose(self) -> str:
+        """What the kernel is called for: a key of PROVIDED_TO."""
+        if isinstance(self.system, Event):
+            return f"event of {self.each}"
+        return (self.each or "commit") if self.kernel == "kernel" else self.kernel
 
     @property
     def account(self) -> str:
@@ -103,6 +115,8 @@ class Bound:
     def role(self) -> StepRole:
         """How the result of its kernel enters a step; the kernel's parameters tell."""
         given = set(self.parameters)
+        if isinstance(self.system, Event):
+            return StepRole.EVENT
         if self.each == "loads":
             return StepRole.LOAD
         if self.each == "particles":
@@ -115,15 +129,15 @@ class Bound:
 
 
 def by_role(bound: Iterable[Bound]) -> dict[StepRole, list[Bound]]:
-    """The laws and commits of each role, in the order of a step.
+    """The laws, commits and events of each role, in the order of a step.
 
     Laws whose results add up go by name. The others, of which each takes the result of the one before, keep their
     order, the schedule's.
     """
-    keep_order = (*HISTORIES, StepRole.REPLACING)
+    keep_order = (*HISTORIES, StepRole.REPLACING, StepRole.EVENT)
     found: dict[StepRole, list[Bound]] = {role: [] for role in StepRole}
     for b in bound:
-        if isinstance(b.system, Law | Commit):
+        if isinstance(b.system, Law | Commit | Event):
             found[b.role].append(b)
     return {
         role: some if role in keep_order else sorted(some, key=lambda b: b.system.name)
@@ -185,6 +199,8 @@ def _check_role(system: StepSystem, model: Model) -> None:
         raise ProgramError(f"The name '{name}' of a step system cannot be used; name it like 'mymod.wind'.")
     if isinstance(system, Law) and system.each not in _KINDS:
         raise ProgramError(f"{name} is a law for each of '{system.each}'; choose one of {', '.join(_KINDS)}.")
+    if isinstance(system, Event) and system.each not in _KINDS[:2]:
+        raise ProgramError(f"{name} is an event for each of '{system.each}'; choose rods or particles.")
     if isinstance(system, Law | Commit) and system.account not in ACCOUNTS:
         raise ProgramError(f"{name} has the account '{system.account}'; choose one of {', '.join(ACCOUNTS)}.")
     if isinstance(system, Commit):
@@ -218,7 +234,7 @@ def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., A
 def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
     """A kernel is given what its role provides, its own arrays and the columns that its system declares."""
     rows, name = b.each or "rods", b.system.name
-    provided = PROVIDED_TO[(b.each or "commit") if b.kernel == "kernel" else b.kernel]
+    provided = PROVIDED_TO[b.purpose]
     if parameter in provided:
         return
     if parameter in b.arrays:
@@ -282,7 +298,7 @@ def _problem(b: Bound, model: Model) -> str:
         return f"does not compile: {_brief(failure)}"
     from numba import types
 
-    role = b.each or "commit"
+    role = b.purpose
     numbers = tuple(getattr(made, "types", (made,)))
     wanted = 2 if role in ("particles", "commit") else 1
     if len(numbers) != wanted or not all(isinstance(n, types.Number | types.Boolean) for n in numbers):

@@ -12,10 +12,16 @@ from systems.program.binding import Bound, StepRole, bind
 from systems.program.loops import RodLoop
 from systems.program.pasting import fragment, pasted
 from systems.program.templates import events, forces, implicit, rods
-from systems.program.writer import DRIFT, NO_POWER, POWER_RETURNED, SHIFT, TRIAL_STATE, Writer
+from systems.program.writer import DRIFT, NO_POWER, POWER_RETURNED, SHIFT, TRIAL_STATE, Writer, sides_of
 
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
 _STEADY = 1e-8  # a margin that changes less in a step is not watched
+
+
+LOCATING = (
+    (events.mark, events.note),
+    (events.passed, events.look),
+)  # functions, and what each does with a row
 
 
 class ControlledWriter(Writer):
@@ -32,11 +38,14 @@ class ControlledWriter(Writer):
         return ("search", "work", "rod_work", "marks", "power", "gained", "stage_power")
 
     def _values(self) -> dict[str, Any]:
-        return super()._values() | {"EVENTS": bool(self.events), "COMMITS": bool(self.commits)}
+        located = bool(self.events or self.happenings)
+        return super()._values() | {"EVENTS": located, "COMMITS": bool(self.commits)}
 
     def _of_steps(self) -> list[str]:
         parts = [self._evaluate(), *([self._remember()] if self.commits else [])]
-        parts += [self._mark(), self._passed()] if self.events else []
+        if self.events or self.happenings:
+            parts += [self._located(*templates) for templates in LOCATING]
+        parts += self._happened()
         return [*parts, self._tangent()] if self.integrator.rod_rows else parts
 
     @property
@@ -62,17 +71,11 @@ class ControlledWriter(Writer):
 
     # --- events -----------------------------------------------------------------------------------
 
-    def _mark(self) -> str:
-        return pasted(events.mark, "compiled", rods=self._each_event(events.note))
-
-    def _passed(self) -> str:
-        return pasted(events.passed, "compiled", rods=self._each_event(events.look))
-
-    def _each_event(self, template: Callable[[], None]) -> list[str]:
-        """A loop over the rods with this template for every law that has branches."""
-        lines = [*self.geometry(), *fragment(rods.rate)]
+    def _located(self, function: Callable[..., float], template: Callable[[], None]) -> str:
+        """A function that does what the template says for every law that has branches, and every event."""
+        lines: dict[str, list[str]] = {"rods": [], "particles": []}
         for place, (branch, margin) in enumerate(self.events):
-            lines += fragment(
+            lines["rods"] += fragment(
                 template,
                 law=str(len(Mark) * place),
                 branch=self._apply(branch, "r"),
@@ -81,7 +84,36 @@ class ControlledWriter(Writer):
                     events.margin_and_slope, margin=self._apply(margin, "r"), ahead=str(_AHEAD)
                 ),
             )
-        return RodLoop(SHIFT | DRIFT, lines).one_by_one()
+        for place, b in enumerate(self.happenings, start=len(self.events)):
+            lines[b.each] += fragment(
+                template,
+                law=str(len(Mark) * place),
+                branch=f"-1.0 if {sides_of(b)}[r] == Side.NEGATIVE else 1.0",
+                steady=str(_STEADY),
+                margin_and_slope=self._quantity(b),
+            )
+        of_rods, of_particles = self._each_row(lines["rods"], lines["particles"])
+        return pasted(function, "compiled", rods=of_rods, particles=of_particles)
+
+    def _quantity(self, b: Bound) -> list[str]:
+        """Lines that give how far an event's quantity is from changing sign, and its slope."""
+        if b.each == "rods":
+            force = self._axial_force() if "axial_force" in b.parameters else []
+            quantity = self._apply(b, "r")
+            return fragment(events.rod_quantity, quantity=quantity, axial_force=force, ahead=str(_AHEAD))
+        quantity = self._apply(b, "r").replace("(displacement[r, 0], displacement[r, 1])", "(x, y)")
+        return fragment(events.particle_quantity, quantity=quantity, ahead=str(_AHEAD))
+
+    def _happened(self) -> list[str]:
+        if not self.happenings:
+            return []
+        first = len(self.events)
+        turned = [
+            f"gap < -EVENT_FLOOR or (gap <= EVENT_FLOOR and marks[r, {len(Mark) * place} + Mark.MARGIN] > EVENT_FLOOR)"
+            for place in range(first, first + len(self.happenings))
+        ]
+        of_rods, of_particles = self._turns(turned)
+        return [pasted(events.happened, "compiled", rods=of_rods, particles=of_particles)]
 
     # --- tangents ---------------------------------------------------------------------------------
 

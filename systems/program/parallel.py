@@ -34,7 +34,7 @@ def make_program(
 
     moving: which particles it moves, as in ArrangedProgram; None: all.
     """
-    form = form or form_of(model, integrator)
+    form = form or form_of(model, integrator, systems)
     if form == VERY_MANY:
         return BlockProgram(model, systems, integrator, form, moving)
     if moving is not None:

@@ -9,17 +9,19 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from components.field import Column, Role
+from components.handle import Handle
 from components.load import load_breaks, loads_end
 from components.model import Model
-from systems.base import Integrator, StepSystem, StopReason
-from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search
-from systems.program.binding import bind, explain
+from systems.base import Event, Integrator, StepSystem, StopReason
+from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
+from systems.program.binding import Bound, bind, explain
 from systems.program.block_writer import BlockWriter
 from systems.program.compiler import compile_module, is_compiled, note_compiled
 from systems.program.controlled_writer import ControlledWriter
-from systems.program.writer import STATE, VERY_MANY, Writer, form_of
+from systems.program.writer import STATE, VERY_MANY, Writer, form_of, sides_of
 
 _ORIGIN = ("origin", "step_limit")
 _COUNTS = ("steps", "origin_steps")
@@ -40,7 +42,7 @@ def _writer(model: Model, systems: Sequence[StepSystem], integrator: Integrator,
 
 def has_program(model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str = "") -> bool:
     """True if the program of this plan, in the form that suits the model or another, need only be loaded."""
-    writer = _writer(model, systems, integrator, form or form_of(model, integrator))
+    writer = _writer(model, systems, integrator, form or form_of(model, integrator, systems))
     return is_compiled(writer.source(), writer.names)
 
 
@@ -128,6 +130,8 @@ class Program:
             extra.update(bind(system, model).arrays)
         written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
         extra |= {name: self._storage(path) for name, path in written.items()}
+        self._sides = [(b, self._sides_of(b)) for b in self._writer.happenings]
+        extra |= {sides_of(b): sides for b, sides in self._sides}
         self._columns = [
             extra[name] if name in extra else self._column(name.replace("_", ".", 1))
             for name in self._writer.columns
@@ -145,6 +149,38 @@ class Program:
         controls = self.integrator.estimates_error and settings.time_step is None
         self.tolerance = settings.tolerance if controls else 0.0
         self._state_revision = -1
+
+    # --- events ------------------------------------------------------------------------------------
+
+    @property
+    def watches_events(self) -> bool:
+        """True if it stops where the quantity of an Event changes sign."""
+        return bool(self._writer.happenings)
+
+    def _sides_of(self, b: Bound) -> NDArray[np.uint8]:
+        """Of each row of an event, whether its quantity is negative, as the state has it."""
+        table, noted = self.model.tables[b.each], self.model.clock.events or {}
+        sides = np.zeros(table.count, dtype=np.uint8)
+        for name in noted.get(b.system.name, ()):
+            if name in table:
+                sides[table[name].row] = Side.NEGATIVE
+        return sides
+
+    def take_events(self) -> list[tuple[Event, list[Handle], list[Handle]]]:
+        """The events since the last call, in order, with the elements that fell and that rose; the state notes them."""
+        found, noted = [], {}
+        for b, sides in self._sides:
+            assert isinstance(b.system, Event)
+            elements = self.model.tables[b.each].handles
+            fell, rose = (np.flatnonzero(sides == side).tolist() for side in (Side.FELL, Side.ROSE))
+            if fell or rose:
+                found.append((b.system, [elements[row] for row in fell], [elements[row] for row in rose]))
+            sides[fell], sides[rose] = Side.NEGATIVE, Side.POSITIVE
+            negative = np.flatnonzero(sides == Side.NEGATIVE).tolist()
+            noted[b.system.name] = tuple(elements[row].name for row in negative)
+        if found:
+            self.model.writable("clock.events")[0] = noted
+        return found
 
     @property
     def unbalanced(self) -> Column:
@@ -180,7 +216,10 @@ class Program:
             **dict.fromkeys(("power", "gained", "stage_power"), (len(ACCOUNTS),)),
             "work": (self.integrator.particle_rows, particles, 2),
             "rod_work": (self.integrator.rod_rows, rods),
-            "marks": (rods, len(Mark) * len(self._writer.branching)),
+            "marks": (
+                max(rods, particles),
+                len(Mark) * len([*self._writer.branching, *self._writer.happenings]),
+            ),
             "search": (len(Search),),
         }
 
@@ -218,6 +257,9 @@ class Program:
         An integrator that controls its steps takes none that would end after `until` (s), and one that would
         pass `landing` (s) is cut to end there; for others the steps are clock.step_size long.
         """
+        if self._sides and not self._is_fresh:
+            for b, sides in self._sides:
+                sides[:] = self._sides_of(b)
         if self.integrator.controlled:
             return self._advance_controlled(steps, until, landing)
         time, size = self._control[:2].tolist()

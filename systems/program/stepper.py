@@ -12,7 +12,8 @@ import math
 from typing import Protocol
 
 from components.field import Column
-from systems.base import StopReason
+from components.handle import Handle
+from systems.base import Event, StopReason
 
 
 class Dynamics(Protocol):
@@ -21,12 +22,20 @@ class Dynamics(Protocol):
     measures: kinetic, fᵀM⁻¹f, elastic, potential energy (J), residual, largest force, round-off (kN) and power (W)
         of the state last observed.
     compile_seconds: what compiling it took, or loading it from the cache.
+    watches_events: it stops where the quantity of an Event changes sign; take_events() then says which did.
     follows_state: loads apart, what is at rest stays so, for forces follow from nothing but the state.
     """
 
     measures: Column
     compile_seconds: float
     follows_state: bool
+
+    @property
+    def watches_events(self) -> bool:
+        """True if it may stop for events."""
+
+    def take_events(self) -> list[tuple[Event, list[Handle], list[Handle]]]:
+        """The events since the last call, with the elements whose quantity fell and rose."""
 
     @property
     def unbalanced(self) -> Column:

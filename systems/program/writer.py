@@ -13,8 +13,8 @@ import numpy as np
 
 from components.model import Model
 from components.rod import is_warm
-from systems.base import Integrator, Law, StepSystem, StopReason
-from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search
+from systems.base import Event, Integrator, Law, StepSystem, StopReason
+from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
 from systems.physics.automatic import SMALL
 from systems.program.binding import (
     HISTORIES,
@@ -29,7 +29,7 @@ from systems.program.binding import (
 )
 from systems.program.loops import RodLoop
 from systems.program.pasting import expanded, fragment, indented, pasted, source_of
-from systems.program.templates import fixed_steps, forces, observing, rods
+from systems.program.templates import events, fixed_steps, forces, observing, rods
 
 REVIEW_INTERVAL = 8192  # steps between reviews of the step size, and between safe states
 ROUND_OFF = 2.220446049250313e-16  # of forces, relative to stiffness × displacement
@@ -49,7 +49,7 @@ _OBSERVED = (
     *("rods_axial_force", "rods_length", "rods_strain", "yielding"),  # written
     *("fixed", "tension", "compression", "yields"),  # read
 )
-_ENTRIES = (Account, Control, Mark, Measure, Search, StopReason)
+_ENTRIES = (Account, Control, Mark, Measure, Search, Side, StopReason)
 
 STATE = ("displacement", "velocity", "force", "resisting", "direction")
 EVERY = "displacement.shape[0]"  # particles
@@ -94,11 +94,15 @@ entered = entry(_nrt={may_allocate})
 '''
 
 
-def form_of(model: Model, integrator: Integrator) -> str:
-    """The form of program that suits a model: rod by rod, in stages, or in blocks shared by cores."""
+def form_of(model: Model, integrator: Integrator, systems: Iterable[StepSystem] = ()) -> str:
+    """The form of program that suits a model: rod by rod, in stages, or in blocks shared by cores.
+
+    Events look at all rods after each step, in the order of the model.
+    """
     if model.rods.count <= SMALL:
         return FEW
-    return MANY if model.rods.count < BLOCKS_FROM or integrator.controlled else VERY_MANY
+    whole = integrator.controlled or any(isinstance(system, Event) for system in systems)
+    return MANY if whole or model.rods.count < BLOCKS_FROM else VERY_MANY
 
 
 class Writer:
@@ -117,6 +121,7 @@ class Writer:
         check_names(self.bound)
         self.of = by_role(self.bound)
         self.commits = [b for role in HISTORIES for b in self.of[role]]
+        self.happenings = self.of[StepRole.EVENT]
         self.branching = [b.system for b in self.bound if getattr(b.system, "margin", "")]
         self.names: dict[str, Callable[..., Any]] = {b.call: b.function for b in self.bound} | _of_energy()
         self.names |= {kind.__name__: kind for kind in _ENTRIES}
@@ -134,6 +139,8 @@ class Writer:
                 names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in ("on", "force", "values", "first")))
             else:
                 names.update(dict.fromkeys(p for p in b.parameters if p not in PROVIDED and p not in TRIAL))
+            if b.role is StepRole.EVENT:
+                names[sides_of(b)] = None
         self.columns = list(names)
 
     # --- expressions ------------------------------------------------------------------------------
@@ -200,6 +207,7 @@ class Writer:
             "RATES": self.rates,
             "POWERS": self.powers,
             "LOADS": bool(self.of[StepRole.LOAD]),
+            "HAPPENINGS": bool(self.happenings),
             "SHADOW": float(self.integrator.guard),
             "CHECK_INTERVAL": self.integrator.check_interval,
             "REVIEW_INTERVAL": REVIEW_INTERVAL,
@@ -227,6 +235,7 @@ class Writer:
             self._forces("forces", []),
             self._resist(),
             pasted(forces.load_power, "compiled", loads=loads),
+            *self._happened(),
         ]
 
     # --- particles --------------------------------------------------------------------------------
@@ -418,6 +427,31 @@ class Writer:
         powers = fragment(fixed_steps.powers, accounts=str(len(ACCOUNTS)))
         return [f"{resist}({given}, gained, *columns)", *powers]
 
+    # --- events -----------------------------------------------------------------------------------
+
+    def _happened(self) -> list[str]:
+        """What tells at the end of a step whether the quantity of an event changed sign."""
+        if not self.happenings:
+            return []
+        of_rods, of_particles = self._turns(["gap < 0.0"] * len(self.happenings))
+        return [pasted(events.happened_by_now, "compiled", "happened", rods=of_rods, particles=of_particles)]
+
+    def _turns(self, conditions: Sequence[str]) -> tuple[list[str], list[str]]:
+        """Loops over the rods and over the particles in which events change sides, each under its condition."""
+        lines: dict[str, list[str]] = {"rods": [], "particles": []}
+        for b, condition in zip(self.happenings, conditions, strict=True):
+            lines[b.each] += [
+                *(self._axial_force() if "axial_force" in b.parameters else []),
+                *fragment(events.turn, sides=sides_of(b), quantity=self._apply(b, "r"), turned=condition),
+            ]
+        return self._each_row(lines["rods"], lines["particles"])
+
+    def _each_row(self, of_rods: list[str], of_particles: list[str]) -> tuple[list[str], list[str]]:
+        """Loops over the rods and over the particles with these lines, where there are any, for row `r`."""
+        rod_loop = RodLoop(SHIFT | DRIFT, [*self.geometry(), *fragment(rods.rate), *of_rods]).one_by_one()
+        particle_loop = [f"for r in range({EVERY}):", *indented(of_particles)]
+        return rod_loop if of_rods else [], particle_loop if of_particles else []
+
     # --- reading ----------------------------------------------------------------------------------
 
     def _measure(self) -> str:
@@ -455,6 +489,11 @@ def read_sources(integrators: Iterable[Integrator]) -> None:
         ):
             if isinstance(part, str) and part:
                 source_of(find(part.partition("=")[0], integrator))
+
+
+def sides_of(b: Bound) -> str:
+    """The array that notes of each row whether the quantity of an event is negative."""
+    return f"{b.prefix}_sides"
 
 
 def accounts_of(bound: Iterable[Bound]) -> list[str]:

@@ -44,12 +44,17 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     tolerance and half the longest step, and taken back. By Richardson's argument the error of a method of
     order p is the difference times 2^p / (2^p − 1). Yielding, which only Runge–Kutta methods locate inside a
     step, leaves order 1. There is none where particles met (the slightest difference grows from impact to
-    impact), and none that is below what numbers can tell.
+    impact), or where events might change the model, and none that is below what numbers can tell.
     """
     model = simulation.model
     clock, then = model.clock, beginning.columns
     met = clock.collisions > then["clock.collisions"][0] or clock.paths is not None
-    if met or simulation.driver.exact or not clock.time > then["clock.time"][0]:
+    if (
+        met
+        or simulation.program.watches_events
+        or simulation.driver.exact
+        or not clock.time > then["clock.time"][0]
+    ):
         return None
     program = simulation.step_program
     reached, size, target = model.particles.displacement.copy(), clock.step_size, simulation.moved_until

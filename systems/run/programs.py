@@ -183,7 +183,7 @@ class Programs:
     def _key(self, plan: list[StepSystem]) -> Key:
         warmth = ("rods.misfit",) if is_warm(self._model) else ()
         names = (system.name for system in plan)
-        return (*names, self.driver.name, form_of(self._model, self.driver), *warmth)
+        return (*names, self.driver.name, form_of(self._model, self.driver, plan), *warmth)
 
 
 def _collides(plan: list[StepSystem]) -> bool:

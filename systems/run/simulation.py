@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 from components.extremes import incomputable
 from components.field import Column, Role
 from components.model import ADDED, Model
 from components.snapshot import Snapshot
 from components.world import Derivation
-from systems.base import Integrator, StepSystem, StopReason
+from systems.base import Event, Integrator, StepSystem, StopReason
 from systems.collision.driven.stepper import Encounters
 from systems.collision.free.flight import part_overlaps
 from systems.collision.impacts import Impacts
@@ -44,13 +45,29 @@ OBSERVED = (
 )
 
 
+@dataclass(frozen=True)
+class Happening:
+    """An event of a run: its name, when (s), and the names of the elements whose quantity fell below 0 and rose."""
+
+    event: str
+    time: float
+    fallen: tuple[str, ...]
+    risen: tuple[str, ...]
+
+    @classmethod
+    def of(cls, event: Event, time: float, fallen: Iterable[Any], risen: Iterable[Any]) -> Happening:
+        """What happened to these elements now."""
+        return cls(event.name, time, tuple(h.name for h in fallen), tuple(h.name for h in risen))
+
+
 class Simulation:
     """Advances one model and keeps its derived columns, its energy account and its last good state.
 
     reason: why the last advance ended; message: the same as a sentence, or "".
     note: what a person should know though the run goes on, or "".
     impacts: what collided so far. compute_seconds: spent so far in steps.
-    watch: asked before steps are taken; returns after how many at most it wants to be asked again.
+    watchers: each is asked before steps are taken, and returns after how many at most it wants to be asked again.
+    happenings: the events so far, while nothing was taken back.
     """
 
     def __init__(self, model: Model, schedule: Schedule, scene: str = "simulation") -> None:
@@ -60,7 +77,8 @@ class Simulation:
         self.message = ""
         self.note = ""
         self.compute_seconds = 0.0
-        self.watch: Callable[[], int] | None = None
+        self.watchers: list[Callable[[], int]] = []
+        self.happenings: list[Happening] = []
         self.impacts = Impacts(model)
         self._programs = Programs(model, schedule, self.impacts, scene)
         self._sleep = Sleep(model)
@@ -69,6 +87,7 @@ class Simulation:
         self._encounters = Encounters(model, self.impacts, self._steps)
         self._account = Account(model, self._measured)
         self._recovery = Recovery(model, self._programs, self._sleep, self._step_size)
+        self._announces = True
         self._present: tuple[int, Snapshot] | None = None  # the state at this revision
         self._rested = 0.0  # s, when it came to rest last
         self._armed = False  # the energy account and the step size fit the present document
@@ -252,6 +271,9 @@ class Simulation:
     def resume(self, checkpoint: Checkpoint) -> None:
         """Return to a checkpoint in which the document was as it is now."""
         checkpoint.state.restore(self.model)
+        self.happenings = [
+            happening for happening in self.happenings if happening.time <= self.model.clock.time
+        ]
         if checkpoint.binding != self._programs.bindings:
             self._programs.unbind()
         self._forget_run()
@@ -306,10 +328,14 @@ class Simulation:
         first, done = clock.steps, 0
         while done < steps and not self.halted:
             ahead = min(steps - done, self._sleep.steps_to_review(self.program))
-            if self.watch is not None:
-                ahead = min(ahead, self.watch())
+            for watch in self.watchers:
+                ahead = min(ahead, watch())
+            self._arm()  # if they edited something
+            if self.halted:
+                break
             taken, reason = self._stepper.advance(ahead, until, landing)
             self._heed(reason)
+            self._announce_events()
             self._arm()
             now = clock.steps
             if is_sleep_review(now) and not self.halted:
@@ -328,8 +354,20 @@ class Simulation:
             self.message = at_rest_since(self._rested)
         elif reason is StopReason.REVIEW:
             self._review()
+        elif reason is StopReason.EVENT:
+            self.reason = StopReason.DONE
         elif reason is not StopReason.DONE:
             self._recover(reason)
+
+    def _announce_events(self) -> None:
+        """Let events have their consequences, which may be edits."""
+        if self.program.watches_events and self._announces:
+            for event, fallen, risen in self.program.take_events():
+                self.happenings.append(Happening.of(event, self.model.clock.time, fallen, risen))
+                there = [[handle for handle in handles if handle.exists] for handles in (fallen, risen)]
+                event.happen(self.model, *there)
+                if event.mod is not None and event.mod.off:
+                    self.before_change()  # it fails and acts no more, which counts as an edit
 
     def _review(self) -> None:
         """After a fixed number of steps: keep a safe state, see whether all stands still, adapt the step size."""
@@ -366,9 +404,22 @@ class Simulation:
         while not self.halted and is_before(clock.time, target):
             landing = math.inf if whole_steps else target
             if self.advance(REVIEW_INTERVAL, target, landing) == 0 and not self.halted:
-                if whole_steps:
+                if not whole_steps:
+                    self._heed(self._stepper.land(target))
+                    self._announce_events()
+                elif self._event_comes_before(target):
+                    self.advance(1)  # it ends that step before the time
+                else:
                     return
-                self._heed(self._stepper.land(target))
+
+    def _event_comes_before(self, target: float) -> bool:
+        """True if an event ends the next step by the time `target` (s)."""
+        if not (self.program.watches_events and self.driver.controlled):
+            return False
+        before = self.present()
+        reason = self._stepper.land(target)
+        before.restore(self.model)
+        return reason is StopReason.EVENT
 
     def run_until_rest(self, limit: float) -> bool:
         """Advance until at rest, at most to the time `limit` (s); True if it came to rest."""
@@ -387,8 +438,9 @@ class Simulation:
         """The model as it is at a time (s) within the next step, inside the `with`; then as it was before."""
         self._arm()
         before = self.present()
-        if target > self.model.clock.time:
-            self._stepper.land(target)
+        while is_before(self.model.clock.time, target):
+            if self._stepper.land(target) is not StopReason.EVENT:
+                break
         try:
             yield
         finally:
@@ -397,7 +449,8 @@ class Simulation:
     @contextmanager
     def aside(self, beginning: Snapshot) -> Iterator[None]:
         """What is run inside starts from another state, and is taken back as if it had not been."""
-        before = self.checkpoint()
+        before, announces = self.checkpoint(), self._announces
+        self._announces = False  # what happened is known
         said = self.reason, self.message, self.note, self._armed_revision
         self.resume(replace(before, state=beginning, armed=False, before_edit=None))
         try:
@@ -405,6 +458,7 @@ class Simulation:
             yield
         finally:
             self.resume(before)
+            self._announces = announces
             self.reason, self.message, self.note, self._armed_revision = said
 
     # --- reading -------------------------------------------------------------------------------------

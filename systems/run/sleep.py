@@ -43,7 +43,10 @@ class Sleep:
         """True if islands may sleep under this program, and there is more than one."""
         asked = program, self.model.newest(Role.DOCUMENT)
         if asked != self._asked:
-            self._asked, self._answer = asked, self.model.settings.sleeping and program.follows_state
+            self._asked, self._answer = (
+                asked,
+                (self.model.settings.sleeping and program.follows_state and not program.watches_events),
+            )
             if self._answer:
                 self._look_up()
                 self._answer = self._count > 1

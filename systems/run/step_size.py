@@ -43,7 +43,10 @@ class StepSize:
 
     def _longest_shown(self) -> float:
         """The longest step (s) that a person can follow."""
-        return SHOWN * natural_pace(self._model) if self.smooth else math.inf
+        watched = (
+            self.smooth or self._programs.program.watches_events
+        )  # so that these happen at the same time anywhere
+        return SHOWN * natural_pace(self._model) if watched else math.inf
 
     def begin(self, size: float) -> None:
         """From now on steps have this size (s); the guard against divergence compares with this moment."""

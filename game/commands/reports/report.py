@@ -55,12 +55,14 @@ class Analysis:
         if self.load_factors is not None:
             return self.run(session.simulation, name)
         session.run(steps=0)  # the beginning is noted, for theory beside the run
-        found = self.run(session.simulation, name)
+        with session.without_frames():
+            found = self.run(session.simulation, name)
+        happened = [asdict(happening) for happening in session.simulation.happenings]
         error = session.desk.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
         return {
             **found,
             "message": session.message,
-            "events": _records(session.model, session.remarks),
+            "events": [*happened, *_records(session.model, session.remarks)],
             "error_estimate": asdict(error) if error is not None else None,
         }
 

@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Role
+from components.handle import Handle
 from components.load import loads_end
 from components.model import Model
 from components.obstacles import obstacles
 from components.paths import Paths
 from components.rod import nodes
-from systems.base import StopReason
+from systems.base import Event, StopReason
 from systems.collision.columns import CROWD_COUNTS, CROWD_NUMBERS, MOVING
 from systems.collision.driven.compiled import kernels
 from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, engine
@@ -123,6 +124,12 @@ class Flight:
         """True if impacts take energy."""
         least = obstacles(self.model).restitution.min(initial=self.model.settings.restitution)
         return bool(least < 1.0)
+
+    watches_events = False
+
+    def take_events(self) -> list[tuple[Event, list[Handle], list[Handle]]]:
+        """None: a plan with events has a step program."""
+        return []
 
     def bind(self) -> None:
         """The document changed: paths are found anew."""

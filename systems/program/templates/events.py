@@ -1,6 +1,7 @@
-"""Events: where a rod leaves the branch of a law that is not smooth; integrators that control their steps end one there.
+"""Events: where a rod leaves the branch of a law that is not smooth, and where the quantity of an Event changes sign.
 
-For every such law the writer pastes `note` or `look` into a loop over the rods.
+Integrators that control their steps end one there. For every such law, and every Event, the writer pastes `note` or
+`look` into a loop over the rods or particles, and `turn` for every Event into one at the end of each step.
 """
 
 # ruff: noqa: F821, F841
@@ -11,6 +12,7 @@ def mark(dt, displacement, velocity, marks, *columns):
     """Note for every rod which branch of its law it is on; returns how far the nearest is from leaving."""
     low = math.inf
     insert(rods)
+    insert(particles)
     return low
 
 
@@ -21,6 +23,7 @@ def passed(dt, displacement, velocity, marks, first, *columns):
     """
     low = math.inf
     insert(rods)
+    insert(particles)
     return low
 
 
@@ -57,3 +60,52 @@ def margin_and_slope():
     elongation = here + rate * (insert(ahead) * dt)
     slope = (insert(margin) - gap) / (insert(ahead) * dt)
     elongation = here
+
+
+def rod_quantity():
+    """gap: how far the quantity of a rod is from changing sign; slope: its rate, by a small part of the step."""
+    insert(axial_force)
+    gap = branch * insert(quantity)
+    here = elongation
+    elongation = here + rate * (insert(ahead) * dt)
+    insert(axial_force)
+    slope = (branch * insert(quantity) - gap) / (insert(ahead) * dt)
+    elongation = here
+
+
+def particle_quantity():
+    """The same of a particle, at its displacement (x, y)."""
+    x = displacement[r, 0]
+    y = displacement[r, 1]
+    gap = branch * insert(quantity)
+    x += velocity[r, 0] * (insert(ahead) * dt)
+    y += velocity[r, 1] * (insert(ahead) * dt)
+    slope = (branch * insert(quantity) - gap) / (insert(ahead) * dt)
+
+
+def happened(displacement, velocity, marks, *columns):
+    """True if the quantity of an Event changed sign in the step that ends here, of which the sides take note.
+
+    A step ends within EVENT_FLOOR of the change: a quantity that close counts as changed if it came from afar.
+    """
+    changed = False
+    insert(rods)
+    insert(particles)
+    return changed
+
+
+def happened_by_now(displacement, velocity, *columns):
+    """True if the quantity of an Event has changed sign at the end of a step of fixed length."""
+    changed = False
+    insert(rods)
+    insert(particles)
+    return changed
+
+
+def turn():
+    """As a step ends."""
+    side = insert(sides)[r]
+    gap = -insert(quantity) if side == Side.NEGATIVE else insert(quantity)
+    if insert(turned):
+        insert(sides)[r] = Side.ROSE if side == Side.NEGATIVE else Side.FELL
+        changed = True

@@ -165,6 +165,8 @@ def advance(
             done = 1 if since == end else 0
         else:
             now, after, since, size = min(steps - taken, steps_to_check(total + taken, age)), age, origin, dt
+            if HAPPENINGS:
+                now = 1
             while now > 1 and origin + (age + now) * dt > breaks[coming]:
                 now //= 2
             done = now
@@ -174,6 +176,7 @@ def advance(
             continue
         taken += done
         age += done
+        happening = HAPPENINGS and happened(displacement, velocity, *columns)
         # The early checks guard whole steps: the energy that Euler conserves is another one in a piece.
         if is_check_due(total + taken, age if after >= 0 else CHECK_INTERVAL):
             measure(displacement, velocity, force, resisting, measures, *columns)
@@ -186,4 +189,6 @@ def advance(
                 return taken, reason.value
         if (total + taken) % REVIEW_INTERVAL == 0:
             return taken, StopReason.REVIEW.value
+        if happening:
+            return taken, StopReason.EVENT.value
     return taken, StopReason.DONE.value

@@ -213,7 +213,7 @@ def attempt(time, end, tolerance, smallest, control, state, scratch, *columns):
 
 
 def controlled(steps, first, origin, tolerance, limit, bounds, control, state, scratch, account, *columns):
-    """Take up to `steps` steps that end by `until` (s); returns (steps taken, whether it can go on).
+    """Take up to `steps` steps that end by `until` (s); returns (steps taken, StopReason).
 
     tolerance: relative, of one step; 0: all steps have the length control[Control.STEP_SIZE]. breaks: times that
     no step passes, ascending, the last one infinite. landing: another such time (s), after which steps of fixed
@@ -238,7 +238,7 @@ def controlled(steps, first, origin, tolerance, limit, bounds, control, state, s
         h, ahead, error, rejected = attempt(time, end, tolerance, least, control, *state, *scratch, *columns)
         if h == 0.0:
             control[Control.TIME] = time
-            return taken, False
+            return taken, StopReason.UNRESOLVED.value
         time = ahead
         for i in range(displacement.shape[0]):
             for d in range(2):
@@ -258,8 +258,11 @@ def controlled(steps, first, origin, tolerance, limit, bounds, control, state, s
             follow(control, h, limit, error, rejected)
         elif time >= goal or time == landing:
             taken += 1
+        if HAPPENINGS and happened(displacement, velocity, marks, *columns):
+            control[Control.TIME] = time
+            return taken, StopReason.EVENT.value
     control[Control.TIME] = time
-    return taken, True
+    return taken, StopReason.DONE.value
 
 
 def aim(time, step, origin, age, tolerance):
@@ -319,7 +322,7 @@ def advance(
     taken = 0
     while taken < steps:
         wanted = min(steps - taken, steps_to_check(total + taken, total + taken))
-        done, good = integrate(
+        done, ended = integrate(
             wanted,
             first + taken,
             origin,
@@ -333,8 +336,8 @@ def advance(
             *columns,
         )
         taken += done
-        if not good:
-            return taken, StopReason.UNRESOLVED.value
+        if ended == StopReason.UNRESOLVED:
+            return taken, ended
         now = total + taken
         if done > 0 and is_check_due(now, now):
             measure(displacement, velocity, force, resisting, measures, *columns)
@@ -345,6 +348,8 @@ def advance(
                 return taken, reason.value
         if done > 0 and now % REVIEW_INTERVAL == 0:
             return taken, StopReason.REVIEW.value
+        if ended == StopReason.EVENT:
+            return taken, ended
         if done < wanted:
             break
     return taken, StopReason.DONE.value
