@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from game.commands.command_line import main
 from game.commands.reports.report import Analysis
+from game.sweeps import sweep
 from game.sweeps.batched_model import BatchedModel
+from game.sweeps.batches import Batches
 from game.sweeps.execution import Worker
 from game.sweeps.plan import Plan, Record, plan_of
 from game.sweeps.variant_runner import VariantRunner
@@ -162,6 +166,29 @@ def test_what_cannot_be_computed_together_is_left_to_single_runs() -> None:
 )
 def test_other_sweeps_are_single_runs(source: Any, vary: str, analysis: Analysis) -> None:
     assert Worker(planned(source, [vary], analysis)).at_a_time == 1
+
+
+def test_a_fault_in_computing_together_is_counted_and_told(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """The results are the same, one by one."""
+    vary = ["rods.CA.stiffness=1e5,2e5,3e5"]
+    whole = sweep(TRIANGLE, vary, MEASURES, TIMES)
+    assert whole.faults == {}
+
+    def fail(batches: Batches, numbers: Any) -> Any:
+        raise RuntimeError("shapes differ")
+
+    monkeypatch.setattr(Batches, "records", fail)
+    found = sweep(TRIANGLE, vary, MEASURES, TIMES)
+    assert found.faults == {"RuntimeError: shapes differ": 3}
+    assert found.columns == whole.columns
+    output = str(tmp_path / "found.csv")
+    arguments = ["--vary", "rods.CA.stiffness=1e5,2e5", "--measure", "residual", "--at", "1e-4"]
+    main(["sweep", "isostatic", *arguments, "--workers", "1", "--output", output])
+    told = capsys.readouterr().err
+    assert "2 variants were computed one by one" in told
+    assert "RuntimeError: shapes differ" in told
 
 
 def beside(**chosen: Any) -> dict[str, Any]:

@@ -7,11 +7,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numba import njit
 
 from game import Session
 from game.documents import models
+from systems.base import StopReason
 from systems.edit.pull import Hand
+from systems.entries import ACCOUNT
 from systems.islands import islands
+from systems.physics.kernels import judge
 from systems.physics.rest import RestMeasure
 from systems.run import policy
 from tests.reference import bits
@@ -201,6 +205,30 @@ def test_what_is_beyond_all_numbers_stays_awake_without_a_warning(beyond: float)
     of_rod = of_particle[state.rods.between].max(axis=1)
     rests = measure.at_rest(of_particle, of_rod, state.clock.force_scale, state.clock.energy_scale)
     assert rests[1:].tolist() == [False, True]
+
+
+def test_an_island_is_at_rest_by_the_rule_by_which_a_run_ends() -> None:
+    """judge() of a model with one island, in states from motion to rest."""
+    session = Session.open(vee("one", 0.0, 20.0) | {"settings": STEPS | {"sleeping": False}})
+    program, state = session.simulation.step_program, session.model
+    of_particle = islands(state)
+    of_rod = of_particle[state.rods.between].max(axis=1)
+
+    @njit(error_model="numpy")
+    def decide(measures: Any, account: Any, dt: float) -> int:
+        return judge(measures, account, dt, 0.0, 0.0, True)
+
+    judged: list[bool] = []
+    while not session.simulation.halted:
+        session.simulation.advance(16)
+        session.simulation.observe()
+        account = np.array([getattr(state.clock, name) for name in ACCOUNT])
+        judged.append(decide(program.measures, account, state.clock.step_size) == StopReason.REST)
+        measure = RestMeasure.of(state, program.unbalanced)
+        scales = state.clock.force_scale, state.clock.energy_scale
+        assert measure.at_rest(of_particle, of_rod, *scales)[1:].tolist() == [judged[-1]]
+    assert judged[-1]
+    assert not judged[0]
 
 
 def test_switched_off_nobody_sleeps_any_more() -> None:
