@@ -9,7 +9,7 @@ import pytest
 
 from game import Session
 from game.documents.document import document
-from tests.systems.editing.hand import FRAME, names, preview
+from tests.systems.edit.hand import FRAME, names, preview
 
 
 def selected_names(session: Session) -> set[str]:

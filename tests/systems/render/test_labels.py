@@ -19,7 +19,7 @@ from systems.render.labels import FAINT, STRONG, Label, Occupancy, Placed, place
 from systems.render.marks import Panel, Text
 from systems.render.picture import compose
 from tests.reference.boxes import overlapping, text_boxes
-from tests.unit.picture.pictures import LIGHT, fill, marks_of, picture_of, view_of
+from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, view_of
 
 
 def random_model(seed: int, particles: int, rods: int) -> Model:

@@ -8,7 +8,7 @@ from components.snapshot import Snapshot
 from game import Session
 from game.documents.history.timeline import Timeline
 from systems.edit.pull import Hand
-from tests.systems.editing.hand import FRAME, assert_same_state, opened, run_frames
+from tests.systems.edit.hand import FRAME, assert_same_state, opened, run_frames
 
 
 def test_steps_forward_and_back_are_the_same_bit_for_bit(triangle: Session) -> None:

@@ -9,7 +9,7 @@ from components.view import Status
 from systems.render.marks import Rectangles, Text
 from systems.render.overlays import written_length, written_speed, written_time
 from systems.render.picture import compose
-from tests.unit.picture.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
+from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
 
 def test_status_bar() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from components.view import Preview
 from game import Session
-from tests.systems.editing.hand import FRAME, press_at, preview
+from tests.systems.edit.hand import FRAME, press_at, preview
 
 
 def test_p_makes_a_free_particle_of_1_kg_under_the_pointer(empty: Session) -> None:

@@ -168,7 +168,7 @@ from systems.program import blocks as layout
 from systems.program import writer
 writer.SMALL, writer.BLOCKS_FROM, layout.BLOCK, in_blocks._WORTHWHILE = 0, 1, 12, 0
 from tests.reference import bits
-from tests.systems.test_cores import run
+from tests.systems.program.test_parallel import run
 print(bits.digest(run(on=8).model))
 """
 

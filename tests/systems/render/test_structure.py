@@ -18,7 +18,7 @@ from components.world import Derivation
 from systems.render.marks import Discs, Rectangles, Stamps, Strokes
 from systems.render.picture import compose, drawn_positions
 from systems.render.supports import DOWN, LEFT, NO_SUPPORT, RIGHT, UP, freest_sides
-from tests.unit.picture.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
+from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
 
 def test_composing_needs_no_pygame() -> None:

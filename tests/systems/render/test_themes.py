@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from systems.render.theme import load_theme, theme_from, theme_names
-from tests.unit.picture.pictures import (
+from tests.systems.render.pictures import (
     LIGHT,
 )
 

@@ -8,7 +8,7 @@ import pytest
 
 from components.snapshot import Snapshot
 from game import Session
-from tests.systems.editing.hand import EMPTY, FRAME, assert_same_state, preview, run_frames
+from tests.systems.edit.hand import EMPTY, FRAME, assert_same_state, preview, run_frames
 
 
 def test_dragging_a_running_particle_pulls_it_with_a_spring_whose_work_is_accounted_for() -> None:

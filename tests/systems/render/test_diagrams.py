@@ -14,7 +14,7 @@ from systems.render.diagrams import diagram_factor, scale_step, written
 from systems.render.marks import Bars, Stamps
 from systems.render.picture import compose
 from systems.render.supports import DOWN, LEFT, RIGHT, UP
-from tests.unit.picture.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
+from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
 
 def test_values_of_the_thesis_triangle() -> None:

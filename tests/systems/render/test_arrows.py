@@ -12,7 +12,7 @@ from components.tags import DiagramShown
 from components.view import Status
 from systems.render.arrows import LENGTH, MOST
 from systems.render.marks import Fills
-from tests.unit.picture.pictures import LIGHT, marks_of, picture_of, triangle
+from tests.systems.render.pictures import LIGHT, marks_of, picture_of, triangle
 
 
 def tips(model: Model, colour: tuple[int, ...] = LIGHT.force, **options: object) -> np.ndarray:

@@ -14,7 +14,7 @@ from systems.program.parallel import make_program
 from systems.program.reordered import ReorderedProgram
 from systems.schedule import Schedule
 from tests.reference.elements import Model
-from tests.systems.test_cores import net
+from tests.systems.program.test_parallel import net
 
 APART = (20.0, 3.0)  # m
 

@@ -26,7 +26,7 @@ from systems.render.picture import compose
 from systems.render.theme import load_theme
 from tests.reference.boxes import overlapping, text_boxes
 from tests.reference.models import triangle
-from tests.systems.test_properties import SIZES
+from tests.systems.forms.test_properties import SIZES
 
 
 @pytest.fixture(autouse=True)

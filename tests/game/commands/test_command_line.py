@@ -20,7 +20,7 @@ from game.commands import COMMANDS
 from game.commands.command_line import main
 from game.commands.output import FORMATS
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def pinjoint(*words: str, **environment: str) -> subprocess.CompletedProcess[str]:

@@ -8,7 +8,7 @@ from components.snapshot import Snapshot
 from game import Session
 from game.editor.actions import ACTIONS
 from systems.input.bindings import BINDINGS, EVERY, action_for, help_lines
-from tests.systems.editing.hand import FRAME, assert_same_state, opened, press_at
+from tests.systems.edit.hand import FRAME, assert_same_state, opened, press_at
 
 
 def test_the_thesis_triangle_by_hand_from_an_empty_window(empty: Session) -> None:

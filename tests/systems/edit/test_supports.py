@@ -6,7 +6,7 @@ import pytest
 
 from components.field import Vector
 from game import Session
-from tests.systems.editing.hand import press_at, preview
+from tests.systems.edit.hand import press_at, preview
 
 
 def test_c_goes_through_the_supports(triangle: Session) -> None:

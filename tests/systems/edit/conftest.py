@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from game import Session
-from tests.systems.editing.hand import EMPTY, opened, press_at
+from tests.systems.edit.hand import EMPTY, opened, press_at
 
 
 @pytest.fixture
