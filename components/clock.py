@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from components.collision_state import CollisionState, check_collision_state
 from components.field import Field, FieldError, Role
 from components.handle import Handle
-from components.paths import Paths, check_paths
 
 
 def check_events(value: Any, where: str) -> Mapping[str, tuple[str, ...]]:
@@ -109,12 +109,12 @@ class Clock(Handle):
         doc="The elements whose quantity is negative, by the name of the event.",
         checker=check_events,
     )
-    paths: Field[Paths | None] = Field(
+    collision_state: Field[CollisionState | None] = Field(
         dtype=object,
         default=None,
         nullable=True,
         role=Role.STATE,
-        title="paths",
-        doc="What particles that fly free are on, and which rest on which, so that the run goes on bit for bit.",
-        checker=check_paths,
+        title="collision state",
+        doc="Paths of free particles, or persistent contacts of driven ones, so that the run goes on bit for bit.",
+        checker=check_collision_state,
     )

@@ -124,7 +124,7 @@ def _drives(system: Callable[[], System], source: Source) -> bool:
     made = system()
     simulation = Simulation(_model(source), Schedule(_all_with(made)))
     with _driven_by(made, simulation):
-        return simulation.driver is made
+        return simulation.integrator is made
 
 
 def _columns(model: Model) -> dict[str, Column]:
@@ -194,7 +194,7 @@ def _driven_by(system: System, simulation: Simulation) -> Iterator[None]:
     if not isinstance(system, Integrator):
         yield
         return
-    key = system.name.rpartition(".")[2]
+    key = system.key
     former = INTEGRATORS.get(key)
     register_integrator(system)
     try:

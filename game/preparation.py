@@ -17,9 +17,9 @@ from game.mods import MODS
 from game.prepare import WARM, Job, is_prepared, load_program
 from systems.base import Phase, StepSystem, System
 from systems.collision.driven.stepper import DRIVEN
-from systems.collision.free.compiled import EVENTS, PILES, WINDOWS
+from systems.collision.free.compiled import EVENTS, HORIZONS, PILES
 from systems.collision.free.flight import may_pile
-from systems.collision.system import Support, contacts_of
+from systems.collision.system import Support, persistent_contacts
 from systems.edit.pull import Pull
 from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import CompiledUnit, is_blank, load_compiler
@@ -30,8 +30,8 @@ from systems.render.raster_program import RASTER, load_raster
 from systems.run.simulation import Simulation
 
 Units = tuple[CompiledUnit, ...]  # that one process compiles
-FREE: tuple[Units, ...] = (EVENTS,), (WINDOWS,)  # for free particles
-PULLED: tuple[Units, ...] = (EVENTS,), (WINDOWS, PILES)  # for those that may pile up
+FREE: tuple[Units, ...] = (EVENTS,), (HORIZONS,)  # for free particles
+PULLED: tuple[Units, ...] = (EVENTS,), (HORIZONS, PILES)  # for those that may pile up
 AHEAD: tuple[Units, ...] = (RASTER,), (DRIVEN,), *PULLED  # which any model may come to need
 
 
@@ -97,7 +97,7 @@ class Preparation(System):
 
     def _load_pulled(self, simulation: Simulation) -> None:
         """While nothing happens: what takes the steps while a hand pulls, for loading it takes two frames."""
-        if self._seen == self._looked or simulation.driver.exact:
+        if self._seen == self._looked or simulation.integrator.exact:
             return
         plan = simulation.plan
         pulled = (*_job(simulation, plan), Pull.name)
@@ -118,7 +118,7 @@ class Preparation(System):
 
     def waits_for(self, simulation: Simulation) -> float | None:
         """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
-        if simulation.driver.exact:  # it may be ready, but not for piles
+        if simulation.integrator.exact:  # it may be ready, but not for piles
             waits = [self._waits_for_units(units) for units in _units(simulation)]
             return max((waited for waited in waits if waited is not None), default=None)
         if simulation.ready:
@@ -173,12 +173,12 @@ class Preparation(System):
 def _may_meet(simulation: Simulation) -> bool:
     """True if particles that do not fly free may meet."""
     plan = simulation.plan
-    return not simulation.driver.exact and any(system.impulsive for system in plan)
+    return not simulation.integrator.exact and any(system.impulsive for system in plan)
 
 
 def _may_rest(model: Model) -> bool:
     """True if something that is no structure may come to rest on one, or a structure on a wall, and none does yet."""
-    return contacts_of(model) is None and (any_obstacles(model) or not nodes(model).all())
+    return persistent_contacts(model) is None and (any_obstacles(model) or not nodes(model).all())
 
 
 def _with_support(simulation: Simulation) -> list[StepSystem]:
@@ -198,20 +198,20 @@ def _units(simulation: Simulation) -> tuple[Units, ...]:
 
 
 def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
-    form = form_of(simulation.model, simulation.driver, plan)
+    form = form_of(simulation.model, simulation.integrator, plan)
     warmth = (WARM,) if is_warm(simulation.model) else ()
-    return simulation.integrator, form, *warmth, *(system.name for system in plan)
+    return simulation.integrator.key, form, *warmth, *(system.name for system in plan)
 
 
 def _is_compiled(simulation: Simulation) -> bool:
     """True if its program need only be loaded."""
-    if simulation.driver.exact:
+    if simulation.integrator.exact:
         return all(_are_compiled(units) for units in _units(simulation))
     return _has_program(simulation, simulation.plan)
 
 
 def _has_program(simulation: Simulation, plan: Sequence[StepSystem]) -> bool:
-    return has_program(simulation.model, plan, simulation.driver)
+    return has_program(simulation.model, plan, simulation.integrator)
 
 
 def _load_libraries() -> None:

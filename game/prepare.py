@@ -16,7 +16,7 @@ from game.commands.mods import load_as_asked
 from game.session import Session
 from systems.base import Integrator, StepSystem
 from systems.collision.driven.stepper import DRIVEN
-from systems.collision.free.compiled import EVENTS, PILES, WINDOWS
+from systems.collision.free.compiled import EVENTS, HORIZONS, PILES
 from systems.edit.pull import Hand
 from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import forget_unused
@@ -24,7 +24,7 @@ from systems.program.parallel import make_program
 from systems.program.program import has_program
 from systems.render.raster_program import RASTER
 
-UNITS = {unit.name: unit for unit in (RASTER, EVENTS, WINDOWS, PILES, DRIVEN)}
+UNITS = {unit.name: unit for unit in (RASTER, EVENTS, HORIZONS, PILES, DRIVEN)}
 WARM = "warm"  # the program is for rods whose temperature may have changed
 
 Job = tuple[str, ...]  # names of units, or a step program: integrator, form, perhaps WARM, systems

@@ -237,6 +237,11 @@ class Integrator(StepSystem):
     check_interval: ClassVar[int] = 128
     guard: ClassVar[float] = 0.0
 
+    @property
+    def key(self) -> str:
+        """The name by which models choose it."""
+        return self.name.rpartition(".")[2]
+
     @staticmethod
     def stable_step(frequency: float, decay: float) -> float:
         """Largest stable step (s) for the highest angular frequency and the highest decay."""

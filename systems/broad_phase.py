@@ -1,4 +1,4 @@
-"""Pairs of discs that are near each other."""
+"""The broad phase: pairs of discs, and of discs and obstacles, that are near each other."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from components.obstacles import Obstacles
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-FEW = 64  # discs, of which all pairs are looked at sooner than trees are imported, let alone built
-WIDER = 1.0 + 1e-9  # than it need be is the search by trees, whose round-off loses no pair then
+ALL_PAIRS_DISCS = 64  # discs up to which it is faster to look at all pairs than to import and build trees
+SEARCH_MARGIN = 1.0 + 1e-9  # factor of the radius of the search by trees, so that round-off loses no pair
 
 
 def nearest(line: Floats, span: Floats) -> Floats:
-    """The vectors to the nearest points of pieces, if `line` are those to their first ends; all of shape (k, 2).
+    """The vectors to the nearest points of straight pieces, shape (k, 2).
 
-    span: the way to the other end; zero for discs.
+    line: vectors to the first ends, shape (k, 2). span: from the first end to the other; zero for discs.
     """
     squared = (span * span).sum(axis=1)
     along, long = -(line * span).sum(axis=1), np.where(squared > 0.0, squared, 1.0)
@@ -31,23 +31,25 @@ def nearest(line: Floats, span: Floats) -> Floats:
 def near_pairs(place: Floats, reach: Floats, obstacles: Obstacles | None = None) -> Rows:
     """Pairs i < j whose centres are at most reach[i] + reach[j] apart, in ascending order, shape (k, 2).
 
-    place: centres, shape (n, 2), m. reach: shape (n,), m. Discs are sought by size, so that a few large ones
-    among many small ones do not make every small one look far. Obstacles count on after them.
+    place: centres, shape (n, 2), m. reach: shape (n,), m. Discs are searched by size, so that a few large discs
+    among many small ones do not widen the search of every small one. The numbers of obstacles follow those of the discs.
     """
-    first, second = np.triu_indices(len(place), 1) if len(place) <= FEW else _sought(place, reach)
+    first, second = (
+        np.triu_indices(len(place), 1) if len(place) <= ALL_PAIRS_DISCS else _tree_pairs(place, reach)
+    )
     apart = place[second] - place[first]
     near = np.hypot(apart[:, 0], apart[:, 1]) <= reach[first] + reach[second]
     if obstacles is None or len(obstacles) == 0:
         keys = np.sort((first * len(place) + second)[near])
         return np.column_stack(np.divmod(keys, len(place)))
     total = len(place) + len(obstacles)
-    at_them = _near_obstacles(place, reach, obstacles)
-    keys = np.concatenate([(first * total + second)[near], at_them[:, 0] * total + at_them[:, 1]])
+    touching = _near_obstacles(place, reach, obstacles)
+    keys = np.concatenate([(first * total + second)[near], touching[:, 0] * total + touching[:, 1]])
     return np.column_stack(np.divmod(np.sort(keys), total))
 
 
-def _sought(place: Floats, reach: Floats) -> Rows:
-    """Pairs that may be near each other, shape (2, k), the first the lower."""
+def _tree_pairs(place: Floats, reach: Floats) -> Rows:
+    """Pairs that may be near each other, by trees, shape (2, k), the lower number first."""
     from scipy.spatial import cKDTree
 
     sizes = np.frexp(reach)[1]
@@ -56,10 +58,10 @@ def _sought(place: Floats, reach: Floats) -> Rows:
     found = [np.zeros((0, 2), dtype=np.int64)]
     for size in classes:
         rows, tree = trees[size]
-        found.append(rows[tree.query_pairs(WIDER * 2.0 * reach[rows].max(), output_type="ndarray")])
+        found.append(rows[tree.query_pairs(SEARCH_MARGIN * 2.0 * reach[rows].max(), output_type="ndarray")])
         for smaller in classes[classes < size]:
             others, finer = trees[smaller]
-            within = WIDER * (reach[rows].max() + reach[others].max())
+            within = SEARCH_MARGIN * (reach[rows].max() + reach[others].max())
             pairs = tree.sparse_distance_matrix(finer, within, output_type="coo_matrix")
             found.append(np.sort(np.column_stack([rows[pairs.row], others[pairs.col]]), axis=1))
     together: Rows = np.concatenate(found).T

@@ -1,4 +1,4 @@
-"""Islands: the particles of a model that forces of rods can move together, and nothing else does."""
+"""Islands: groups of particles that rods connect, so that no force of a rod acts between two islands."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from components.model import Model
 
 Rows = NDArray[np.intp]
 
-HELD = 0  # the island of particles that nothing can move
+IMMOVABLE = 0  # the island of particles that are held in both directions
 
 
 def islands(model: Model) -> Rows:
-    """The island of each particle, shape (n,): 1, 2, … in the order of their first particles, or HELD.
+    """The island of each particle, shape (n,): 1, 2, … in the order of their first particles, or IMMOVABLE.
 
     Particles are on one island if a chain of rods joins them; no chain goes through a particle that is held in
-    both directions, for nothing that happens on one side of it is felt on the other.
+    both directions, since it passes no motion on.
     """
     moves = np.asarray((model.particles.mobility > 0.0).any(axis=1))
     between = model.rods.between.astype(np.intp)
     root = _lowest_joined(len(moves), between[moves[between].all(axis=1)])
-    found = np.full(len(moves), HELD, dtype=np.intp)
+    found = np.full(len(moves), IMMOVABLE, dtype=np.intp)
     found[moves] = np.unique(root[moves], return_inverse=True)[1] + 1
     return found
 

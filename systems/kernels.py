@@ -49,11 +49,8 @@ PLAIN = os.environ.get("PINJOINT_PLAIN_NUMBA", "") == "1"
 compiled = njit(error_model="numpy", no_cfunc_wrapper=True)  # type: ignore[call-overload]
 
 
-def part(*, apart: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """A decorator like `compiled`, with further options, for functions that only compiled ones call.
-
-    apart: no two of the arrays that it is given overlap, which numba then does not check.
-    """
+def part(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """A decorator like `compiled`, with further options, for functions that only compiled ones call."""
     if PLAIN:
         plain: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True} | options
         return njit(**plain)  # type: ignore[no-any-return]
@@ -64,8 +61,7 @@ def part(*, apart: bool = False, **options: Any) -> Callable[[Callable[..., Any]
         "no_cpython_wrapper": True,
         "no_cfunc_wrapper": True,
     }
-    compiler = _ApartCompiler if apart else _PartCompiler
-    return partial(_Part, locals={}, targetoptions=chosen | options, pipeline_class=compiler)
+    return partial(_Part, locals={}, targetoptions=chosen | options, pipeline_class=_PartCompiler)
 
 
 def entry(**options: Any) -> Any:
@@ -193,16 +189,6 @@ class _PartCompiler(_LeanCompiler):
 
     def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
         super().__init__(typing, target, library or _PartCode(target.codegen(), "part"), *rest)
-
-
-class _ApartCompiler(_PartCompiler):
-    """The same for arrays that do not overlap."""
-
-    def __init__(
-        self, typing: Any, target: Any, library: Any, given: Any, result: Any, flags: Any, *rest: Any
-    ) -> None:
-        flags.noalias = True
-        super().__init__(typing, target, library, given, result, flags, *rest)
 
 
 class _Part(CPUDispatcher):

@@ -143,6 +143,10 @@ def _migrated(document: Any) -> Mapping[str, Any]:
         if old not in MIGRATIONS:
             _fail("$.version", f"there never was a version {version}; the present one is {VERSION}.")
         migrated = MIGRATIONS[old](migrated)
+    state = migrated.get("state")
+    if isinstance(state, Mapping) and "paths" in state and "collision_state" not in state:  # its earlier name
+        renamed = {("collision_state" if key == "paths" else key): value for key, value in state.items()}
+        migrated["state"] = renamed
     return migrated
 
 

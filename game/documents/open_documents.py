@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from components.collision_state import PersistentContacts
 from components.field import Role
 from components.load import loads_end
 from components.model import Model
-from components.paths import resting
 from components.snapshot import Snapshot
 from game.documents import models
 from game.documents.assessment import Assessment
@@ -122,8 +122,10 @@ class OpenDocument:
             model.give("clock.time", np.array([time]))
             model.give("clock.origin", np.array([time]))
             model.give("clock.origin_steps", np.array([clock.steps]))
-            if len(found.final.contacts) and not self.simulation.driver.exact:
-                clock.paths = resting(found.final.contacts, 1000.0 * found.final.contact_force)
+            if len(found.final.contacts) and not self.simulation.integrator.exact:
+                clock.collision_state = PersistentContacts(
+                    found.final.contacts, 1000.0 * found.final.contact_force
+                )
         account, yielded = [found.account], np.flatnonzero(found.final.plastic_strain != strain)
         if len(yielded) and not found.events:  # at once: what it began from is beyond the strengths
             rod = model.describe(model.rods[yielded[0]])

@@ -129,10 +129,11 @@ class App:
     def integrator(self, integrator: type[Integrator]) -> None:
         """Add an integrator that models, the command line and the properties can choose."""
         self._check_prefix("integrator", integrator.name)
-        key = integrator.name.rpartition(".")[2]
+        made = guarded_integrator(self._mod, integrator())
+        key = made.key
         if key in INTEGRATORS:
-            raise ModError(f"There is an integrator '{key}' already; call {integrator.name} something else.")
-        register_integrator(guarded_integrator(self._mod, integrator()))
+            raise ModError(f"There is an integrator '{key}' already; call {made.name} something else.")
+        register_integrator(made)
         self._undo.append(lambda: remove_integrator(key))
 
     def history(self, kind: HistoryKind) -> None:

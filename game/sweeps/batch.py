@@ -19,7 +19,7 @@ from game.sweeps.batch_program import BatchProgram
 from game.sweeps.batched_model import BatchedModel
 from systems.base import StopReason
 from systems.entries import ACCOUNT, CONTROL, Measure
-from systems.islands import HELD, islands
+from systems.islands import IMMOVABLE, islands
 from systems.physics.rest import RestMeasure
 from systems.physics.spectrum import spectra
 from systems.program.writer import REVIEW_INTERVAL
@@ -56,7 +56,7 @@ class Batch:
         self.measures = np.zeros((variants, len(Measure)))
         self.unbalanced = np.zeros_like(model["particles.displacement"])
         self._may_sleep = bool(model.single("settings.sleeping").any()) and program.program.follows_state
-        self._may_sleep &= islands(model.part(np.zeros(1, dtype=np.intp)).as_model()).max(initial=HELD) > 1
+        self._may_sleep &= islands(model.part(np.zeros(1, dtype=np.intp)).as_model()).max(initial=IMMOVABLE) > 1
         fixed, rods = model.single("settings.time_step"), model.rods.count // variants
         self._policies = [
             StepPolicy(self.integrator, None if math.isnan(size) else size, rods) for size in fixed.tolist()
@@ -101,12 +101,12 @@ class Batch:
         self.observe()
         model = self.model.as_model()
         of_particle = islands(model)
-        of_rod = of_particle[model.rods.between].max(axis=1, initial=HELD)
-        variant = np.zeros(of_particle.max(initial=HELD) + 1, dtype=np.intp)  # of each island
+        of_rod = of_particle[model.rods.between].max(axis=1, initial=IMMOVABLE)
+        variant = np.zeros(of_particle.max(initial=IMMOVABLE) + 1, dtype=np.intp)  # of each island
         variant[of_particle] = np.repeat(self._all, len(of_particle) // self.model.variants)
         scales = self.clock("force_scale")[variant], self.clock("energy_scale")[variant]
         rest = RestMeasure.of(model, self.unbalanced.reshape(-1, 2)).at_rest(of_particle, of_rod, *scales)
-        rest[HELD] = False
+        rest[IMMOVABLE] = False
         self.alone[np.intersect1d(variant[rest], variants)] = True
 
     def _limits(self) -> list[Limits]:

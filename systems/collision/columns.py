@@ -1,9 +1,12 @@
-"""The arrays of colliding discs: what each is, and what its columns mean. Kernels are given them in these tuples."""
+"""The arrays that the kernels of collisions share: their shapes, and an enumeration of the columns of each.
+
+`discs[i, Disc.VX]` costs the same as `discs[i, 2]`: numba folds members of an IntEnum into constants.
+"""
 
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,43 +15,64 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 EPSILON = 2.220446049250313e-16
-SPEED_NOISE = 16.0 * EPSILON  # of the speeds that an impact or its contacts deal with: its round-off
-NONE = -1
-
-# Columns of `discs`, shape (n, DISC_WIDTH): one row per disc, its path since its epoch t₀, the time of its last
-# change. u(t) = u₀ + v₀ (t − t₀) + a (t − t₀)²/2 is the displacement from the original position o. After the discs
-# come obstacles: straight pieces that never move, rounded by their radius. Of two rows the later one is the obstacle.
-# Those that meetings follow from come first, so that they lie together in memory.
-UX, UY = 0, 1  # displacement at the epoch, m
-VX, VY = 2, 3  # velocity at the epoch, m/s
-AX, AY = 4, 5  # acceleration of the path, m/s²
-EPOCH = 6  # s
-RADIUS = 7  # m
-OX, OY = 8, 9  # original position, m
-TX, TY = 10, 11  # m; from the first end of an obstacle, its original position, to the other; 0 of discs
-NOISE = 12  # m/s; round-off in its velocity, from the impact or the contacts that gave it
-CHANGES = 13  # of its path so far
-GX, GY = 14, 15  # acceleration without contact forces, m/s²
-WX, WY = 16, 17  # inverse mass in each direction, 1/kg; 0 where the disc is held
-STEP = 18  # s; when the forces in its lasting contacts are due again
-BOUNCE = 19  # restitution of impacts with it
-SHARED = 20  # ends of an obstacle for which another one answers: SHARED_START + SHARED_END, as far as they are
-DISC_WIDTH = 21
-SHARED_START, SHARED_END = 1.0, 2.0
-MOVING = (UX, UY, VX, VY, AX, AY, EPOCH, STEP, NOISE)  # what time changes, as components/paths.py has it
+SPEED_NOISE = 16.0 * EPSILON  # round-off of a speed, as a share of the speeds that it is computed from
+NONE = -1  # no entry, no member
+MOST_CHANGES = 2**31 - 1  # mask: the part of a disc's number of changes that an impact in the queue keeps
+DIRECT = 48  # contacts up to which a projection is solved directly; larger groups are solved by sweeps
+SHARED_START, SHARED_END = 1.0, 2.0  # flags of Disc.SHARED
+OVERLAP = 1e-9  # of the reach of two nodes; a larger overlap at the start of a step is older than the run
 
 
-# Kinds of pairs of which forces of others drive one, at the start of a step.
-WATCHED, LEFT_ALONE, LASTING = 0, 1, 2
-OVERLAP = 1e-9  # of the reach of two nodes; more at the start of a step is from before they ever parted
+# Steps of piles and crowds
+STEP_SHARE = 0.04  # longest step, as a share of the time in which a disc falls through its diameter
+SHORTEST_SHARE = 1.0 / 16.0  # shortest step, where discs are fast, as a share of the longest
+TRAVEL = (
+    0.35  # relative travel of two discs in a longer step than the shortest, at most, in radii of the smaller
+)
+
+
+class Disc(IntEnum):
+    """Columns of `discs`: one row per disc, its path since its epoch t₀, the time of its last change.
+
+    u(t) = u₀ + v₀ (t − t₀) + a (t − t₀)²/2 is the displacement from the original position o. Obstacles follow the
+    discs: straight pieces that never move, rounded by their radius. Of a pair, an obstacle is the later row. The columns
+    that impact times follow from come first, so that they lie together in memory.
+    """
+
+    UX, UY = 0, 1  # displacement at the epoch, m
+    VX, VY = 2, 3  # velocity at the epoch, m/s
+    AX, AY = 4, 5  # acceleration of the path, m/s²
+    EPOCH = 6  # s
+    RADIUS = 7  # m
+    OX, OY = 8, 9  # original position, m; of an obstacle, its first end
+    TX, TY = 10, 11  # vector from the first end of an obstacle to the other, m; 0 for discs
+    NOISE = 12  # round-off in the velocity, from the impact or the contacts that caused it, m/s
+    CHANGES = 13  # number of changes of the path so far
+    GX, GY = 14, 15  # acceleration without contact forces, m/s²
+    WX, WY = 16, 17  # inverse mass in each direction, 1/kg; 0 where the disc is held
+    STEP = 18  # time at which the forces in its persistent contacts are due again, s
+    BOUNCE = 19  # restitution of impacts with it
+    SHARED = 20  # ends of an obstacle that an earlier obstacle accounts for: SHARED_START + SHARED_END
+
+
+FLIGHT = [Disc.UX, Disc.UY, Disc.VX, Disc.VY, Disc.AX, Disc.AY, Disc.EPOCH, Disc.STEP, Disc.NOISE]
+"""Columns that time changes: those of `FreeFlightState.motion` (components/collision_state.py), in its order."""
+
+
+class PairKind(IntEnum):
+    """What a step of an integrator does about a pair of particles, as at the start of the step."""
+
+    WATCHED = 0  # an impact ends the step
+    LEFT_ALONE = 1  # nodes that overlap; they collide once they have separated
+    PERSISTENT = 2  # in contact; contact forces keep them apart
 
 
 class Grid(NamedTuple):
-    """Boxes around the paths of all discs, and a hash grid of them; see kernels/grid.py.
+    """Boxes around the paths of all discs, and a hash grid of the boxes; see kernels/grid.py.
 
     boxes: left, bottom, right, top, shape (n, 4), m. layer: of each disc, shape (n,). levels: the cells of
-    layer k have the size cell × 2^levels[k], ascending, shape (64,). heads: first entry of each bucket, a power
-    of two of them. after: the next entry in the same bucket, shape (capacity,). found: room for the discs that a
+    layer k have the size cell × 2^levels[k], ascending, shape (64,). heads: first entry of each bucket; the number of
+    buckets is a power of two. after: the next entry in the same bucket, shape (capacity,). found: the discs that a
     search finds, shape (n + 1,).
     """
 
@@ -59,51 +83,106 @@ class Grid(NamedTuple):
     after: NDArray[np.int32]
     found: Integers
 
+    @classmethod
+    def empty(cls, n: int, layers: int) -> Grid:
+        """A grid of n discs with room for so many layers."""
+        entries = 4 * n * layers
+        buckets = 1 << int(np.ceil(np.log2(max(entries, 16))))
+        return cls(
+            boxes=np.zeros((n, 4)),
+            layer=np.zeros(n, dtype=np.int64),
+            levels=np.zeros(64, dtype=np.int64),
+            heads=np.full(buckets, NONE, dtype=np.int32),
+            after=np.zeros(2 * entries, dtype=np.int32),
+            found=np.zeros(n + 1, dtype=np.int64),
+        )
+
 
 class Queue(NamedTuple):
-    """Meetings to come, a binary heap; see kernels/queue.py.
+    """Impacts to come, a binary heap; see kernels/heap.py.
 
-    times: shape (capacity,), s. meetings: shape (capacity, 4): two discs, and how often each had changed its
-    path when the meeting was foreseen; it is void once either has changed again.
+    times: shape (capacity,), s. impacts: shape (capacity, 4): two discs, and how often each had changed its
+    path when the impact was computed; the impact is void once either has changed again.
     """
 
     times: Floats
-    meetings: NDArray[np.int32]
+    impacts: NDArray[np.int32]
+
+    @classmethod
+    def empty(cls, size: int) -> Queue:
+        """A queue with room for `size` impacts."""
+        return cls(np.zeros(size), np.zeros((size, 4), dtype=np.int32))
 
 
-MOST_CHANGES = 2**31 - 1  # that a meeting tells from one another, as a mask
+class Constraints(NamedTuple):
+    """Pairs that cannot have an impact: pairs that never collide, and persistent contacts.
 
-
-class Ties(NamedTuple):
-    """Pairs whose meetings are not foreseen.
-
-    Those of disc i that never collide with it are partners[first[i] : first[i + 1]]. Those in lasting contact
-    with it are a chain of entries from first_lasting[i]: lasting, shape (capacity, 2), holds the other disc and
-    the next entry, forces the force, N. A lasting contact is entered for each of its discs that is
-    not held. Unused entries are chained from counts[SPARE].
+    The discs that never collide with disc i are partners[first[i] : first[i + 1]]. The persistent contacts of disc i
+    are a chain of entries from first_persistent[i]: persistent, shape (capacity, 2), holds the columns of Entry,
+    forces the force, N. A persistent contact is entered for each of its discs that is not held. Unused entries
+    are chained from counts[Count.SPARE].
     """
 
     first: Integers
     partners: Integers
-    first_lasting: Integers
-    lasting: Integers
+    first_persistent: Integers
+    persistent: Integers
     forces: Floats
 
+    @classmethod
+    def of(cls, n: int, joined: Any, size: int, counts: Integers) -> Constraints:
+        """Constraints of n discs: these pairs never collide, and there is room for `size` entries of contacts."""
+        pairs = np.asarray(joined, dtype=np.int64).reshape(-1, 2)
+        ends = np.concatenate([pairs, pairs[:, ::-1]])
+        ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
+        empty = cls(
+            first=np.searchsorted(ends[:, 0], np.arange(n + 1)),
+            partners=np.ascontiguousarray(ends[:, 1]),
+            first_persistent=np.zeros(n, dtype=np.int64),
+            persistent=np.zeros((0, 2), dtype=np.int64),
+            forces=np.zeros(0),
+        )
+        return empty.cleared(size, counts)
 
-OTHER, NEXT = 0, 1  # columns of lasting
+    def cleared(self, size: int, counts: Integers) -> Constraints:
+        """The same without persistent contacts, with room for `size` entries."""
+        counts[Count.SPARE], counts[Count.SPARES] = NONE, 0
+        none = np.full(len(self.first_persistent), NONE, dtype=np.int64)
+        emptied = self._replace(
+            first_persistent=none, persistent=np.zeros((0, 2), dtype=np.int64), forces=np.zeros(0)
+        )
+        return emptied.enlarged(size, counts)
+
+    def enlarged(self, size: int, counts: Integers) -> Constraints:
+        """The same with room for `size` entries; new unused entries are chained before the old ones."""
+        old = len(self.persistent)
+        persistent, forces = np.zeros((size, 2), dtype=np.int64), np.zeros(size)
+        persistent[:old], forces[:old] = self.persistent, self.forces
+        persistent[old:, Entry.NEXT] = np.arange(old + 1, size + 1)
+        persistent[-1, Entry.NEXT] = counts[Count.SPARE]
+        counts[Count.SPARE] = old
+        counts[Count.SPARES] += size - old
+        return self._replace(persistent=persistent, forces=forces)
+
+
+class Entry(IntEnum):
+    """Columns of `Constraints.persistent`."""
+
+    OTHER = 0  # the other disc of the contact
+    NEXT = 1  # the next entry of the same disc, or NONE
 
 
 class Group(NamedTuple):
-    """Discs ("members" 0, 1, …) that touch now, and the contacts between them, dealt with together.
+    """Discs ("members" 0, 1, …) that touch now, and the contacts between them, solved together.
 
-    members: which disc a member is; place: which member a disc is, or −1; shape (n,) both.
-    links: the two members of each contact, shape (c, 2). contacts: shape (c, CONTACT_WIDTH), columns below.
+    members: the disc of each member; place: the member that a disc is, or NONE; shape (n,) both.
+    links: the two members of each contact, shape (c, 2). contacts: shape (c, len(Contact)).
     mobility: inverse mass of each member in each direction, 1/kg, 0 where it is held, shape (n, 2), so that
     N_cᵀ M⁻¹ N_d is the compliance of the contacts under the members' supports.
     motion: what impulses change, shape (n, 2): velocities, m/s, with impulses in N·s; or accelerations, m/s²,
-    with forces in N. initial, start, other: notes of other motion.
+    with forces in N. initial, start, other: copies of other motion.
     noise: rate below which a contact closes by round-off only, shape (1,).
-    marks: work space, shape (3, c); rows below. matrix: work space, shape (DIRECT + 1, DIRECT).
+    marks: work space, shape (len(Mark), c). matrix: work space, shape (DIRECT + 1, DIRECT).
     """
 
     members: Integers
@@ -119,31 +198,56 @@ class Group(NamedTuple):
     marks: Integers
     matrix: Floats
 
+    @classmethod
+    def empty(cls, n: int, contacts: int) -> Group:
+        """An empty group with room for n members and so many contacts."""
+        return cls(
+            members=np.zeros(n, dtype=np.int64),
+            place=np.full(n, NONE, dtype=np.int64),
+            links=np.zeros((contacts, 2), dtype=np.int64),
+            contacts=np.zeros((contacts, len(Contact))),
+            mobility=np.zeros((n, 2)),
+            motion=np.zeros((n, 2)),
+            initial=np.zeros((n, 2)),
+            start=np.zeros((n, 2)),
+            other=np.zeros((n, 2)),
+            noise=np.zeros(1),
+            marks=np.zeros((len(Mark), contacts), dtype=np.int64),
+            matrix=np.zeros((DIRECT + 1, DIRECT)),
+        )
 
-NX, NY = 0, 1  # columns of contacts: unit vector from the first member to the second
-DISTANCE = 2  # of their centres, m
-OPENING = 3  # compliance of the contact itself, 1/kg
-BIAS = 4  # added to the rate at which the contact opens
-GIVEN = 5  # impulse of the present projection
-IMPULSE = 6  # of the whole impact
-FORCE = 7  # that has kept the discs apart since the group's last change, N; 0: none
-ROUND = 8  # 1: the normal turns as the discs move around each other; 0: along a flat side it stays
-BEFORE = 9  # impulse before a sweep to and fro
-DIRECTION = 10  # in which sweeps so far led
-CONTACT_WIDTH = 11
 
-ACTIVE, STATE, CHOSEN = 0, 1, 2  # rows of marks: contacts of a projection; how they fare; those fitted now
-DIRECT = 48  # contacts up to which a projection is solved directly; more: by sweeps
+class Contact(IntEnum):
+    """Columns of `Group.contacts`."""
+
+    NX, NY = 0, 1  # unit vector from the first member to the second
+    DISTANCE = 2  # of the centres, m
+    COMPLIANCE = 3  # rate at which a unit impulse in the contact opens it, 1/kg
+    BIAS = 4  # added to the rate at which the contact opens
+    IMPULSE = 5  # of the present projection
+    TOTAL_IMPULSE = 6  # of the whole impact
+    FORCE = 7  # that has kept the discs apart since the group's last change, N; 0: none
+    ROUND = 8  # 1: the normal turns as the discs move around each other; 0: along a flat side it does not
+    PREVIOUS = 9  # impulse before a sweep to and fro
+    DIRECTION = 10  # sum of the changes of the impulse by the sweeps so far
+
+
+class Mark(IntEnum):
+    """Rows of `Group.marks`."""
+
+    ACTIVE = 0  # the contacts of a projection
+    STATE = 1  # of each contact in the active-set method
+    CHOSEN = 2  # the contacts whose rates are now brought to 0
 
 
 class Pile(NamedTuple):
-    """Discs that take steps, the pairs of them that are near, and the contacts of the present step; see kernels/pile.py.
+    """Discs that take steps, the pairs of discs that are near, and the contacts of the present step.
 
-    motion: of each disc, shape (4, n, 2); travel: likewise, shape (4, n). pairs: two discs each, ascending, shape
-    (p, 2); forces: in them in the step before, N, shape (p,). chosen: which pairs are contacts; order: the same, in
-    the order in which sweeps go through the contacts; shape (p,) both. ends: the two discs of a contact, one twice
-    where the other is held, shape (p, 2). contacts: shape (p, PILE_CONTACT_WIDTH). scale: root of their compliances,
-    1/√kg, shape (p,).
+    See kernels/pile.py. motion: shape (len(Motion), n, 2); travel: shape (len(Travel), n). pairs: two discs
+    each, ascending, shape (p, 2); forces: in the pairs in the step before, N, shape (p,). chosen: the pairs that are
+    contacts; order: the same, in the order in which sweeps go through the contacts; shape (p,) both. ends: the two discs
+    of a contact, one disc twice where the other is held, shape (p, 2). contacts: shape (p, len(PileContact)). scale:
+    square root of the compliances, 1/√kg, shape (p,).
     """
 
     motion: Floats
@@ -156,65 +260,130 @@ class Pile(NamedTuple):
     contacts: Floats
     scale: Floats
 
+    @classmethod
+    def empty(cls, n: int, pairs: int) -> Pile:
+        """A pile of n discs with room for so many pairs."""
+        return cls(
+            motion=np.zeros((len(Motion), n, 2)),
+            travel=np.zeros((len(Travel), n)),
+            pairs=np.zeros((pairs, 2), dtype=np.int64),
+            forces=np.zeros(pairs),
+            chosen=np.zeros(pairs, dtype=np.int64),
+            order=np.zeros(pairs, dtype=np.int64),
+            ends=np.zeros((pairs, 2), dtype=np.uint32),
+            contacts=np.zeros((pairs, len(PileContact))),
+            scale=np.zeros(pairs),
+        )
 
-PILE_CONTACT_WIDTH = 8
+
+class PileContact(IntEnum):
+    """Columns of `Pile.contacts`.
+
+    Velocities u = v/√w and impulses are scaled so that a unit impulse opens its own contact at the rate 1:
+    A = N W Nᵀ has a diagonal of ones. The rate at which a contact opens is
+    (AX, AY)·(u of its first disc) + (BX, BY)·(u of its second disc) + BIAS.
+    """
+
+    AX, AY = 0, 1
+    BX, BY = 2, 3
+    BIAS = 4
+    IMPULSE = 5
+    PREVIOUS = 6  # impulse before a sweep to and fro
+    DIRECTION = 7  # sum of the changes of the impulse by the sweeps so far
+
+
+class Motion(IntEnum):
+    """Parts of `Pile.motion`, of each disc in each direction."""
+
+    SPEED = 0  # u = v/√w
+    ROOT = 1  # √w
+    PREVIOUS = 2  # u before the sweeps
+    DIRECTION = 3  # sum of the changes of u by the sweeps so far
+
+
+class Travel(IntEnum):
+    """Rows of `Pile.travel`, of each disc."""
+
+    REACH = 0  # farthest that the disc may travel in the step, m
+    FASTEST = 1  # speed of the fastest disc that is near, m/s
+    NEAR = 2  # 1: it is near another at the end of the step; 2: another pushed it
+    PULL = 3  # acceleration without contacts, m/s²
 
 
 class Report(NamedTuple):
-    """Impacts that nobody has fetched yet.
+    """Impacts that the kernels have reported and nobody has fetched yet.
 
-    pairs: the two discs, shape (capacity, 2). details: time (s), impulse (N·s), energy lost (J) and the point
-    of contact (x, y in m), shape (capacity, 5).
+    pairs: the two discs, shape (capacity, 2). details: shape (capacity, len(Detail)).
     """
 
     pairs: Integers
     details: Floats
 
+    @classmethod
+    def empty(cls, size: int) -> Report:
+        """A report with room for `size` impacts."""
+        return cls(np.zeros((size, 2), dtype=np.int64), np.zeros((size, len(Detail))))
 
-# `numbers`, float64
-NOW = 0  # s; everything up to now has happened
-END = 1  # s; of the present window, in which all meetings are foreseen
-WINDOW = 2  # s; length of a window
-CELL = 3  # m; of the finest layer of the grid
-CROWDING = 4  # neighbours found per area of boxes, 1/m²
-RESTITUTION = 5  # the least of all
-REST_HEIGHT = 6  # of the smaller radius; bounces that would rise less end in contact
-SMALLEST = 7  # m; radius of the smallest disc
-STEP_LENGTH = 8  # s; of the steps of piles, ∞ where nothing is pulled
-STEP_END = 9  # s; of the present one
-WORK_SINCE = 10  # s; since when WORK is counted
-LOSS = 11  # J; energy that impacts and piles have taken so far, the present step of a pile in full
-NUMBERS = 12
 
-# `counts`, int64
-QUEUED = 0  # meetings in the queue
-LAYERS = 1  # of the grid
-REPORTED = 2  # impacts in the report
-IMPACTS = 3  # so far, every contact of a joint impact counted
-EVENTS = 4  # so far: impacts, a joint one counted once, and steps of lasting contact
-LEVEL = 5  # coarsest level that a disc needed beyond those of the grid
-RENEW = 6  # 1: the window must be opened anew before anything else
-SPARE = 7  # first unused entry of the table of lasting contacts
-SPARES = 8  # how many are unused
-STEPPING = 9  # 1: discs take the steps of a pile
-CALM = 10  # steps one after the other in which nothing in the pile moved fast
-WORK = 11  # contacts in the events of late
-DISCS = 12  # how many there are
-PATIENCE = 13  # calm steps after which a pile seeks its equilibrium
-LISTED = 14  # pairs in the list of a pile; −1: they must be listed anew
-COUNTS = 15
-CROWD_COUNTS = (STEPPING, CALM, WORK, PATIENCE)  # what a pile goes on from
-CROWD_NUMBERS = (STEP_END, WORK_SINCE, LOSS)
+class Detail(IntEnum):
+    """Columns of `Report.details`."""
+
+    TIME = 0  # s
+    IMPULSE = 1  # N·s
+    LOSS = 2  # energy lost, J
+    X, Y = 3, 4  # point of contact, m
+
+
+class Number(IntEnum):
+    """Entries of `numbers`, float64: the real numbers of a flight."""
+
+    NOW = 0  # everything up to this time has happened, s
+    HORIZON_END = 1  # end of the present horizon, up to which all impacts are known, s
+    HORIZON = 2  # length of a horizon, s
+    CELL = 3  # size of the cells of the grid's finest layer, m
+    CROWDING = 4  # neighbours found per area of boxes, 1/m²
+    RESTITUTION = 5  # the least of all
+    REST_HEIGHT = 6  # of the smaller radius; bounces that would rise less end in contact
+    SMALLEST = 7  # radius of the smallest disc, m
+    STEP_LENGTH = 8  # of the steps of piles, s; ∞ where nothing is pulled
+    STEP_END = 9  # end of the present step, s
+    WORK_SINCE = 10  # time since which Count.WORK is counted, s
+    LOSS = 11  # energy that impacts and piles have taken so far, the present step of a pile in full, J
+
+
+class Count(IntEnum):
+    """Entries of `counts`, int64: the whole numbers and flags of a flight."""
+
+    QUEUED = 0  # impacts in the queue
+    LAYERS = 1  # of the grid
+    REPORTED = 2  # impacts in the report
+    IMPACTS = 3  # so far, every contact of a joint impact counted
+    EVENTS = 4  # so far: impacts, a joint one counted once, and steps of persistent contact
+    LEVEL = 5  # coarsest level that a disc needed beyond those of the grid
+    RENEW = 6  # 1: a new horizon must be opened before anything else
+    SPARE = 7  # first unused entry of the table of persistent contacts
+    SPARES = 8  # number of unused entries
+    STEPPING = 9  # 1: discs take the steps of a pile
+    CALM = 10  # consecutive steps in which nothing in the pile moved fast
+    WORK = 11  # contacts in the events of late
+    DISCS = 12  # number of discs, without obstacles
+    PATIENCE = 13  # calm steps after which a pile seeks its equilibrium
+    LISTED = 14  # pairs in the list of a pile; NONE: they must be listed anew
+
+
+# What a pile goes on from: FreeFlightState.pile, in this order.
+PILE_COUNTS = [Count.STEPPING, Count.CALM, Count.WORK, Count.PATIENCE]
+PILE_NUMBERS = [Number.STEP_END, Number.WORK_SINCE, Number.LOSS]
 
 
 class Reason(IntEnum):
-    """Why the flight returned."""
+    """Why a kernel of the flight returned."""
 
     DONE = 0  # arrived
     BUSY = 1  # as many events as were allowed
     REPORT_FULL = 2  # fetch the reported impacts and go on
     QUEUE_FULL = 3  # enlarge the queue and go on
     GRID_FULL = 4  # enlarge the grid and go on
-    GROUP_FULL = 5  # enlarge the room for contacts and lasting contacts and go on
+    GROUP_FULL = 5  # enlarge the room for contacts and persistent contacts and go on
     SETTLE = 6  # put the calm pile into its equilibrium and go on
-    GO_ON = 7  # go on with what is due now: a window, steps of a pile, or events
+    GO_ON = 7  # go on with what is due now: a horizon, steps of a pile, or events

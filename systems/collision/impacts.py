@@ -1,4 +1,4 @@
-"""Impacts: the record of a run's impacts, as columns to read and as CSV."""
+"""The record of a run's impacts, as columns and as CSV."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from numpy.typing import NDArray
 from components.model import Model
 from components.obstacles import obstacles
 
-MOST = 2**22  # impacts that are kept; of longer runs the earliest are forgotten
+MOST_KEPT = 2**22  # impacts; of longer runs the earliest are forgotten
 _COLUMNS = ("time", "first", "second", "impulse", "energy_lost", "x", "y")
 
 Column = NDArray[Any]
 
 
 class Impacts:
-    """The impacts of a model's run so far, earliest first; going back in time takes them back.
+    """The impacts of a model's run so far, earliest first; going back in time removes the later ones.
 
-    time: s. first, second: rows of the two particles; beyond the last, of obstacles, such as walls. impulse: N·s
-    along the line of centres. energy_lost: J; in a joint impact of many, a share of it. x, y: the point of
-    contact, m. In an array each.
+    time: s. first, second: rows of the two particles; the rows of obstacles, such as walls, follow those of the
+    particles. impulse: N·s along the line of centres. energy_lost: J; of a joint impact, a share. x, y: the point of
+    contact, m. Each is an array.
     """
 
     def __init__(self, model: Model) -> None:
@@ -32,14 +32,14 @@ class Impacts:
         self._first = self._count = model.clock.collisions  # of the run, in the table and after it
 
     def record(self, rows: NDArray[np.float64]) -> None:
-        """Add impacts, shape (k, 7), to those that the clock has counted."""
+        """Add impacts, shape (k, 7), to the impacts that the clock has counted."""
         self._take_back()
         kept = self._count - self._first
-        if kept + len(rows) > MOST:
-            kept = max(MOST // 2 - len(rows), 0)
+        if kept + len(rows) > MOST_KEPT:
+            kept = max(MOST_KEPT // 2 - len(rows), 0)
             self._table = self._table[self._count - self._first - kept : self._count - self._first]
             self._first = self._count - kept
-            rows = rows[-MOST:]
+            rows = rows[-MOST_KEPT:]
         if kept + len(rows) > len(self._table):
             larger = np.zeros((max(2 * len(self._table), kept + len(rows), 256), len(_COLUMNS)))
             larger[:kept] = self._table[:kept]
@@ -48,7 +48,7 @@ class Impacts:
         self._count += len(rows)
 
     def _take_back(self) -> None:
-        """Forget impacts that going back in time has undone."""
+        """Remove impacts that going back in time has undone."""
         counted = self._model.clock.collisions
         if counted < self._first or counted > self._count:
             self._first = self._count = counted

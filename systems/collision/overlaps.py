@@ -1,7 +1,4 @@
-"""Overlaps where a run begins: discs that would have to be in the same place are moved apart.
-
-Importing this module imports numba; do so only where there are overlaps.
-"""
+"""Overlap removal: discs that overlap where a run begins are moved apart."""
 
 from __future__ import annotations
 
@@ -11,21 +8,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.obstacles import NO_OBSTACLES, Obstacles
+from components.model import Model
+from components.obstacles import NO_OBSTACLES, Obstacles, obstacles
+from components.rod import nodes
 from systems.broad_phase import Floats, Rows, near_pairs, nearest
+from systems.collision.driven.compiled import kernels
 
-SLACK = 1e-13  # of the reach of two discs; less is round-off
-AROUND = 1.5  # times its radius, within which a disc's neighbours are looked after at a time
-MOST_ROUNDS = 100  # of finding neighbours anew
+SLACK = 1e-13  # of the reach of two discs: a smaller overlap is round-off
+AROUND = 1.5  # radii: the neighbours of a disc within it are moved apart at a time
+MOST_ROUNDS = 100  # in each of which neighbours are found anew
+UNSEEN_OVERLAP = 1e-3  # of a radius: too small to see, as steps of piles leave them, and not worth a message
 
 
-def overlaps(place: Floats, radius: Floats, obstacles: Obstacles | None = None) -> Rows:
+def overlaps(place: Floats, radius: Floats, others: Obstacles | None = None) -> Rows:
     """Pairs of discs, and of discs and obstacles, that overlap, shape (k, 2)."""
-    pairs = near_pairs(place, radius, obstacles)
+    pairs = near_pairs(place, radius, others)
     first, span = place, np.zeros_like(place)
-    if obstacles is not None:
-        first, span = np.concatenate([place, obstacles.start]), np.concatenate([span, obstacles.span])
-        radius = np.concatenate([radius, obstacles.radius])
+    if others is not None:
+        first, span = np.concatenate([place, others.start]), np.concatenate([span, others.span])
+        radius = np.concatenate([radius, others.radius])
     line = nearest(first[pairs[:, 1]] - place[pairs[:, 0]], span[pairs[:, 1]])
     reach = radius[pairs].sum(axis=1)
     overlapping: Rows = pairs[np.hypot(line[:, 0], line[:, 1]) < reach * (1.0 - SLACK)]
@@ -39,22 +40,60 @@ def part(
     inverse_mass: Floats,
     among: Callable[[Rows], NDArray[np.bool_]],
     kernel: Callable[..., Any],
-    obstacles: Obstacles = NO_OBSTACLES,
+    others: Obstacles = NO_OBSTACLES,
 ) -> int:
-    """Move discs apart that overlap, changing `displacement`; returns how many pairs still do in the end.
+    """Move overlapping discs apart, changing `displacement`; returns the number of pairs that still overlap.
 
-    among: which of the pairs it is given are to be parted. kernel: `separate` of kernels/overlap.py, compiled.
+    among: selects the pairs that are to be parted. kernel: `separate` of kernels/overlap.py, compiled.
     """
-    count, still = len(position), np.zeros((len(obstacles), 2))
-    places, moved = np.concatenate([position, obstacles.start]), np.concatenate([displacement, still])
-    span = np.concatenate([np.zeros_like(position), obstacles.span])
-    radii, inverse = np.concatenate([radius, obstacles.radius]), np.concatenate([inverse_mass, still])
+    count, still = len(position), np.zeros((len(others), 2))
+    places, moved = np.concatenate([position, others.start]), np.concatenate([displacement, still])
+    span = np.concatenate([np.zeros_like(position), others.span])
+    radii, inverse = np.concatenate([radius, others.radius]), np.concatenate([inverse_mass, still])
     for _ in range(MOST_ROUNDS):
-        near = near_pairs(position + moved[:count], AROUND * radius, obstacles)
+        near = near_pairs(position + moved[:count], AROUND * radius, others)
         near = near[among(near)]
         first, second = np.ascontiguousarray(near[:, 0]), np.ascontiguousarray(near[:, 1])
         if kernel(first, second, places, moved, radii, inverse, span, SLACK) == 0:
             break
     displacement[...] = moved[:count]
-    left = overlaps(position + displacement, radius, obstacles)
+    left = overlaps(position + displacement, radius, others)
     return int(among(left).sum())
+
+
+def part_overlaps(model: Model) -> str:
+    """Move overlapping particles apart, except nodes of structures from each other; returns a message, or "".
+
+    There is no message about overlaps that are too small to see.
+    """
+    particles, others = model.particles, obstacles(model)
+    node: NDArray[np.bool_] = np.ones(particles.count + len(others), dtype=bool)  # obstacles count as nodes
+    held = node.copy()
+    held[: particles.count] = (particles.mobility == 0.0).all(axis=1)
+    node[: particles.count] = nodes(model)
+
+    def among(pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
+        left_alone: NDArray[np.bool_] = np.logical_or(node[pairs].all(axis=1), held[pairs].all(axis=1))
+        return np.logical_not(left_alone)
+
+    displacement = particles.displacement.copy()
+    touching = near_pairs(particles.position + displacement, particles.radius, others)
+    if not among(touching).any():
+        return ""
+    overlapping = overlaps(particles.position + displacement, particles.radius, others)
+    overlapping = overlapping[among(overlapping)]
+    count = len(overlapping)
+    if count == 0:
+        return ""
+    columns = particles.position, displacement, particles.radius, particles.mobility
+    left = part(*columns, among, kernels().part, others)
+    farthest = float(np.abs(displacement - particles.displacement).max())
+    model.writable("particles.displacement")[...] = displacement
+    if farthest <= UNSEEN_OVERLAP * float(particles.radius.min()) and not left:
+        return ""
+    pairs = "1 pair of particles" if count == 1 else f"{count} pairs of particles"
+    note = f"{pairs} overlapped and were moved apart along their lines of centres."
+    if (overlapping[:, 1] >= particles.count).any():
+        pairs = "1 overlap" if count == 1 else f"{count} overlaps"
+        note = f"{pairs} of particles with others or with obstacles: they were moved apart."
+    return note if left == 0 else f"{note} {left} still overlap: move them, or free a direction."

@@ -1,28 +1,30 @@
-"""Step systems of collisions."""
+"""The step systems of collisions: what they contribute to a plan, and when they are needed."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from components.collision_state import PersistentContacts
+from components.model import Model
 from components.obstacles import any_obstacles, obstacles
-from components.paths import Paths
 from systems.base import Integrator, Law, StepSystem
 from systems.broad_phase import nearest
-
-if TYPE_CHECKING:
-    from components.model import Model
 
 REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
 
 
 class Collision(StepSystem):
-    """Discs that meet push one another apart; see systems/collision/free/flight.py for what drives them."""
+    """Impacts between discs, detected at their exact times.
+
+    The system brings no kernel of its own: it declares that it acts at instants (`impulsive`). Steps of an integrator
+    then end at impacts (driven/stepper.py); a plan whose systems all leave flight exact needs none (free/flight.py).
+    """
 
     name = "collision.discs"
     unneeded = "no two particles, and no particle and obstacle, can meet; or settings.collisions is off"
@@ -54,12 +56,12 @@ def can_touch(model: Model) -> bool:
 
 
 class Support(Law):
-    """Forces in lasting contacts of particles that rods or other laws drive; constant during a step."""
+    """Forces in persistent contacts of driven particles; constant during a step."""
 
     name = "collision.support"
     unneeded = "no contact lasts among particles that rods, drag or laws of mods drive"
     each = "particles"
-    kernel = "systems.collision.kernels.support:support"
+    kernel = "systems.collision.kernels.pairs:contact_force"
     adds = ("particles.force",)
     account = "work"
 
@@ -67,13 +69,14 @@ class Support(Law):
         self._pushes: WeakKeyDictionary[Model, NDArray[np.float64]] = WeakKeyDictionary()
 
     def needs(self, model: Model) -> bool:
-        return contacts_of(model) is not None and model.settings.collisions
+        return persistent_contacts(model) is not None and model.settings.collisions
 
     def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
         """The sum over the contacts of each particle (kN), from the forces of the last step."""
-        paths, pushes = contacts_of(model), np.zeros((model.particles.count, 2))
-        if paths is not None:
-            pushes = support_forces(normals(model, paths.contacts), paths.contacts, paths.forces, len(pushes))
+        contacts, pushes = persistent_contacts(model), np.zeros((model.particles.count, 2))
+        if contacts is not None:
+            normal = normals(model, contacts.pairs)
+            pushes = support_forces(normal, contacts.pairs, contacts.forces, len(pushes))
         self._pushes[model] = pushes
         return {"collision_support_force": self._pushes[model].view()}
 
@@ -81,15 +84,15 @@ class Support(Law):
         """Push the particles of a model by these forces (kN) in the next step."""
         if model in self._pushes and not (self._pushes[model] == force).all():
             self._pushes[model][...] = force
-            model.writable("particles.velocity")  # marks the state as changed: its forces are no longer known
+            model.writable("particles.velocity")  # changed: its forces must be evaluated anew
 
 
-def contacts_of(model: Model) -> Paths | None:
-    """The lasting contacts among particles that do not fly free, if there are any."""
-    paths: Paths | None = model.clock.paths
-    if paths is None or len(paths.motion) or not len(paths.contacts):
+def persistent_contacts(model: Model) -> PersistentContacts | None:
+    """The persistent contacts of driven particles, if there are any."""
+    contacts = model.clock.collision_state
+    if type(contacts) is not PersistentContacts or not len(contacts.pairs):  # isinstance of a Mapping is slow
         return None
-    return paths if paths.contacts.max() < model.particles.count + len(obstacles(model)) else None
+    return contacts if contacts.pairs.max() < model.particles.count + len(obstacles(model)) else None
 
 
 def normals(model: Model, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -103,11 +106,11 @@ def normals(model: Model, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
 def support_forces(
     normal: NDArray[np.float64], pairs: NDArray[np.int64], forces: NDArray[np.float64], count: int
 ) -> NDArray[np.float64]:
-    """Force on each of `count` particles (kN), shape (count, 2), from the forces (N) that keep pairs apart."""
+    """Force on each of `count` particles (kN), shape (count, 2), by the forces (N) that keep pairs apart."""
     push = normal * (0.001 * forces)[:, None]
     total = np.zeros((count, 2))
     for d in range(2):
-        total[:, d] = np.bincount(pairs[:, 1], push[:, d], count)[:count]  # without those of obstacles
+        total[:, d] = np.bincount(pairs[:, 1], push[:, d], count)[:count]  # obstacles come after them
         total[:, d] -= np.bincount(pairs[:, 0], push[:, d], count)
     return total
 

@@ -19,13 +19,13 @@ _RIGID = 1e-10  # share of the highest eigenvalue below which a mode has no stif
 def choose(model: Model) -> str:
     """The name of the integrator: up to SMALL rods one with error control, else velocity Verlet.
 
-    Of these the explicit one of order 8, unless the model is too stiff: unless stability would force on it
-    more than STIFF / 5 steps in the slowest time scale, which is a period, a creep time or the duration of
-    the loading. Where a person fixes the step, no error can be controlled.
+    With error control, the explicit one of order 8, unless the model is too stiff: unless stability would force more
+    than STIFF / 5 steps on it in the slowest time scale, which is a period, a creep time or the duration of the
+    loading. Where a person fixes the step, no error can be controlled.
     """
     if model.rods.count > SMALL or model.settings.time_step is not None:
         return "velocity_verlet"
-    if incomputable(model):  # no run begins, but undo and properties ask too
+    if incomputable(model):  # no run can begin, but undo and properties ask as well
         return suited_to(0.0)
     return suited_to(float(stiffnesses(model, np.array([model.environment.drag]))[0]))
 

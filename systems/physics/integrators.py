@@ -194,9 +194,8 @@ INTEGRATORS: dict[str, Integrator] = {}  # by the name that models use; componen
 
 def register_integrator(integrator: Integrator) -> None:
     """Make an integrator known to models, the command line and the properties."""
-    key = integrator.name.rpartition(".")[2]
-    INTEGRATORS[key] = integrator
-    settings.INTEGRATORS[key] = (integrator.__doc__ or "").strip().partition("\n")[0]
+    INTEGRATORS[integrator.key] = integrator
+    settings.INTEGRATORS[integrator.key] = (integrator.__doc__ or "").strip().partition("\n")[0]
 
 
 def remove_integrator(key: str) -> None:
@@ -204,12 +203,6 @@ def remove_integrator(key: str) -> None:
     del INTEGRATORS[key], settings.INTEGRATORS[key]
 
 
-for _kind in (
-    VelocityVerlet,
-    DormandPrince853,
-    ImplicitRungeKutta4,
-    RungeKutta4,
-    SemiImplicitEuler,
-    ThesisTaylor,
-):
+_EXACT = VelocityVerlet, DormandPrince853, ImplicitRungeKutta4, RungeKutta4
+for _kind in (*_EXACT, SemiImplicitEuler, ThesisTaylor):  # the last two to compare with
     register_integrator(_kind())

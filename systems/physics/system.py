@@ -50,7 +50,7 @@ class AxialDamping(Law):
 
 
 class Slackness(Law):
-    """Cables do not push: N ≥ 0. Where one goes slack or taut, drivers with events end a step."""
+    """Cables do not push: N ≥ 0. Where one goes slack or taut, integrators that locate events end a step."""
 
     name = "physics.slackness"
     unneeded = "the model has no cables"
@@ -66,7 +66,7 @@ class Slackness(Law):
 
 
 class AxialDampingOfCables(Law):
-    """Axial damping in a model with cables, whose dampers act while they are taut and never make them push."""
+    """Axial damping in a model with cables: a cable's damper acts while it is taut, and never makes it push."""
 
     name = "physics.axial_damping_of_cables"
     unneeded = "the model has no cables with dampers"

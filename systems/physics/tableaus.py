@@ -44,7 +44,7 @@ class Tableau:
 
     @property
     def constants(self) -> dict[str, Any]:
-        """What the source of a driver calls them: per row, first for velocities, then for displacements."""
+        """The tableau by the names of templates/runge_kutta.py; _V of velocities, _X of displacements."""
         weights = [self._row(self.weights), *(self._row(error) for error in self.errors)]
         return {
             "STAGES": len(self.stages),

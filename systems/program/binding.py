@@ -1,4 +1,4 @@
-"""What may join a step program: step systems with their kernels, checked before anything is compiled."""
+"""Step systems and their kernels, checked before they join a step program: names, parameters, roles."""
 
 from __future__ import annotations
 
@@ -96,20 +96,20 @@ class Bound:
 
     @property
     def account(self) -> str:
-        """The account that its energy belongs to."""
+        """The account that the energy of its force belongs to."""
         return self.system.account if isinstance(self.system, Law | Commit) else ACCOUNTS[0]
 
     @property
     def follows_time(self) -> bool:
-        """Whether what it does changes while nothing moves; of loads their histories know when that ends."""
+        """Whether its result changes with time while nothing moves. Loads are apart: their histories say when they end."""
         times = ("time",) if self.each else ("time", "dt")
         return self.each != "loads" and any(name in self.parameters for name in times)
 
     @property
     def follows_state(self) -> bool:
-        """Whether it does the same as long as nothing moves and nothing is edited, loads apart."""
-        told = self.arrays or any(parameter.startswith("clock_") for parameter in self.parameters)
-        return self.each == "loads" or not (told or self.follows_time)
+        """Whether its result stays the same as long as nothing moves and nothing is edited; loads are apart."""
+        others = self.arrays or any(parameter.startswith("clock_") for parameter in self.parameters)
+        return self.each == "loads" or not (others or self.follows_time)
 
     @property
     def role(self) -> StepRole:
@@ -173,14 +173,14 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
-    """A view that no kernel compiles to write to; the system itself still may, between steps."""
+    """A view that kernels cannot write to; the system itself may write to the array between steps."""
     view = array.view()
     view.flags.writeable = False
     return view
 
 
 def check_names(bound: Iterable[Bound]) -> None:
-    """Raise ProgramError if two systems would go by one name in the program, or two arrays."""
+    """Raise ProgramError if two kernels or arrays would have the same name in the program."""
     owner: dict[str, str] = {}
     for b in bound:
         for name in (b.call, *b.arrays):
@@ -214,7 +214,7 @@ def _check_role(system: StepSystem, model: Model) -> None:
 
 
 def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., Any]:
-    """The function that "module:function" names, or itself. Raises ProgramError naming its owner."""
+    """The function that "module:function" names, or the function itself. Raises ProgramError, which names the owner."""
     if not isinstance(kernel, str):
         found: Callable[..., Any] = getattr(kernel, "__func__", kernel)  # of a class: a method
         return found
@@ -232,7 +232,7 @@ def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., A
 
 
 def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
-    """A kernel is given what its role provides, its own arrays and the columns that its system declares."""
+    """Raise ProgramError unless the parameter is provided, an array of the system or a column that it declares."""
     rows, name = b.each or "rods", b.system.name
     provided = PROVIDED_TO[b.purpose]
     if parameter in provided:
@@ -268,7 +268,7 @@ def _is_column(name: str, model: Model) -> bool:
 
 
 def explain(bound: Iterable[Bound], integrator: Integrator, model: Model, error: Exception) -> ProgramError:
-    """Why a program did not compile: the first kernel that fails by itself or returns the wrong thing."""
+    """Why a program did not compile: the first kernel that fails by itself or returns something of a wrong type."""
     for b in bound:
         problem = problem_of(b, model)
         if problem:

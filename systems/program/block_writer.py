@@ -1,4 +1,4 @@
-"""The source of step programs of very large models: in blocks, which cores share among themselves.
+"""The source of step programs of very large models, which are computed in blocks by several cores.
 
 See systems/program/blocks.py for what a block is.
 """
@@ -25,9 +25,10 @@ parallel = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=T
 
 
 class BlockWriter(Writer):
-    """Writes each function as one of a block, called for all blocks; cores share those that make up a step.
+    """Writes a version of each function for one block, and one that calls it for all blocks.
 
-    What blocks add to accounts is added up in their order, so that no bit depends on the number of cores.
+    In the steps themselves cores share the blocks. The accounts' shares of the blocks are summed in the order of the
+    blocks, so that no bit depends on the number of cores.
     """
 
     BLOCK = ("block_particles", "block_rods", "block_cores")
@@ -64,7 +65,7 @@ class BlockWriter(Writer):
         return _of_block("resist", RESISTED, body) + _of_all("resist", RESISTED, ", power", _gains())
 
     def _integrate(self) -> str:
-        """Each step has one part that cores share, or two; where it has one, it ends as the next one begins."""
+        """Steps in one part that cores share, which ends a step and begins the next; or in two, if accounts gain."""
         if self.integrator.kernel:
             return super()._integrate()
         ends, begins = (
@@ -94,12 +95,12 @@ def _call(name: str, block: str, given: str) -> str:
 
 
 def _of_block(name: str, given: str, body: list[str]) -> str:
-    """A function that does something in one block."""
+    """A function for one block."""
     return _function("compiled", f"def {name}_block(block, {given}, partial, *columns):", [*_LIMITS, *body])
 
 
 def _of_all(name: str, given: str, results: str, after: list[str], loop: Sequence[str] = ()) -> str:
-    """A function that does something in every block, then with what is between, and adds up."""
+    """A function that calls that of one block for every block and for the rods between them, and sums up."""
     body = [
         "blocks = block_rods.shape[0] - 2",
         f"partial = np.zeros((blocks + 1, {len(ACCOUNTS)}))",
@@ -115,7 +116,7 @@ def _one_by_one(name: str, given: str) -> list[str]:
 
 
 def _shared(name: str, given: str, body: list[str], results: str, after: list[str]) -> str:
-    """A function like that, of which cores share the blocks."""
+    """The same with the blocks shared among cores."""
     each = f"{name}_each(blocks, {given}, partial, *columns)"
     several = ["for block in prange(blocks):", f"    {_call(name, 'block', given)}"]
     loop = ["if block_cores[0] > 1:", f"    {each}", "else:", *indented(_one_by_one(name, given))]
@@ -131,12 +132,12 @@ def _function(decorator: str, head: str, body: list[str]) -> str:
 
 
 def _losses(accounts: Iterable[str]) -> list[str]:
-    """Lines that add what is lost to the accounts."""
+    """Lines that add the losses of all blocks to the accounts."""
     return [f"account[{_entry(name)}] += 1000.0 * {_total(name)}" for name in accounts]
 
 
 def _gains() -> list[str]:
-    """Lines that tell what each account gains per second."""
+    """Lines that sum what each account gains per second."""
     return [f"power[{_entry(name)}] = {_total(name)}" for name in ACCOUNTS]
 
 

@@ -1,9 +1,9 @@
-"""Layouts: a large model in blocks that fit a cache and can be computed side by side.
+"""Layouts: a large model in blocks that fit a cache and can be computed in parallel.
 
-A space-filling curve through the original positions of the particles is cut into pieces of about as many rod ends.
-Within each block the particles are numbered row after row of the picture, and rods by their ends, so that what is
-near is near in memory. The rods within each block come first, block after block, then those between blocks: blocks
-wait for nobody, and what is between them comes when all are done. So every particle's sum has one order, which
+A space-filling curve through the original positions of the particles is cut into pieces with about the same number of
+rod ends each. Within a block, particles are numbered by row and column of the picture, and rods by their ends:
+neighbours lie near each other in memory. Rods within blocks come first, block after block, then the rods between
+blocks. Blocks are computed independently, the rods between them afterwards. The order of every particle's sum thus
 depends on the model alone.
 """
 
@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from components.model import Model
 
-BLOCK = 8192  # rods in a block at most, about: what particles are read and written stays in a core's own cache
-SHARES = 8  # of which there are so many, or a multiple: 2, 4 or 8 cores have as much to do each
+BLOCK = 8192  # rods in a block at most, about: their particles stay in the cache of one core
+SHARES = 8  # the number of blocks is a multiple of this: 2, 4 or 8 cores get equal shares
 
 Numbers = NDArray[np.intp]
 
@@ -27,9 +27,9 @@ Numbers = NDArray[np.intp]
 class Layout:
     """Which particles and rods of a model a program holds in which of its rows.
 
-    particles, rods: which one is in each row. row: of each particle, -1 if it is left out. ends: rows of the
-    particles at the ends of each row's rod. first_particle, first_rod: where blocks begin, after them the rods
-    between blocks, and where these end.
+    particles, rods: the particle or rod in each row. row: of each particle, -1 if it is left out. ends: rows of the
+    particles at the ends of each row's rod. first_particle, first_rod: the first row of each block, then of the
+    rods between blocks, and the number of rows.
     """
 
     particles: Numbers
@@ -41,7 +41,7 @@ class Layout:
 
     @classmethod
     def in_order(cls, model: Model) -> Layout:
-        """A model as it is, in one block."""
+        """All of a model in one block, in its own order."""
         rows, rods = np.arange(model.particles.count), np.arange(model.rods.count)
         limits = (np.array([0, count, count], dtype=np.intp) for count in (len(rows), len(rods)))
         return cls(rows, rods, rows, model.rods.between, *limits)
@@ -67,9 +67,9 @@ class Layout:
         return cls(particles, rods, row, ends[rods].astype(np.uint32), first_particle, first_rod)
 
     def part(self, moving: NDArray[np.bool_]) -> Layout:
-        """What is left without the rods that hold none of these particles, in the same order and blocks.
+        """The layout of the rods that hold moving particles, and of the particles at their ends, in the same order.
 
-        moving: which particles, shape (n,). Those at the other ends of their rods stay, too.
+        moving: which particles move, shape (n,).
         """
         here = moving[self.particles]
         rods = np.asarray(here[self.ends].any(axis=1))
@@ -88,7 +88,7 @@ class Layout:
 
 
 def _remaining(first: Numbers, stays: NDArray[np.bool_]) -> Numbers:
-    """Where blocks begin of which these rows stay."""
+    """The first row of each block once only some rows stay."""
     before = np.concatenate([[0], np.cumsum(stays)]).astype(np.intp)
     return before[first]
 

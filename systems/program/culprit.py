@@ -1,4 +1,4 @@
-"""Culprits: which mod spoilt a step program or its numbers; it is switched off, and the run goes on."""
+"""Culprits: the mod that broke a step program or its numbers is switched off, and the run goes on."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ STATE = ("particles.displacement", "particles.velocity")
 
 
 def blame_mod(error: ProgramError) -> bool:
-    """Switch off the mod whose system cannot join the step program; False if it is none of a mod."""
+    """Switch off the mod whose system cannot join the step program; False if the system is no mod's."""
     mod: Mod | None = error.system.mod if error.system is not None else None
     if mod is None:
         return False
@@ -29,15 +29,15 @@ def blame_mod(error: ProgramError) -> bool:
 
 
 def find_culprit(program: Program, safe: Snapshot) -> Mod | None:
-    """Switch off the mod whose kernel first gave what is not finite after a safe state; None if none did.
+    """Switch off the mod whose kernel was the first to return a number not finite after a safe state; None if none was.
 
-    The steps are taken again one by one, then the kernels are called one after the other, row by row, in
-    the state before the first bad step and in the one it led to.
+    The steps are taken again one by one. Then the kernels are called one after the other, row by row, in the state
+    before the first bad step and in the state after it.
     """
     model = program.model
     if not any(system.mod for system in program.systems):
         return None
-    if _finite(model):  # as a integrator that controls its steps leaves it
+    if _finite(model):  # an integrator that controls its steps leaves a state before the bad step
         good = Snapshot.take(model)
         _move_ahead(model)
     else:
@@ -46,7 +46,7 @@ def find_culprit(program: Program, safe: Snapshot) -> Mod | None:
     good.restore(model)
     found = _bad_kernel(program, model)
     if found is None:
-        for name, values in led_to.items():  # where they are numbers
+        for name, values in led_to.items():  # where these are finite
             model.writable(name)[...] = np.where(np.isfinite(values), values, model.column(name))
         found = _bad_kernel(program, model)
     if found is None:
@@ -64,14 +64,14 @@ def _finite(model: Model) -> bool:
 
 
 def _move_ahead(model: Model) -> None:
-    """One step on at constant velocity: to about where a step was refused."""
+    """Take one step at constant velocity: to about the state that was refused."""
     step = model.clock.step_size
     model.writable("particles.displacement")[...] += step * model.particles.velocity
     model.writable("clock.time")[0] += step
 
 
 def _last_good(program: Program, safe: Snapshot) -> Snapshot:
-    """The state before the first step that leads to what is not finite; the model is left after it."""
+    """The state before the first step to a state that is not finite; the model is left in the latter."""
     model = program.model
     safe.restore(model)
     before = safe
@@ -84,7 +84,7 @@ def _last_good(program: Program, safe: Snapshot) -> Snapshot:
 
 
 def _bad_kernel(program: Program, model: Model) -> tuple[StepSystem, str, float] | None:
-    """The first system with a result that is not finite, the element and the result."""
+    """The first system with a result that is not finite, the element, and the result."""
     for system, given in in_turn(program.systems, model):
         for row, column in np.argwhere(~np.isfinite(given))[:1].tolist():
             return system, _element(system, model, row), float(given[row, column])

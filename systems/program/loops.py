@@ -1,8 +1,8 @@
 """Loops over the rods in the source of step programs: rod by rod, or in stages that processors vectorise.
 
-In stages, what lies at the ends of a few rods is gathered, all of them are computed side by side, and what they
-do to their ends is added: the same operations, and the same order of sums, as rod by rod, hence the same bits.
-What one stage leaves for the next is in one scratch array; the loop that computes reads a few columns besides.
+In stages, the values at the ends of a chunk of rods are gathered, then all rods of the chunk are computed, then their
+forces are added to their ends: the same operations and order of sums as rod by rod, hence the same bits. Stages pass
+their results in one scratch array; the computing loop also reads a few columns.
 """
 
 from __future__ import annotations
@@ -13,8 +13,10 @@ from dataclasses import dataclass
 
 from systems.program.pasting import indented
 
-CHUNK = 64  # rods that go through the stages together: what they need stays in the nearest cache
-_APART = 7  # columns that LLVM makes sure at run time not to overlap scratch; more, and it does not vectorise
+CHUNK = 64  # rods in a chunk: their values stay in the nearest cache
+_APART = (
+    7  # columns read directly: LLVM checks at run time that they do not overlap scratch; with more it gives up
+)
 
 ALL = "0, rods_between.shape[0]"
 
@@ -23,10 +25,11 @@ _ELEMENT = re.compile(r"\b([A-Za-z_]\w*)\[r(?:, (\d))?\]")
 
 @dataclass(frozen=True)
 class RodLoop:
-    """What is done for every rod `r` from particle `a` to `b`.
+    """A loop over every rod `r`, from particle `a` to `b`.
 
-    gather: names and what they stand for, taken from the ends. compute: lines that take these and entries
-    [r] of columns. scatter: lines that take the names in `made` besides. writes: columns that compute changes.
+    gather: names, and expressions of values at the ends. compute: lines that use these names and entries [r] of
+    columns. made: names that compute leaves for scatter. scatter: lines that add to the ends, or elsewhere.
+    writes: columns that compute changes.
     """
 
     gather: Mapping[str, str]
@@ -36,7 +39,7 @@ class RodLoop:
     writes: Sequence[str] = ()
 
     def __add__(self, other: RodLoop) -> RodLoop:
-        """One loop that does both, one after the other in each stage."""
+        """One loop that does both, in each stage one after the other."""
         return RodLoop(
             {**self.gather, **other.gather},
             [*self.compute, *other.compute],
@@ -46,7 +49,7 @@ class RodLoop:
         )
 
     def one_by_one(self, span: str = ALL) -> list[str]:
-        """The loop's lines, rod by rod. span: from which row to which."""
+        """The loop's lines, rod by rod. span: the first row and the row after the last."""
         return [
             f"for r in range({span}):",
             "    a = rods_between[r, 0]",

@@ -1,4 +1,4 @@
-"""Step programs of very large models, which hold them in blocks."""
+"""Step programs of very large models, in blocks that cores share; and which kind of program a model gets."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from systems.base import Integrator, StepSystem
 from systems.program.blocks import Layout
 from systems.program.cores import cores
 from systems.program.program import Program
-from systems.program.reordered import ArrangedProgram
+from systems.program.reordered import ReorderedProgram
 from systems.program.writer import VERY_MANY, form_of
 
 _QUICK = ("omp", "tbb")  # threading layers that start the cores in some microseconds
-_SPINS = "10000"  # some 0.1 ms for which a core waits awake: to be woken costs as much as a step of 10 000 rods
-_WORTHWHILE = 100_000  # rods from which another, that takes 50 of them, is worth it
+_SPINS = "10000"  # some 0.1 ms that a core waits awake: waking it costs as much as a step of 10 000 rods
+_WORTHWHILE = 100_000  # rods from which a layer that takes 50 µs to start the cores is worth it
 
 
 def make_program(
@@ -32,32 +32,32 @@ def make_program(
 ) -> Program:
     """The step program of a plan, in the form that suits the model or in another one.
 
-    moving: which particles it moves, as in ArrangedProgram; None: all.
+    moving: which particles it moves, as in ReorderedProgram; None: all.
     """
     form = form or form_of(model, integrator, systems)
     if form == VERY_MANY:
         return BlockProgram(model, systems, integrator, form, moving)
     if moving is not None:
-        return ArrangedProgram(model, systems, integrator, form, moving)
+        return ReorderedProgram(model, systems, integrator, form, moving)
     return Program(model, systems, integrator, form)
 
 
-class BlockProgram(ArrangedProgram):
+class BlockProgram(ReorderedProgram):
     """A step program that holds its model in blocks, which cores share."""
 
-    _arranged: tuple[int, int] | None = None
+    _versions: tuple[int, int] | None = None
 
     def bind(self) -> None:
-        """Take hold of the model's columns: arrange them anew."""
+        """Take hold of the model's columns: find blocks and copy rows anew."""
         self._block_cores = np.ones(1, dtype=np.int64)
         super().bind()
 
-    def _arrange(self) -> Layout:
-        """The layout of the model, found anew where that changed which it follows from."""
+    def _find_layout(self) -> Layout:
+        """The layout of the model, found anew if positions or rods changed."""
         model = self.model
         versions = model.particles.version("position"), model.rods.version("between")
-        if versions != self._arranged:
-            self._whole, self._arranged = Layout.of(model), versions
+        if versions != self._versions:
+            self._whole, self._versions = Layout.of(model), versions
         return self._whole
 
     def _of_layout(self) -> dict[str, Any]:
@@ -70,15 +70,15 @@ class BlockProgram(ArrangedProgram):
     def _column(self, path: str) -> Any:
         return None if path.startswith("block.") else super()._column(path)
 
-    def _loads(self, prefix: str, arranged: Mapping[str, Any]) -> dict[str, Any]:
-        """The same, and where those of each block begin."""
-        loads = super()._loads(prefix, arranged)
+    def _loads(self, prefix: str, ordered: Mapping[str, Any]) -> dict[str, Any]:
+        """The same, and the first load of each block."""
+        loads = super()._loads(prefix, ordered)
         first = np.searchsorted(loads[f"{prefix}_on"], self.layout.first_particle)
         return loads | {f"block_{prefix}": first}
 
     def _cores(self) -> int:
-        """How many cores are worth it; results do not depend on it."""
-        os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # else they wait at full speed for milliseconds
+        """How many cores are worth using; results do not depend on it."""
+        os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # else idle threads spin for milliseconds
         os.environ.setdefault("GOMP_SPINCOUNT", _SPINS)
         import numba
 

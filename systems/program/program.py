@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -96,16 +96,6 @@ class Program:
     def source(self) -> str:
         """The Python that it is compiled from."""
         return self._writer.source()
-
-    @property
-    def names(self) -> Mapping[str, Callable[..., Any]]:
-        """What its source refers to: kernels, and enumerations of entries."""
-        return self._writer.names
-
-    @property
-    def written(self) -> tuple[str, ...]:
-        """The columns that commits write, as its source names them."""
-        return tuple(path.replace(".", "_", 1) for b in self._writer.commits for path in b.system.writes)
 
     @property
     def form(self) -> str:

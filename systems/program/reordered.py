@@ -19,10 +19,10 @@ from systems.program.program import OBSERVED, Program
 _STATE = ("particles.displacement", "particles.velocity")
 
 
-class ArrangedProgram(Program):
-    """A step program that holds rows in an order of its own, and brings its model's up to date after every call.
+class ReorderedProgram(Program):
+    """A step program with copies of its model's rows in an order of its own; every call brings the model up to date.
 
-    moving: which particles it moves, shape (n,), with their rods and what these are held by; None: all.
+    moving: which particles it moves, shape (n,); it holds them, their rods and the other ends of these. None: all.
     """
 
     def __init__(
@@ -42,8 +42,8 @@ class ArrangedProgram(Program):
         self.bind()
 
     def bind(self) -> None:
-        """Take hold of the model's columns: arrange them anew."""
-        whole = self._arrange()
+        """Take hold of the model's columns: copy them in order."""
+        whole = self._find_layout()
         self.layout = whole if self.moving is None else whole.part(self.moving)
         self._places = {"particles": self.layout.particles, "rods": self.layout.rods}
         self._held: dict[str, tuple[Column, Numbers, Column]] = {}
@@ -51,10 +51,10 @@ class ArrangedProgram(Program):
         written = [path for b in self._writer.commits for path in b.system.writes]
         self._of_state = [self._held[path] for path in (*_STATE, *written)]
         self._derived = [self._held[f"{table}.{name}"] for table, names in OBSERVED.items() for name in names]
-        arranged = self.columns | self._of_layout()
-        arranged |= self._of_systems(arranged)
+        ordered = self.columns | self._of_layout()
+        ordered |= self._of_systems(ordered)
         to_write = {path.replace(".", "_", 1) for path in written}
-        self._columns = [array if name in to_write else read_only(array) for name, array in arranged.items()]
+        self._columns = [array if name in to_write else read_only(array) for name, array in ordered.items()]
         self._bind_arguments()
         self._held_revision = -1
 
@@ -65,7 +65,7 @@ class ArrangedProgram(Program):
         particles[self.layout.particles] = rods[self.layout.rods] = False
         return particles, rods
 
-    def _arrange(self) -> Layout:
+    def _find_layout(self) -> Layout:
         """The layout of the whole model."""
         return Layout.in_order(self.model)
 
@@ -86,29 +86,29 @@ class ArrangedProgram(Program):
         return self._held[path][-1]
 
     def _of_systems(self, columns: Mapping[str, Any]) -> dict[str, Any]:
-        """The arrays of the systems, arranged."""
-        arranged: dict[str, Any] = {}
+        """The arrays of the systems, in order."""
+        ordered: dict[str, Any] = {}
         self._of_kernels: list[tuple[Column, Numbers, Column]] = []
         for system in self.systems:
             bound = bind(system, self.model)
             if bound.each == "loads":
-                arranged |= self._loads(bound.prefix, columns)
+                ordered |= self._loads(bound.prefix, columns)
                 continue
             rows = self._places[bound.each or "rods"]
             for name, array in bound.arrays.items():
                 if name in columns:
-                    arranged[name] = array[rows]
-                    self._of_kernels.append((array, rows, arranged[name]))
-        return arranged
+                    ordered[name] = array[rows]
+                    self._of_kernels.append((array, rows, ordered[name]))
+        return ordered
 
-    def _loads(self, prefix: str, arranged: Mapping[str, Any]) -> dict[str, Any]:
-        """The arrays of a law of loads on what is held, in the order of the rows that they act on."""
-        on = self.layout.row[arranged[f"{prefix}_on"]]
+    def _loads(self, prefix: str, ordered: Mapping[str, Any]) -> dict[str, Any]:
+        """The arrays of a law of loads on particles that it holds, in the order of these."""
+        on = self.layout.row[ordered[f"{prefix}_on"]]
         order = np.argsort(on, kind="stable")[np.count_nonzero(on < 0) :]
         return {
             f"{prefix}_on": on[order].astype(np.uint32),
-            f"{prefix}_force": arranged[f"{prefix}_force"][order],
-            f"{prefix}_first": arranged[f"{prefix}_first"][order],
+            f"{prefix}_force": ordered[f"{prefix}_force"][order],
+            f"{prefix}_first": ordered[f"{prefix}_first"][order],
         }
 
     @property
@@ -117,16 +117,16 @@ class ArrangedProgram(Program):
         everywhere[self.layout.particles] = super().unbalanced
         return everywhere
 
-    # --- the state, as it is held and in the model's columns -----------------------------------------
+    # --- the copies and the model's columns -----------------------------------------
 
     def _load(self) -> None:
-        """Bring what is held up to date, if anything else changed the state, and systems' own arrays."""
+        """Bring the copies up to date: of systems' arrays, and of the state if anything else changed it."""
         changed = self._held_revision != self.model.newest(Role.STATE)
         for own, rows, held in (*self._of_kernels, *(self._of_state if changed else ())):
             np.take(own, rows, axis=0, out=held)
 
     def _store(self) -> None:
-        """Bring the columns of the state up to date with what is held."""
+        """Bring the model's columns of the state up to date with the copies."""
         for own, rows, held in self._of_state:
             own[rows] = held
         self._held_revision = self.model.newest(Role.STATE)

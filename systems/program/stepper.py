@@ -3,7 +3,7 @@
 Program         compiled laws and an integrator         systems/program/program.py        Dynamics
 Flight          exact paths from impact to impact       systems/collision/free/flight.py  Dynamics and Stepper
 ProgramSteps    the steps of a Program                  systems/run/program_steps.py      Stepper
-Encounters      those steps, ended at impacts           systems/collision/driven/         Stepper
+DrivenCollisions those steps, ended at impacts           systems/collision/driven/         Stepper
 """
 
 from __future__ import annotations

@@ -417,7 +417,7 @@ class Writer:
 
     def _particles(self, where: str, span: str = EVERY) -> list[str]:
         """What the integrator does with every particle."""
-        lines = fragment(find(where, self.integrator))
+        lines = fragment(find(where, self.integrator), total_force=fragment(fixed_steps.total_force))
         return [f"for i in range({span}):", *indented(lines)] if lines else []
 
     def _gains(self, resist: str, given: str) -> list[str]:

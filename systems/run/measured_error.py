@@ -33,7 +33,7 @@ class MeasuredError:
 
 def work(simulation: Simulation) -> int:
     """How many times the run evaluated the force of a rod, which running it again takes at least."""
-    stages: int = simulation.driver.constants.get("STAGES", 1)
+    stages: int = simulation.integrator.constants.get("STAGES", 1)
     return simulation.model.clock.steps * max(simulation.model.rods.count, 1) * stages
 
 
@@ -48,11 +48,11 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     """
     model = simulation.model
     clock, then = model.clock, beginning.columns
-    met = clock.collisions > then["clock.collisions"][0] or clock.paths is not None
+    met = clock.collisions > then["clock.collisions"][0] or clock.collision_state is not None
     if (
         met
         or simulation.program.watches_events
-        or simulation.driver.exact
+        or simulation.integrator.exact
         or not clock.time > then["clock.time"][0]
     ):
         return None

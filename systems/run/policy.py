@@ -85,8 +85,9 @@ class StepPolicy:
     def first(self, limits: Limits) -> tuple[float, float]:
         """The step (s) that a run begins with, and its limit (s) under error control, 0: none."""
         if self.controls_error:
-            limit = self.limit(limits)
-            return first_step(limits, limit), limit
+            fastest, limit = max(limits.frequency, 2.0 * limits.decay), self.limit(limits)
+            first = FIRST_SHARE / fastest if fastest > 0.0 else FREE_STEP
+            return rounded_down(min(first, limit or math.inf)), limit
         return self.fixed if self.fixed is not None else self._automatic(limits), 0.0
 
     def reviewed(self, limits: Limits, size: float) -> float | None:
@@ -111,13 +112,6 @@ class StepPolicy:
         share = ACCURATE if self.rods <= SMALL else SAFETY
         shown = self.shown() if self.integrator.exact else math.inf
         return rounded_down(min(share * stable, FREE_STEP, shown))
-
-
-def first_step(limits: Limits, limit: float) -> float:
-    """The step (s) with which error control begins, below its limit (s; 0: there is none)."""
-    fastest = max(limits.frequency, 2.0 * limits.decay)
-    first = FIRST_SHARE / fastest if fastest > 0.0 else FREE_STEP
-    return rounded_down(min(first, limit or math.inf))
 
 
 def rounded_down(size: float) -> float:

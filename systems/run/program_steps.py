@@ -45,7 +45,7 @@ class ProgramSteps:
     def land(self, target: float) -> StopReason:
         """Take the last, short step, to exactly the time `target` (s)."""
         clock, reason = self._model.clock, StopReason.DONE
-        if self._programs.driver.controlled:
+        if self._programs.integrator.controlled:
             while clock.time < target and reason in GOING_ON:
                 _, reason = self.advance(REVIEW_INTERVAL, target, target)
             return reason

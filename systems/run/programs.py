@@ -53,7 +53,7 @@ class Programs:
         self.bindings = 0
         self.compile_seconds = 0.0
         self._made: dict[Key, Bound] = {}
-        self._driver: Integrator | None = None
+        self._integrator: Integrator | None = None
         self._bound: Bound | None = None
 
     @property
@@ -68,41 +68,41 @@ class Programs:
         for integrator in (*INTEGRATORS.values(), FREE_FLIGHT):
             if not self._schedule.is_active(integrator, self.scene):
                 left_out[integrator.name] = self._schedule.inactive(integrator, self.scene)
-            elif integrator is self.driver:
+            elif integrator is self.integrator:
                 phases[Phase.STEP] = (*phases[Phase.STEP], integrator)
             else:
-                left_out[integrator.name] = f"{self.driver.name} integrates"
+                left_out[integrator.name] = f"{self.integrator.name} integrates"
         return Plan(self.scene, phases, left_out)
 
     @contextmanager
     def in_scene(self, scene: str) -> Iterator[None]:
         """What is asked inside is answered as if the systems of this scene acted."""
-        driver, before = self._driver, self.scene
-        self._driver, self.scene = None, scene
+        integrator, before = self._integrator, self.scene
+        self._integrator, self.scene = None, scene
         try:
             yield
         finally:
-            self._driver, self.scene = driver, before
+            self._integrator, self.scene = integrator, before
 
     def differ_in(self, scene: str) -> bool:
         """True if other systems, or another integrator, act in this scene."""
         if scene == self.scene:
             return False
-        here = self.plan, self._integrator
+        here = self.plan, self._chosen
         with self.in_scene(scene):
-            return (self.plan, self._integrator) != here
+            return (self.plan, self._chosen) != here
 
     @property
-    def driver(self) -> Integrator:
+    def integrator(self) -> Integrator:
         """Exact flight if every system of the plan leaves it exact, else the integrator."""
-        if self._driver is None:
+        if self._integrator is None:
             plan = self.plan
             exact = all(system.leaves_flight_exact(self._model) for system in plan)
-            self._driver = FREE_FLIGHT if exact and _collides(plan) else self._integrator
-        return self._driver
+            self._integrator = FREE_FLIGHT if exact and _collides(plan) else self._chosen
+        return self._integrator
 
     @property
-    def _integrator(self) -> Integrator:
+    def _chosen(self) -> Integrator:
         """The one that the settings name; one that suits if they name none, or one that does not act now."""
         named = INTEGRATORS.get(self._model.settings.integrator)
         off = named is None or (named.mod is not None and named.mod.off)
@@ -152,7 +152,7 @@ class Programs:
             except ProgramError as error:
                 if not blame_mod(error):
                     raise
-                self._driver = None  # it may be the one
+                self._integrator = None  # it may be the one
         return self._bound
 
     def unbind(self) -> None:
@@ -161,7 +161,7 @@ class Programs:
 
     def void(self) -> None:
         """The document changed."""
-        self._driver = self._bound = None
+        self._integrator = self._bound = None
 
     def _bound_to(self, plan: list[StepSystem]) -> Bound:
         key = self._key(plan)
@@ -173,17 +173,17 @@ class Programs:
         return self._made[key]
 
     def _make(self, plan: list[StepSystem]) -> Bound:
-        if self.driver.exact:
+        if self.integrator.exact:
             hand = next((system for system in plan if isinstance(system, Pull)), None)
             flight = Flight(self._model, self._impacts, hand)
             return Bound(flight, collides=True, flight=flight)
-        program = make_program(self._model, plan, self.driver)
+        program = make_program(self._model, plan, self.integrator)
         return Bound(program, collides=_collides(plan), program=program)
 
     def _key(self, plan: list[StepSystem]) -> Key:
         warmth = ("rods.misfit",) if is_warm(self._model) else ()
         names = (system.name for system in plan)
-        return (*names, self.driver.name, form_of(self._model, self.driver, plan), *warmth)
+        return (*names, self.integrator.name, form_of(self._model, self.integrator, plan), *warmth)
 
 
 def _collides(plan: list[StepSystem]) -> bool:

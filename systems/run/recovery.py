@@ -51,7 +51,7 @@ class Recovery:
 
         False if the step is not automatic, or was halved in vain.
         """
-        chosen = self._model.settings.time_step is not None or self._programs.driver.estimates_error
+        chosen = self._model.settings.time_step is not None or self._programs.integrator.estimates_error
         if chosen or self._halvings == MOST_HALVINGS:
             return False
         assert self.safe is not None

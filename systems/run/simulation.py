@@ -15,9 +15,9 @@ from components.numeric_range import incomputable
 from components.snapshot import Snapshot
 from components.world import Derivation
 from systems.base import Event, Integrator, StepSystem, StopReason
-from systems.collision.driven.stepper import Encounters
-from systems.collision.free.flight import part_overlaps
+from systems.collision.driven.stepper import DrivenCollisions
 from systems.collision.impacts import Impacts
+from systems.collision.overlaps import part_overlaps
 from systems.program.program import Program
 from systems.program.stepper import Dynamics, Stepper
 from systems.program.writer import REVIEW_INTERVAL
@@ -84,7 +84,7 @@ class Simulation:
         self._sleep = Sleep(model)
         self._step_size = StepSize(model, self._programs, self._sleep)
         self._steps = ProgramSteps(model, self._programs, self._sleep, self._step_size)
-        self._encounters = Encounters(model, self.impacts, self._steps)
+        self._driven_collisions = DrivenCollisions(model, self.impacts, self._steps)
         self._account = Account(model, self._measured)
         self._recovery = Recovery(model, self._programs, self._sleep, self._step_size)
         self._announces = True
@@ -130,14 +130,9 @@ class Simulation:
         self._programs.scene = scene
 
     @property
-    def driver(self) -> Integrator:
+    def integrator(self) -> Integrator:
         """What advances time: an integrator, or exact flight."""
-        return self._programs.driver
-
-    @property
-    def integrator(self) -> str:
-        """Its name."""
-        return self.driver.name.rpartition(".")[2]
+        return self._programs.integrator
 
     @property
     def program(self) -> Dynamics:
@@ -167,7 +162,7 @@ class Simulation:
     @property
     def _stepper(self) -> Stepper:
         """What takes the steps: exact flight, or those of a program, ended at impacts if any may come."""
-        return self._programs.flight or (self._encounters if self._programs.collides else self._steps)
+        return self._programs.flight or (self._driven_collisions if self._programs.collides else self._steps)
 
     # --- getting ready -------------------------------------------------------------------------------
 
@@ -190,8 +185,8 @@ class Simulation:
         if self._armed:
             self._account.begin_edit()
             self._armed = False
-        if self.model.clock.paths is not None:
-            self.model.writable("clock.paths")[0] = None
+        if self.model.clock.collision_state is not None:
+            self.model.writable("clock.collision_state")[0] = None
         self._programs.void()
         self._sleep.forget()
 
@@ -414,7 +409,7 @@ class Simulation:
 
     def _event_comes_before(self, target: float) -> bool:
         """True if an event ends the next step by the time `target` (s)."""
-        if not (self.program.watches_events and self.driver.controlled):
+        if not (self.program.watches_events and self.integrator.controlled):
             return False
         before = self.present()
         reason = self._stepper.land(target)

@@ -16,11 +16,11 @@ from components.field import Role
 from components.load import load_ends
 from components.model import Model
 from systems.entries import ASLEEP
-from systems.islands import HELD, Rows, islands
+from systems.islands import IMMOVABLE, Rows, islands
 from systems.physics.rest import Array, Mask, RestMeasure
 from systems.program.parallel import make_program
 from systems.program.program import Program
-from systems.program.reordered import ArrangedProgram
+from systems.program.reordered import ReorderedProgram
 from systems.program.stepper import Dynamics
 from systems.run.policy import steps_to_sleep_review
 
@@ -33,8 +33,8 @@ class Sleep:
         self._asked: tuple[Dynamics, int] | None = None
         self._versions: tuple[int, int] | None = None
         self._looked_at = -1  # the version of who is asleep that any_asleep is about
-        self._parts: dict[Program, ArrangedProgram] = {}
-        self._bound: ArrangedProgram | None = None  # to the model as it is
+        self._parts: dict[Program, ReorderedProgram] = {}
+        self._bound: ReorderedProgram | None = None  # to the model as it is
         self._left_out: Mask = np.zeros(0, dtype=bool)  # asleep when it was bound
 
     # --- who may sleep, and who does -------------------------------------------------------------------
@@ -74,8 +74,8 @@ class Sleep:
         if versions != self._versions:
             self._versions = versions
             self._of_particle: Rows = islands(model)
-            self._of_rod: Rows = self._of_particle[model.rods.between].max(axis=1, initial=HELD)
-            self._count = int(self._of_particle.max(initial=HELD))
+            self._of_rod: Rows = self._of_particle[model.rods.between].max(axis=1, initial=IMMOVABLE)
+            self._count = int(self._of_particle.max(initial=IMMOVABLE))
 
     def review(self, program: Dynamics) -> bool:
         """Let those islands sleep, and no others, that are at rest; True if others do than before."""
@@ -84,7 +84,7 @@ class Sleep:
         measure = self._observed(program)
         clock = self.model.clock
         rest = measure.at_rest(self._of_particle, self._of_rod, clock.force_scale, clock.energy_scale)
-        rest[self._under_varying_loads] = rest[HELD] = False
+        rest[self._under_varying_loads] = rest[IMMOVABLE] = False
         return self._let_sleep(rest[self._of_particle], measure.kinetic)
 
     def disturb(self, program: Program) -> bool:
@@ -144,13 +144,13 @@ class Sleep:
             self._left_out = asleep.copy()
         return part
 
-    def _part_without(self, asleep: Mask, program: Program) -> ArrangedProgram:
+    def _part_without(self, asleep: Mask, program: Program) -> ReorderedProgram:
         """The program of those that are awake, bound to the model as it is."""
-        moving = ~asleep & (self._of_particle != HELD)
+        moving = ~asleep & (self._of_particle != IMMOVABLE)
         part = self._parts.get(program)
         if part is None:
             made = make_program(self.model, program.systems, program.integrator, program.form, moving)
-            assert isinstance(made, ArrangedProgram)
+            assert isinstance(made, ReorderedProgram)
             part = self._parts[program] = made
         else:
             part.move(moving)

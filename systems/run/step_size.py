@@ -16,7 +16,7 @@ from systems.run.programs import Programs
 from systems.run.sleep import Sleep
 
 SHOWN = 1.0 / 120.0  # s shown, at the natural pace, that one step may last
-DEFAULT_DRIVER = "velocity_verlet"
+DEFAULT_INTEGRATOR = "velocity_verlet"
 
 
 class StepSize:
@@ -38,7 +38,7 @@ class StepSize:
     def _policy(self) -> StepPolicy:
         model = self._model
         return StepPolicy(
-            self._programs.driver, model.settings.time_step, model.rods.count, self._longest_shown
+            self._programs.integrator, model.settings.time_step, model.rods.count, self._longest_shown
         )
 
     def _longest_shown(self) -> float:
@@ -98,12 +98,12 @@ class StepSize:
 
     def remedy(self, size: float | None) -> str:
         """What to do about a run that is unstable with steps of this size (s), None: automatic."""
-        driver = self._programs.driver
-        name = driver.name.rpartition(".")[2]
+        integrator = self._programs.integrator
+        name = integrator.name.rpartition(".")[2]
         if self.stable == 0.0:
             return (
                 f"Without damping {name} is stable at no time step:"
-                f" choose the integrator {DEFAULT_DRIVER}, or give the rods damping."
+                f" choose the integrator {DEFAULT_INTEGRATOR}, or give the rods damping."
             )
         if size is not None and size > self.stable:
             return (
@@ -112,8 +112,8 @@ class StepSize:
             )
         if self._policy.controls_error:
             return "Make the tolerance smaller."
-        if driver.estimates_error:
+        if integrator.estimates_error:
             return "Set the time step to automatic, so that the error is controlled, or make it smaller."
-        if driver is not INTEGRATORS[DEFAULT_DRIVER]:
-            return f"Make the time step smaller, or choose the integrator {DEFAULT_DRIVER}."
+        if integrator is not INTEGRATORS[DEFAULT_INTEGRATOR]:
+            return f"Make the time step smaller, or choose the integrator {DEFAULT_INTEGRATOR}."
         return "Make the time step smaller."

@@ -23,8 +23,6 @@ KERNELS = (  # numba is imported as soon as they are
     "systems/kernels.py",
     "systems/*/kernels.py",
     "systems/collision/kernels/*.py",
-    "systems/collision/overlaps.py",
-    "systems/collision/free/discs.py",
     "systems/collision/free/pile_equilibrium.py",
 )
 COMPILED = (*KERNELS, "systems/program/*.py")

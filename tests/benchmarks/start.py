@@ -89,7 +89,11 @@ def _job(session: Session) -> list[str]:
     """What compiles the program of its model."""
     simulation = session.simulation
     plan = simulation.plan
-    return [simulation.integrator, form_of(session.model, simulation.driver), *(system.name for system in plan)]
+    return [
+        simulation.integrator.key,
+        form_of(session.model, simulation.integrator),
+        *(system.name for system in plan),
+    ]
 
 
 def commands() -> list[Row]:

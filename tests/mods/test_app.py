@@ -76,7 +76,7 @@ class Mine(VelocityVerlet):
     session.settings.integrator = "mine"
     session.settings.time_step = 1e-5
     session.run(steps=20)
-    assert session.simulation.integrator == "mine"
+    assert session.simulation.integrator.key == "mine"
     other = Session.open(TRUSS)
     other.settings.integrator = "velocity_verlet"
     other.settings.time_step = 1e-5

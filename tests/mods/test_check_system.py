@@ -79,7 +79,7 @@ def test_the_hand_passes() -> None:
     assert check_system(Pulling, [EVERYTHING]).needed == 1
 
 
-def test_the_forces_of_lasting_contacts_pass() -> None:
+def test_the_forces_of_persistent_contacts_pass() -> None:
     lying = BODIES | {
         "environment": {"acceleration": [0.0, -9.81], "drag": 0.1},
         "settings": {"restitution": 0.0},

@@ -10,8 +10,8 @@ from numba import njit
 
 from systems.collision.columns import Reason
 from systems.collision.free.compiled import engine
-from systems.collision.free.discs import Discs, Impacts
-from systems.collision.kernels.time_of_impact import NEVER, first_approach
+from systems.collision.free.discs import Discs, ImpactColumns
+from systems.collision.kernels.time_of_impact import INFINITY, first_approach
 from tests.reference import closed_forms, collisions
 from tests.reference.scenes_of_discs import GRAVITY, Scene, break_shot, gas, line, stacked, with_held
 
@@ -19,7 +19,7 @@ EPSILON = np.finfo(float).eps
 RADIUS = 0.05  # m
 
 
-def fly(scene: Scene, until: float, **rest: object) -> tuple[Discs, Impacts]:
+def fly(scene: Scene, until: float, **rest: object) -> tuple[Discs, ImpactColumns]:
     """Let a scene happen up to a time."""
     discs = engine()(**scene, **rest)
     reason, impacts = discs.advance(until)
@@ -366,9 +366,9 @@ def test_a_ball_in_a_groove_presses_by_its_weight() -> None:
     scene["position"][2:, 1] = apex, apex + 0.1, apex + 0.2
     discs, _ = fly(scene, 1.0, acceleration=DOWN, restitution=0.5)
     assert velocities(discs).any() == False  # noqa: E712
-    paths = discs.paths()
+    state = discs.state()
     forces = {
-        tuple(sorted(pair)): force for pair, force in zip(paths.contacts.tolist(), paths.forces, strict=True)
+        tuple(sorted(pair)): force for pair, force in zip(state.contacts.tolist(), state.forces, strict=True)
     }
     side = 3 * GRAVITY / (2 * math.cos(math.pi / 6))
     assert forces[0, 2] == pytest.approx(side, rel=1e-9)
@@ -381,7 +381,7 @@ def test_a_ball_in_a_groove_presses_by_its_weight() -> None:
 
 @njit
 def touch_time(dx, dy, vx, vy, ax, ay, reach):  # type: ignore[no-untyped-def]
-    return first_approach(dx, dy, vx, vy, ax, ay, reach, 0.0, 0.0, 1e9, False)
+    return first_approach((dx, dy, vx, vy, ax, ay), reach, 0.0, 0.0, 1e9, False)
 
 
 coordinate = st.floats(-3, 3).map(lambda x: round(x, 3))
@@ -404,7 +404,7 @@ def test_roots_of_the_gap_against_numpy(
     roots = np.roots(np.trim_zeros(quartic, "f")) if quartic[:-1].any() else np.array([])
     near_real = roots[np.abs(roots.imag) <= 1e-5 * (1 + np.abs(roots))].real
     candidates = sorted(t for t in near_real if t > 0)
-    if found == NEVER:
+    if found == INFINITY:
         clear = [t for t in candidates if at(t * (1 + 1e-4)) < -1e-8 or at(t) < -1e-8]
         assert not clear
     else:
@@ -501,9 +501,9 @@ def test_a_pile_goes_on_from_its_paths_bit_for_bit() -> None:
     resumed = engine()(**scene, **rest)
     for time in (0.2, 0.4, 0.47, 0.6):
         resumed.advance(time)
-        paths = resumed.paths()
+        state = resumed.state()
         resumed = engine()(**scene, **rest, time=time)
-        resumed.follow(paths)
+        resumed.resume(state)
     assert through.counts[9] == resumed.counts[9] == 1  # it steps
     for time in (0.6, 3.0):
         through.advance(time)

@@ -13,7 +13,7 @@ from tests.reference.elements import Model
 from tests.reference.models import oscillator
 
 OMEGA, ZETA, SPEED = 2 * math.pi, 0.3, 0.1
-ADAPTIVE = [name for name, driver in INTEGRATORS.items() if driver.estimates_error]
+ADAPTIVE = [name for name, integrator in INTEGRATORS.items() if integrator.estimates_error]
 # Steps in one period: coarse enough that the error is above round-off, fine enough that its first term leads.
 COARSEST = {"dop853": 4, "esdirk4": 16, "rk4": 16}
 

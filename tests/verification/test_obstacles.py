@@ -12,8 +12,8 @@ from numba import njit
 from components.obstacles import Obstacles
 from systems.collision.columns import Reason
 from systems.collision.free.compiled import engine
-from systems.collision.free.discs import Discs, Impacts
-from systems.collision.kernels.time_of_impact import NEVER, first_touch
+from systems.collision.free.discs import Discs, ImpactColumns
+from systems.collision.kernels.time_of_impact import INFINITY, first_touch
 from tests.reference import collisions
 from tests.reference.scenes_of_discs import GRAVITY
 
@@ -47,7 +47,7 @@ def fly(
     masses: Sequence[float] = (),
     radius: float = RADIUS,
     restitution: float = 1.0,
-) -> tuple[Discs, Impacts]:
+) -> tuple[Discs, ImpactColumns]:
     """Let discs happen up to a time."""
     count = len(position)
     inverse = np.repeat(1 / np.array(masses or [1.0] * count)[:, None], 2, axis=1)
@@ -223,7 +223,7 @@ def test_a_ball_in_a_v_of_two_walls_comes_to_rest_on_both(angle: float) -> None:
 
 @njit
 def _first(dx, dy, vx, vy, ax, ay, tx, ty, reach):
-    return first_touch(dx, dy, vx, vy, ax, ay, tx, ty, 0.0, reach, 0.0, 0.0, 1e9, False)
+    return first_touch((dx, dy, vx, vy, ax, ay), tx, ty, 0.0, reach, 0.0, 0.0, 1e9, False)
 
 
 COORDINATE = st.floats(-2, 2).map(lambda x: round(x, 3))
@@ -246,7 +246,7 @@ def test_the_first_touch_is_that_of_the_slow_search(
     expected = collisions.time_to_piece(np.array([first, velocity, pull]), np.array(span), reach, 10.0)
     found = _first(*first, *velocity, *pull, *span, reach)
     if expected <= 10.0:
-        graze = 1e-7 if found == NEVER or abs(found - expected) > 1e-9 else 0.0  # within round-off of a miss
+        graze = 1e-7 if found == INFINITY or abs(found - expected) > 1e-9 else 0.0  # within round-off of a miss
         wider = collisions.time_to_piece(np.array([first, velocity, pull]), np.array(span), reach - graze, 10.0)
         if wider <= 10.0:
             assert found == pytest.approx(float(expected), rel=1e-11, abs=1e-6 if graze else 1e-11)
@@ -327,7 +327,7 @@ def test_discs_that_slide_into_a_groove_do_not_sink_in(count: int, seed: int) ->
 
 
 def test_the_restitution_of_a_wall_is_its_own() -> None:
-    """Impacts with it lose by its own number, those of discs with each other by theirs."""
+    """ImpactColumns with it lose by its own number, those of discs with each other by theirs."""
     wall = obstacles(((0.0, -1.0), (0.0, 1.0)), restitution=0.25)
     discs, impacts = fly([(1, 0), (2, 0)], [(-1, 0), (-1, 0)], wall, 1.8, restitution=0.5)
     assert impacts.loss == pytest.approx([0.5 * (1 - 0.25**2), 0.25 * (1 - 0.5**2) * 1.25**2])
@@ -351,7 +351,7 @@ def test_a_run_that_is_resumed_goes_on_bit_for_bit() -> None:
         obstacles=walls,
         time=1.5,
     )
-    resumed.follow(half.paths())
+    resumed.resume(half.state())
     resumed.advance(3.0)
     for first, second in zip(whole.state_at(3.0), resumed.state_at(3.0), strict=True):
         assert first.tobytes() == second.tobytes()

@@ -162,7 +162,7 @@ def _run(
         "time": clock.time,
         "steps": clock.steps,
         "time_step": clock.step_size if moves else None,
-        "integrator": simulation.integrator if moves else None,
+        "integrator": simulation.integrator.key if moves else None,
         "wall_seconds": simulation.compute_seconds,
         "compile_seconds": simulation.compile_seconds,
         "events": [],

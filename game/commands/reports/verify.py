@@ -67,7 +67,7 @@ def verify(session: Session, name: str, limit: float, *, simulate: bool = True) 
             "message": session.message,
             "time": model.clock.time,
             "steps": model.clock.steps,
-            "integrator": session.simulation.integrator,
+            "integrator": session.simulation.integrator.key,
         }
         simulated = observed(model) if status == "at rest" else None
     comparison = compare(model, theory, simulated)

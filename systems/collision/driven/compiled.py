@@ -1,4 +1,4 @@
-"""The compiled part of encounters: gaps, where paths in a step first meet, joint impacts, forces, overlaps."""
+"""The compiled part of driven collisions: gaps, times of impact, joint impacts, contact forces, overlaps."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 from systems.program.compiler import compile_module
 
 _SOURCE = '''\
-"""Encounters within a step. Generated; safe to delete."""
+"""Driven collisions. Generated; safe to delete."""
 
 from numba import njit
 
@@ -24,22 +24,22 @@ def gaps(pairs, position, displacement, radius, span, gap, normal):
 
 @entry
 def kinds(pairs, contacts, node, position, displacement, radius, span, kinds):
-    tell_kinds(pairs, contacts, node, position, displacement, radius, span, kinds)
+    classify_pairs(pairs, contacts, node, position, displacement, radius, span, kinds)
 
 
 @entry
-def sway(h, before, velocity, after, later, listed, margin, sway):
-    return bend(h, before, velocity, after, later, listed, margin, sway)
+def path_deviation(h, before, velocity, after, later, listed, margin, path_error):
+    return path_errors(h, before, velocity, after, later, listed, margin, path_error)
 
 
 @entry
-def meeting(h, pairs, kinds, position, before, velocity, after, radius, span, size, sway):
-    return first_meeting(h, pairs, kinds, position, before, velocity, after, radius, span, size, sway)
+def time_of_impact(h, pairs, kinds, position, before, velocity, after, radius, span, size, path_error):
+    return first_impact(h, pairs, kinds, position, before, velocity, after, radius, span, size, path_error)
 
 
 @entry
 def compliance(pairs, normal, pushed, weight, slope):
-    yield_to_forces(pairs, normal, pushed, weight, slope)
+    compliance_matrix(pairs, normal, pushed, weight, slope)
 
 
 @entry
@@ -48,11 +48,11 @@ def forces(slope, gap, forces, found, matrix, scale, offset, sides, wrong):
 
 
 @entry
-def push(members, count, restitution, tolerance, group):  # one entry, so that what both share is compiled once
+def resolve(members, count, restitution, tolerance, group):  # one entry, so that what both share is compiled once
     if restitution < 0.0:
-        hold_apart(members, count, tolerance, group)
+        separate_motion(members, count, tolerance, group)
     else:
-        strike(members, count, restitution, group)
+        resolve_impact(members, count, restitution, group)
 
 
 @entry
@@ -63,19 +63,18 @@ def part(first, second, position, displacement, radius, inverse_mass, span, slac
 
 def contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     """The source, and the kernels by the names that it calls them."""
-    from systems.collision.kernels import driven as encounter
-    from systems.collision.kernels import pairs
+    from systems.collision.kernels import driven, pairs
     from systems.collision.kernels.complementarity import complementary
     from systems.collision.kernels.overlap import separate
 
     parts = (
         pairs.measure_gaps,
-        pairs.tell_kinds,
-        pairs.yield_to_forces,
-        encounter.bend,
-        encounter.first_meeting,
-        encounter.hold_apart,
-        encounter.strike,
+        pairs.classify_pairs,
+        pairs.compliance_matrix,
+        driven.path_errors,
+        driven.first_impact,
+        driven.separate_motion,
+        driven.resolve_impact,
         complementary,
         separate,
     )

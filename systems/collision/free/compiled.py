@@ -1,7 +1,7 @@
 """The compiled units of free flight; each is a module of its own, so that two processes can compile two at once.
 
-EVENTS lets events happen, WINDOWS foresees them, PILES takes the steps of piles, which only a hand that pulls, or
-gravity, forms.
+EVENTS lets events happen, HORIZONS finds the impacts to come, PILES takes the steps of piles, which only a hand that
+pulls, or gravity, forms.
 """
 
 from __future__ import annotations
@@ -9,13 +9,11 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 from functools import cache, partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from systems.collision.columns import RENEW, STEPPING
+from systems.collision.columns import Count
+from systems.collision.free.discs import Discs
 from systems.program.compiler import CompiledUnit
-
-if TYPE_CHECKING:
-    from systems.collision.free.discs import Discs
 
 _SOURCE = '''\
 """A part of the engine of collisions. Generated; safe to delete."""
@@ -33,20 +31,20 @@ def {part}({arguments}):
 
 def _contents(name: str) -> tuple[str, dict[str, Callable[..., int]]]:
     from systems.collision.kernels.flight import fly, take_steps
-    from systems.collision.kernels.horizon import open_window
+    from systems.collision.kernels.horizon import open_horizon
 
-    kernel = {"fly": fly, "open_window": open_window, "take_steps": take_steps}[name]
+    kernel = {"fly": fly, "open_horizon": open_horizon, "take_steps": take_steps}[name]
     arguments = ", ".join(inspect.signature(kernel.py_func).parameters)
     return _SOURCE.format(part=name, arguments=arguments), {"kernel": kernel}
 
 
 def _warm_up(name: str) -> None:
     discs = engine()([[0.0, 0.0]], [[0.0, 0.0]], [1.0], [[1.0, 1.0]])
-    if name == "open_window":
-        discs.open_window(discs.rows, discs.grid, discs.ties, discs.queue, discs.numbers, discs.counts)
+    if name == "open_horizon":
+        discs.open_horizon(discs.rows, discs.grid, discs.constraints, discs.queue, discs.numbers, discs.counts)
     else:
         steps = name == "take_steps"
-        discs.counts[RENEW], discs.counts[STEPPING] = 0, steps
+        discs.counts[Count.RENEW], discs.counts[Count.STEPPING] = 0, steps
         discs.advance(discs.now - float(steps))  # before the first step of a pile
 
 
@@ -54,15 +52,13 @@ def _unit(name: str) -> CompiledUnit:
     return CompiledUnit(name, partial(_contents, name), partial(_warm_up, name))
 
 
-EVENTS, WINDOWS, PILES = _unit("fly"), _unit("open_window"), _unit("take_steps")
+EVENTS, HORIZONS, PILES = _unit("fly"), _unit("open_horizon"), _unit("take_steps")
 
 
 @cache
 def engine() -> type[Discs]:
     """Discs whose kernels are compiled; each by its first call, unless its unit was loaded before."""
-    from systems.collision.free.discs import Discs
-
     kernels: dict[str, Any] = {
-        unit.name: staticmethod(getattr(unit.module, unit.name)) for unit in (EVENTS, WINDOWS, PILES)
+        unit.name: staticmethod(getattr(unit.module, unit.name)) for unit in (EVENTS, HORIZONS, PILES)
     }
     return type("Compiled", (Discs,), kernels)

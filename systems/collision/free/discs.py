@@ -1,7 +1,4 @@
-"""Discs on their way: the arrays of the flight kernels, their growth, and what comes out.
-
-Importing this module imports numba; do so only where a plan is built.
-"""
+"""Discs in free flight: the arrays of the flight kernels, their growth, and the impacts that come out."""
 
 from __future__ import annotations
 
@@ -12,22 +9,42 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from components.collision_state import FreeFlightState
 from components.obstacles import NO_OBSTACLES, Obstacles
-from components.paths import Paths
 from systems.broad_phase import nearest
-from systems.collision import columns as arrays
-from systems.collision.columns import Floats, Grid, Group, Integers, Pile, Queue, Reason, Report, Ties
-from systems.collision.kernels.pile import STEP_SHARE
+from systems.collision.columns import (
+    FLIGHT,
+    NONE,
+    PILE_COUNTS,
+    PILE_NUMBERS,
+    SHARED_END,
+    SHARED_START,
+    SPEED_NOISE,
+    STEP_SHARE,
+    Constraints,
+    Count,
+    Disc,
+    Entry,
+    Floats,
+    Grid,
+    Group,
+    Integers,
+    Number,
+    Pile,
+    Queue,
+    Reason,
+    Report,
+)
 from systems.collision.system import REST_HEIGHT
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
-REPORT = 4096  # impacts reported at a time
-MORE_PATIENCE = 64  # calm steps from one search for the equilibrium of a pile to the next
+REPORTED_AT_ONCE = 4096  # impacts; fetched before more are reported
+MORE_PATIENCE = 64  # calm steps between two searches for the equilibrium of a pile
 
 
 @dataclass(frozen=True)
-class Impacts:
-    """Impacts in the order in which they happened.
+class ImpactColumns:
+    """Impacts in the order in which they happened, a column each.
 
     pairs: the two discs, shape (k, 2). time: s. impulse: N·s, along the line of centres. loss: energy lost, J.
     point: where they touched, shape (k, 2), m.
@@ -46,12 +63,12 @@ class Impacts:
 class Discs:
     """Discs that fly, collide and rest on one another.
 
-    fly, take_steps, open_window: the kernels that advance them, compiled; a subclass has them.
+    fly, take_steps, open_horizon: the compiled kernels that advance them; a subclass has them (free/compiled.py).
     """
 
-    fly: Callable[..., int]
-    take_steps: Callable[..., int]
-    open_window: Callable[..., int]
+    fly: Callable[..., Reason]
+    take_steps: Callable[..., Reason]
+    open_horizon: Callable[..., Reason]
 
     def __init__(
         self,
@@ -74,48 +91,49 @@ class Discs:
         position: original, shape (n, 2), m. velocity: shape (n, 2), m/s, 0 in held directions. radius: shape
         (n,), m. inverse_mass: of each direction, shape (n, 2), 1/kg, 0 where it is held. displacement: m;
         acceleration: m/s², without contacts. rest_height: bounces that would rise less, relative to the
-        smaller radius, end in lasting contact. joined: pairs that never collide. obstacles: what else there is;
-        in pairs they count on after the discs. lost: energy lost so far, J.
+        smaller radius, end in persistent contact. joined: pairs that never collide. obstacles: straight pieces that
+        never move; in pairs their numbers follow those of the discs. lost: energy lost so far, J.
         """
         place = np.atleast_2d(np.asarray(position, dtype=np.float64))
         self._obstacles = obstacles if obstacles is not None else NO_OBSTACLES
         self.count = len(place)
         n = self.count + len(self._obstacles)
-        self.rows = np.zeros((n, arrays.DISC_WIDTH))
-        self._columns(arrays.OX)[...] = place
-        self._columns(arrays.UX)[...] = displacement
-        self._columns(arrays.VX)[...] = velocity
-        self._columns(arrays.WX)[...] = inverse_mass
-        self._columns(arrays.GX)[...] = acceleration
-        self._columns(arrays.GX)[self._columns(arrays.WX) == 0.0] = 0.0
-        self._columns(arrays.AX)[...] = self._columns(arrays.GX)
-        self.rows[: self.count, arrays.RADIUS] = radius
-        self.rows[: self.count, arrays.EPOCH] = time
-        self.rows[: self.count, arrays.BOUNCE] = restitution
-        self.rows[:, arrays.STEP] = np.inf
+        self.rows = np.zeros((n, len(Disc)))
+        columns = (Disc.OX, place), (Disc.UX, displacement), (Disc.VX, velocity), (Disc.WX, inverse_mass)
+        for first, values in (*columns, (Disc.GX, acceleration)):
+            self._columns(first)[...] = values
+        self._columns(Disc.GX)[self._columns(Disc.WX) == 0.0] = 0.0
+        self._columns(Disc.AX)[...] = self._columns(Disc.GX)
+        self.rows[: self.count, Disc.RADIUS] = radius
+        self.rows[: self.count, Disc.EPOCH] = time
+        self.rows[: self.count, Disc.BOUNCE] = restitution
+        self.rows[:, Disc.STEP] = np.inf
+        self._enter_obstacles()
+        speed = np.abs(self._columns(Disc.VX)).sum(axis=1)
+        self.rows[: self.count, Disc.NOISE] = SPEED_NOISE * speed
+        self.numbers = np.zeros(len(Number))
+        self.numbers[Number.NOW] = time
+        self.numbers[Number.RESTITUTION] = self.rows[:, Disc.BOUNCE].min(initial=restitution)
+        self.numbers[Number.REST_HEIGHT] = rest_height
+        self.counts = np.zeros(len(Count), dtype=np.int64)
+        self.counts[Count.RENEW], self.counts[Count.LISTED] = 1, NONE
+        self.counts[Count.DISCS] = self.count
+        self.numbers[Number.SMALLEST] = self.rows[: self.count, Disc.RADIUS].min(initial=np.inf)
+        self.numbers[Number.STEP_LENGTH] = STEP_SHARE * self._fall_time()
+        self.numbers[Number.WORK_SINCE] = time
+        self.numbers[Number.LOSS] = lost
+        self.queue = Queue.empty(2 * n + 64)
+        self.grid = Grid.empty(n, 2)
+        self.group = Group.empty(n, 4 * n + 64)
+        self.pile = Pile.empty(n, len(self.group.links))
+        self.report = Report.empty(max(REPORTED_AT_ONCE, len(self.group.links)))
+        self.constraints = Constraints.of(n, joined, 2 * len(self.group.links), self.counts)
+
+    def _enter_obstacles(self) -> None:
         added, others = self.rows[self.count :], self._obstacles
-        added[:, [arrays.OX, arrays.OY]], added[:, [arrays.TX, arrays.TY]] = others.start, others.span
-        added[:, arrays.RADIUS], added[:, arrays.BOUNCE] = others.radius, others.restitution
-        added[:, arrays.SHARED] = _shared_ends(others)
-        speed = np.abs(self._columns(arrays.VX)).sum(axis=1)
-        self.rows[: self.count, arrays.NOISE] = arrays.SPEED_NOISE * speed
-        self.numbers = np.zeros(arrays.NUMBERS)
-        self.numbers[arrays.NOW] = time
-        self.numbers[arrays.RESTITUTION] = self.rows[:, arrays.BOUNCE].min(initial=restitution)
-        self.numbers[arrays.REST_HEIGHT] = rest_height
-        self.counts = np.zeros(arrays.COUNTS, dtype=np.int64)
-        self.counts[arrays.RENEW], self.counts[arrays.LISTED] = 1, arrays.NONE
-        self.counts[arrays.DISCS] = self.count
-        self.numbers[arrays.SMALLEST] = self.rows[: self.count, arrays.RADIUS].min(initial=np.inf)
-        self.numbers[arrays.STEP_LENGTH] = STEP_SHARE * self._fall_time()
-        self.numbers[arrays.WORK_SINCE] = time
-        self.numbers[arrays.LOSS] = lost
-        self.queue = _queue(2 * n + 64)
-        self.grid = _grid(n, 2)
-        self.group = room_for(n, 4 * n + 64)
-        self.pile = _pile(n, len(self.group.links))
-        self.report = _report(max(REPORT, len(self.group.links)))
-        self.ties = _ties(n, joined, 2 * len(self.group.links), self.counts)
+        added[:, [Disc.OX, Disc.OY]], added[:, [Disc.TX, Disc.TY]] = others.start, others.span
+        added[:, Disc.RADIUS], added[:, Disc.BOUNCE] = others.radius, others.restitution
+        added[:, Disc.SHARED] = _shared_ends(others)
 
     def _columns(self, first: int) -> Floats:
         """The x and y columns of the discs that begin with one."""
@@ -123,75 +141,67 @@ class Discs:
 
     def _fall_time(self) -> float:
         """Median time (s) in which discs that are pulled fall through their diameters; ∞ without any."""
-        pull = np.hypot(*self._columns(arrays.GX).T)
-        radius, pull = self.rows[: self.count][pull > 0.0, arrays.RADIUS], pull[pull > 0.0]
+        pull = np.hypot(*self._columns(Disc.GX).T)
+        radius, pull = self.rows[: self.count][pull > 0.0, Disc.RADIUS], pull[pull > 0.0]
         return float(np.median(np.sqrt(4.0 * radius / pull))) if len(pull) else np.inf
 
     # --- time -------------------------------------------------------------------------------------
 
-    def advance(self, until: float, most_events: int = 2**62) -> tuple[Reason, Impacts]:
+    def advance(self, until: float, most_events: int = 2**62) -> tuple[Reason, ImpactColumns]:
         """Let everything happen up to a time (s), at most `most_events` events.
 
         Returns DONE or BUSY, and the impacts.
         """
-        last = int(self.counts[arrays.EVENTS]) + most_events
+        last = int(self.counts[Count.EVENTS]) + most_events
         taken = [self._take()]
         while True:
-            reason = self._go_on(float(until), last - int(self.counts[arrays.EVENTS]))
-            if self.counts[arrays.REPORTED]:
+            reason = self._go_on(float(until), last - int(self.counts[Count.EVENTS]))
+            if self.counts[Count.REPORTED]:
                 taken.append(self._take())
             if reason in (Reason.DONE, Reason.BUSY):
                 return reason, _concatenated(taken)
             self._make_room(reason)
 
     def _go_on(self, until: float, most_events: int) -> Reason:
-        """Let a pile take its steps, or else all fly, in a window that is opened if there is none."""
-        rows, grid, ties, queue, group, report = (
-            self.rows,
-            self.grid,
-            self.ties,
-            self.queue,
-            self.group,
-            self.report,
-        )
+        """Let a pile take its steps, or else all discs fly within a horizon, which is opened if there is none."""
+        rows, grid, constraints, report = self.rows, self.grid, self.constraints, self.report
+        queue, group, pile = self.queue, self.group, self.pile
         numbers, counts = self.numbers, self.counts
-        if counts[arrays.STEPPING]:
-            return Reason(
-                self.take_steps(until, most_events, rows, grid, ties, self.pile, report, numbers, counts)
-            )
-        if counts[arrays.RENEW]:
-            reason = Reason(self.open_window(rows, grid, ties, queue, numbers, counts))
+        if counts[Count.STEPPING]:
+            return self.take_steps(until, most_events, rows, grid, constraints, pile, report, numbers, counts)
+        if counts[Count.RENEW]:
+            reason = self.open_horizon(rows, grid, constraints, queue, numbers, counts)
             if reason is not Reason.DONE:
                 return reason
-        return Reason(self.fly(until, most_events, rows, grid, ties, queue, group, report, numbers, counts))
+        return self.fly(until, most_events, rows, grid, constraints, queue, group, report, numbers, counts)
 
     def _make_room(self, reason: Reason) -> None:
         n = len(self.rows)
         if reason is Reason.QUEUE_FULL:
-            self.counts[arrays.RENEW] = 1
-            self.queue = _queue(2 * len(self.queue.times))
+            self.counts[Count.RENEW] = 1
+            self.queue = Queue.empty(2 * len(self.queue.times))
         elif reason is Reason.GRID_FULL:
-            self.grid = _grid(n, int(self.counts[arrays.LAYERS]) + 1)
-            self.counts[arrays.LISTED] = arrays.NONE
+            self.grid = Grid.empty(n, int(self.counts[Count.LAYERS]) + 1)
+            self.counts[Count.LISTED] = NONE
         elif reason is Reason.GROUP_FULL:
             size = 2 * len(self.group.links)
-            self.group, self.pile = room_for(n, size), _pile(n, size)
-            self.counts[arrays.LISTED] = arrays.NONE
-            self.report = _report(max(REPORT, size))
-            self.ties = _more_lasting(self.ties, 2 * size, self.counts)
+            self.group, self.pile = Group.empty(n, size), Pile.empty(n, size)
+            self.counts[Count.LISTED] = NONE
+            self.report = Report.empty(max(REPORTED_AT_ONCE, size))
+            self.constraints = self.constraints.enlarged(2 * size, self.counts)
         elif reason is Reason.SETTLE:
             self._settle()
 
     def _settle(self) -> None:
-        """Put the calm pile into its equilibrium if that is near; if not, it goes on for a while."""
-        from systems.collision.free.pile_equilibrium import Resting
+        """Put the calm pile into its equilibrium if that is near; if not, the pile goes on for a while."""
+        from systems.collision.free.pile_equilibrium import EquilibriumSearch
 
-        weight, pull = self._columns(arrays.WX), self._columns(arrays.GX)
-        place = self._columns(arrays.OX) + self._columns(arrays.UX)
-        radius = self.rows[: self.count, arrays.RADIUS]
-        owners, entries = self._lasting_entries()
-        pushing = np.sort(np.column_stack([owners, self.ties.lasting[entries, arrays.OTHER]]), axis=1)
-        end = Resting(
+        weight, pull = self._columns(Disc.WX), self._columns(Disc.GX)
+        place = self._columns(Disc.OX) + self._columns(Disc.UX)
+        radius = self.rows[: self.count, Disc.RADIUS]
+        owners, entries = self._persistent_entries()
+        pushing = np.sort(np.column_stack([owners, self.constraints.persistent[entries, Entry.OTHER]]), axis=1)
+        end = EquilibriumSearch(
             place,
             radius,
             weight,
@@ -199,92 +209,90 @@ class Discs:
             self._may_collide,
             self._obstacles,
             pushing,
-            self.ties.forces[entries],
-        ).repose()
+            self.constraints.forces[entries],
+        ).solve()
         if end is None:
-            self.counts[arrays.PATIENCE] = self.counts[arrays.CALM] + MORE_PATIENCE
+            self.counts[Count.PATIENCE] = self.counts[Count.CALM] + MORE_PATIENCE
             return
         lying, free = self.rows[end.discs], weight[end.discs] > 0.0
-        moving = lying[:, arrays.VX : arrays.VX + 2] ** 2 / 2.0
-        fallen = lying[:, arrays.GX : arrays.GX + 2] * end.displacement[end.discs]
-        self.numbers[arrays.LOSS] += ((moving + fallen)[free] / weight[end.discs][free]).sum()
-        self._columns(arrays.UX)[...] += end.displacement
-        self.rows[end.discs, arrays.VX : arrays.AY + 1] = 0.0
-        self.numbers[arrays.STEP_END] = self.now
-        self.ties = _more_lasting(_without_lasting(self.ties, self.counts), len(self.ties.lasting), self.counts)
+        moving = lying[:, Disc.VX : Disc.VX + 2] ** 2 / 2.0
+        fallen = lying[:, Disc.GX : Disc.GX + 2] * end.displacement[end.discs]
+        self.numbers[Number.LOSS] += ((moving + fallen)[free] / weight[end.discs][free]).sum()
+        self._columns(Disc.UX)[...] += end.displacement
+        self.rows[end.discs, Disc.VX : Disc.AY + 1] = 0.0
+        self.numbers[Number.STEP_END] = self.now
+        self.constraints = self.constraints.cleared(len(self.constraints.persistent), self.counts)
         both = np.concatenate([end.pairs, end.pairs[:, ::-1]])
-        own = self.rows[both[:, 0], arrays.WX : arrays.WY + 1].any(axis=1)
-        self._note_lasting(both[own], np.tile(end.forces, 2)[own])
-        self.counts[[arrays.STEPPING, arrays.WORK, arrays.RENEW]] = 0, 0, 1
-        self.numbers[arrays.WORK_SINCE] = self.now
+        own = self.rows[both[:, 0], Disc.WX : Disc.WY + 1].any(axis=1)
+        self._enter_persistent(both[own], np.tile(end.forces, 2)[own])
+        self.counts[[Count.STEPPING, Count.WORK, Count.RENEW]] = 0, 0, 1
+        self.numbers[Number.WORK_SINCE] = self.now
 
     def _may_collide(self, pairs: Integers) -> NDArray[np.bool_]:
         n = len(self.rows)
-        owners = np.repeat(np.arange(n), np.diff(self.ties.first))
-        may: NDArray[np.bool_] = np.isin(pairs @ [n, 1], owners * n + self.ties.partners, invert=True)
+        owners = np.repeat(np.arange(n), np.diff(self.constraints.first))
+        may: NDArray[np.bool_] = np.isin(pairs @ [n, 1], owners * n + self.constraints.partners, invert=True)
         return may
 
-    def _take(self) -> Impacts:
-        k = int(self.counts[arrays.REPORTED])
-        self.counts[arrays.REPORTED] = 0
+    def _take(self) -> ImpactColumns:
+        k = int(self.counts[Count.REPORTED])
+        self.counts[Count.REPORTED] = 0
         details = self.report.details[:k].copy()
-        return Impacts(
+        return ImpactColumns(
             self.report.pairs[:k].copy(), details[:, 0], details[:, 1], details[:, 2], details[:, 3:]
         )
 
-    # --- what is to come, to go on with later -------------------------------------------------------
+    # --- the state to resume from -------------------------------------------------------------------
 
-    def paths(self) -> Paths:
-        """All that the future follows from besides what the discs are: with it others go on, bit for bit."""
-        owners, entries = self._lasting_entries()
-        pairs = np.column_stack([owners, self.ties.lasting[entries, arrays.OTHER]])
-        crowd = np.concatenate(
-            [self.counts[list(arrays.CROWD_COUNTS)], self.numbers[list(arrays.CROWD_NUMBERS)]]
-        )
-        return Paths(self.rows[: self.count, list(arrays.MOVING)], pairs, self.ties.forces[entries], crowd)
+    def state(self) -> FreeFlightState:
+        """The state from which other discs with the same properties go on bit for bit."""
+        owners, entries = self._persistent_entries()
+        pairs = np.column_stack([owners, self.constraints.persistent[entries, Entry.OTHER]])
+        pile = np.concatenate([self.counts[PILE_COUNTS], self.numbers[PILE_NUMBERS]])
+        return FreeFlightState(self.rows[: self.count, FLIGHT], pairs, self.constraints.forces[entries], pile)
 
-    def follow(self, paths: Paths) -> None:
-        """Go on as the discs did that these paths were taken from."""
-        self.rows[: self.count, list(arrays.MOVING)] = paths.motion
-        counted = len(arrays.CROWD_COUNTS)
-        self.counts[list(arrays.CROWD_COUNTS)] = paths.crowd[:counted]
-        self.numbers[list(arrays.CROWD_NUMBERS)] = paths.crowd[counted:]
-        self.counts[arrays.RENEW], self.counts[arrays.LISTED] = 1, arrays.NONE
-        self._note_lasting(paths.contacts, paths.forces)
+    def resume(self, state: FreeFlightState) -> None:
+        """Go on from the state of other discs with the same properties."""
+        self.rows[: self.count, FLIGHT] = state.motion
+        counted = len(PILE_COUNTS)
+        self.counts[PILE_COUNTS] = state.pile[:counted]
+        self.numbers[PILE_NUMBERS] = state.pile[counted:]
+        self.counts[Count.RENEW], self.counts[Count.LISTED] = 1, NONE
+        self._enter_persistent(state.contacts, state.forces)
 
-    def _note_lasting(self, pairs: Integers, forces: Floats) -> None:
-        """Enter lasting contacts of the first disc of each pair with the second."""
-        while len(pairs) > self.counts[arrays.SPARES]:
-            self.ties = _more_lasting(self.ties, 2 * len(self.ties.lasting), self.counts)
+    def _enter_persistent(self, pairs: Integers, forces: Floats) -> None:
+        """Enter persistent contacts of the first disc of each pair with the second."""
+        while len(pairs) > self.counts[Count.SPARES]:
+            self.constraints = self.constraints.enlarged(2 * len(self.constraints.persistent), self.counts)
         for (i, j), force in zip(pairs[::-1].tolist(), forces[::-1].tolist(), strict=True):
-            entry = self.counts[arrays.SPARE]
-            self.counts[arrays.SPARE] = self.ties.lasting[entry, arrays.NEXT]
-            self.counts[arrays.SPARES] -= 1
-            self.ties.lasting[entry] = j, self.ties.first_lasting[i]
-            self.ties.forces[entry] = force
-            self.ties.first_lasting[i] = entry
+            entry = self.counts[Count.SPARE]
+            self.counts[Count.SPARE] = self.constraints.persistent[entry, Entry.NEXT]
+            self.counts[Count.SPARES] -= 1
+            self.constraints.persistent[entry] = j, self.constraints.first_persistent[i]
+            self.constraints.forces[entry] = force
+            self.constraints.first_persistent[i] = entry
 
-    def _lasting_entries(self) -> tuple[Integers, Integers]:
-        """The discs that have lasting contacts, once for each, and the entries, in the order of the chains."""
+    def _persistent_entries(self) -> tuple[Integers, Integers]:
+        """The discs that have persistent contacts, once per contact, and the entries, in the order of the chains."""
         owners, entries = [], []
-        for i in np.flatnonzero(self.ties.first_lasting != arrays.NONE).tolist():
-            entry = int(self.ties.first_lasting[i])
-            while entry != arrays.NONE:
+        for i in np.flatnonzero(self.constraints.first_persistent != NONE).tolist():
+            entry = int(self.constraints.first_persistent[i])
+            while entry != NONE:
                 owners.append(i)
                 entries.append(entry)
-                entry = int(self.ties.lasting[entry, arrays.NEXT])
+                entry = int(self.constraints.persistent[entry, Entry.NEXT])
         return np.array(owners, dtype=np.int64), np.array(entries, dtype=np.int64)
 
     def contact_forces(self) -> Floats:
-        """The sum of the forces (N) with which others keep each disc away in lasting contacts, shape (n, 2)."""
-        owners, entries = self._lasting_entries()
-        others = self.ties.lasting[entries, arrays.OTHER]
+        """The sum of the forces (N) on each disc in its persistent contacts, shape (n, 2)."""
+        owners, entries = self._persistent_entries()
+        others = self.constraints.persistent[entries, Entry.OTHER]
         displacement, _ = self.state_at(self.now)
-        place = self.rows[:, [arrays.OX, arrays.OY]]
+        place = self.rows[:, [Disc.OX, Disc.OY]]
         place[: self.count] += displacement
-        line = -nearest(place[others] - place[owners], self.rows[others][:, [arrays.TX, arrays.TY]])
-        push = line * (self.ties.forces[entries] / np.hypot(line[:, 0], line[:, 1]))[:, None]
-        held = (self.rows[others][:, [arrays.WX, arrays.WY]] == 0.0).all(axis=1)  # without entries of their own
+        line = -nearest(place[others] - place[owners], self.rows[others][:, [Disc.TX, Disc.TY]])
+        push = line * (self.constraints.forces[entries] / np.hypot(line[:, 0], line[:, 1]))[:, None]
+        held = (self.rows[others][:, [Disc.WX, Disc.WY]] == 0.0).all(axis=1)  # without entries of their own
         total = np.zeros_like(place)
         for d in range(2):
             total[:, d] = np.bincount(owners, push[:, d], len(place))
@@ -294,45 +302,45 @@ class Discs:
     @property
     def at_rest(self) -> bool:
         """True if nothing moves and nothing will."""
-        return not self.rows[: self.count, arrays.VX : arrays.AY + 1].any()
+        return not self.rows[: self.count, Disc.VX : Disc.AY + 1].any()
 
     @property
     def last_change(self) -> float:
         """Time (s) at which a path last changed."""
-        return float(self.rows[: self.count, arrays.EPOCH].max())
+        return float(self.rows[: self.count, Disc.EPOCH].max())
 
     @property
     def now(self) -> float:
         """Time (s) up to which everything has happened."""
-        return float(self.numbers[arrays.NOW])
+        return float(self.numbers[Number.NOW])
 
     @property
     def impacts(self) -> int:
-        """How many there were."""
-        return int(self.counts[arrays.IMPACTS])
+        """Number of impacts so far."""
+        return int(self.counts[Count.IMPACTS])
 
     def lost_at(self, time: float) -> float:
         """Energy (J) lost until a time (s) between the last event and the next.
 
-        What a step of a pile takes is that of its weights on straight lines, at a constant rate, and a jump at first.
+        In a step of a pile, weights on straight lines lose energy at a constant rate, after a jump at its start.
         """
-        lost = float(self.numbers[arrays.LOSS])
-        if self.counts[arrays.STEPPING] and self.numbers[arrays.STEP_END] > time:
-            weight, velocity = self._columns(arrays.WX), self._columns(arrays.VX)
-            held = self._columns(arrays.GX) - self._columns(arrays.AX)
+        lost = float(self.numbers[Number.LOSS])
+        if self.counts[Count.STEPPING] and self.numbers[Number.STEP_END] > time:
+            weight, velocity = self._columns(Disc.WX), self._columns(Disc.VX)
+            held = self._columns(Disc.GX) - self._columns(Disc.AX)
             rate = (held * velocity)[weight > 0.0] / weight[weight > 0.0]
-            lost -= float(rate.sum()) * float(self.numbers[arrays.STEP_END] - time)
+            lost -= float(rate.sum()) * float(self.numbers[Number.STEP_END] - time)
         return lost
 
     def state_at(self, time: float) -> tuple[Floats, Floats]:
         """Displacements (m) and velocities (m/s) at a time (s) between the last event and the next."""
-        s = (time - self.rows[: self.count, arrays.EPOCH])[:, None]
-        u, v, a = (self._columns(first) for first in (arrays.UX, arrays.VX, arrays.AX))
+        s = (time - self.rows[: self.count, Disc.EPOCH])[:, None]
+        u, v, a = (self._columns(first) for first in (Disc.UX, Disc.VX, Disc.AX))
         return u + s * (v + 0.5 * s * a), v + s * a
 
 
 def _shared_ends(others: Obstacles) -> Floats:
-    """Which ends of obstacles, as in the column SHARED, are those of an earlier one with the same radius, too."""
+    """Column SHARED of obstacles: their ends that are also ends of an earlier obstacle with the same radius."""
     ends = np.concatenate([others.start, others.start + others.span])
     scale = np.abs(ends).max(initial=0.0) or 1.0
     spots = np.column_stack([np.round(ends / (scale * SAME_PLACE)), np.tile(others.radius, 2)])
@@ -341,97 +349,10 @@ def _shared_ends(others: Obstacles) -> Floats:
     rows = np.tile(np.arange(len(others)), 2)
     np.minimum.at(owner, spot.ravel(), rows)
     shared = (owner[spot.ravel()] < rows).reshape(2, -1)
-    found: Floats = arrays.SHARED_START * shared[0] + arrays.SHARED_END * shared[1]
+    found: Floats = SHARED_START * shared[0] + SHARED_END * shared[1]
     return found
 
 
-def _queue(size: int) -> Queue:
-    return Queue(np.zeros(size), np.zeros((size, 4), dtype=np.int32))
-
-
-def _grid(n: int, layers: int) -> Grid:
-    entries = 4 * n * layers
-    buckets = 1 << int(np.ceil(np.log2(max(entries, 16))))
-    return Grid(
-        boxes=np.zeros((n, 4)),
-        layer=np.zeros(n, dtype=np.int64),
-        levels=np.zeros(64, dtype=np.int64),
-        heads=np.full(buckets, arrays.NONE, dtype=np.int32),
-        after=np.zeros(2 * entries, dtype=np.int32),
-        found=np.zeros(n + 1, dtype=np.int64),
-    )
-
-
-def room_for(n: int, contacts: int) -> Group:
-    """An empty group of at most n members and so many contacts."""
-    return Group(
-        members=np.zeros(n, dtype=np.int64),
-        place=np.full(n, arrays.NONE, dtype=np.int64),
-        links=np.zeros((contacts, 2), dtype=np.int64),
-        contacts=np.zeros((contacts, arrays.CONTACT_WIDTH)),
-        mobility=np.zeros((n, 2)),
-        motion=np.zeros((n, 2)),
-        initial=np.zeros((n, 2)),
-        start=np.zeros((n, 2)),
-        other=np.zeros((n, 2)),
-        noise=np.zeros(1),
-        marks=np.zeros((3, contacts), dtype=np.int64),
-        matrix=np.zeros((arrays.DIRECT + 1, arrays.DIRECT)),
-    )
-
-
-def _pile(n: int, pairs: int) -> Pile:
-    """Room for so many pairs."""
-    return Pile(
-        motion=np.zeros((4, n, 2)),
-        travel=np.zeros((4, n)),
-        pairs=np.zeros((pairs, 2), dtype=np.int64),
-        forces=np.zeros(pairs),
-        chosen=np.zeros(pairs, dtype=np.int64),
-        order=np.zeros(pairs, dtype=np.int64),
-        ends=np.zeros((pairs, 2), dtype=np.uint32),
-        contacts=np.zeros((pairs, arrays.PILE_CONTACT_WIDTH)),
-        scale=np.zeros(pairs),
-    )
-
-
-def _report(size: int) -> Report:
-    return Report(np.zeros((size, 2), dtype=np.int64), np.zeros((size, 5)))
-
-
-def _ties(n: int, joined: Any, lasting: int, counts: Integers) -> Ties:
-    pairs = np.asarray(joined, dtype=np.int64).reshape(-1, 2)
-    ends = np.concatenate([pairs, pairs[:, ::-1]])
-    ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
-    ties = Ties(
-        first=np.searchsorted(ends[:, 0], np.arange(n + 1)),
-        partners=np.ascontiguousarray(ends[:, 1]),
-        first_lasting=np.zeros(n, dtype=np.int64),
-        lasting=np.zeros((0, 2), dtype=np.int64),
-        forces=np.zeros(0),
-    )
-    return _more_lasting(_without_lasting(ties, counts), lasting, counts)
-
-
-def _without_lasting(ties: Ties, counts: Integers) -> Ties:
-    """The same table without entries, used or not, of lasting contacts."""
-    counts[arrays.SPARE], counts[arrays.SPARES] = arrays.NONE, 0
-    none = np.full(len(ties.first_lasting), arrays.NONE, dtype=np.int64)
-    return ties._replace(first_lasting=none, lasting=np.zeros((0, 2), dtype=np.int64), forces=np.zeros(0))
-
-
-def _more_lasting(ties: Ties, size: int, counts: Integers) -> Ties:
-    """The same table with more unused entries, chained before those there are."""
-    old = len(ties.lasting)
-    lasting, forces = np.zeros((size, 2), dtype=np.int64), np.zeros(size)
-    lasting[:old], forces[:old] = ties.lasting, ties.forces
-    lasting[old:, arrays.NEXT] = np.arange(old + 1, size + 1)
-    lasting[-1, arrays.NEXT] = counts[arrays.SPARE]
-    counts[arrays.SPARE] = old
-    counts[arrays.SPARES] += size - old
-    return ties._replace(lasting=lasting, forces=forces)
-
-
-def _concatenated(parts: list[Impacts]) -> Impacts:
+def _concatenated(parts: list[ImpactColumns]) -> ImpactColumns:
     columns = ("pairs", "time", "impulse", "loss", "point")
-    return Impacts(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))
+    return ImpactColumns(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))

@@ -1,86 +1,38 @@
-"""Flight: stands in for the step program where nothing but constant forces and impacts moves the particles."""
+"""Free flight: takes the place of the step program where only constant forces and impacts move the particles."""
 
 from __future__ import annotations
 
 import math
 import sys
 import time
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from components.collision_state import FreeFlightState
 from components.field import Role
 from components.handle import Handle
 from components.load import loads_end
 from components.model import Model
 from components.obstacles import obstacles
-from components.paths import Paths
-from components.rod import nodes
 from systems.base import Event, StopReason
-from systems.collision.columns import CROWD_COUNTS, CROWD_NUMBERS, MOVING
-from systems.collision.driven.compiled import kernels
-from systems.collision.free.compiled import EVENTS, PILES, WINDOWS, engine
+from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc
+from systems.collision.free.compiled import EVENTS, HORIZONS, PILES, engine
+from systems.collision.free.discs import Discs
 from systems.collision.impacts import Impacts
 from systems.entries import Measure
 
-if TYPE_CHECKING:
-    from systems.collision.free.discs import Discs
-
-CROWD = len(CROWD_COUNTS) + len(CROWD_NUMBERS)
-UNSEEN = 1e-3  # of a radius: nobody draws overlaps as small, but steps of piles leave such
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
 
 
 def may_pile(model: Model, pulled: bool) -> bool:
-    """True if anything presses particles together for long: a hand that pulls, or forces."""
+    """True if a hand that pulls, or forces, press particles together for long."""
     return pulled or bool(model.particles.constant_force.any())
 
 
-def part_overlaps(model: Model) -> str:
-    """Move particles apart that overlap, but for nodes of structures among themselves; says so, or "".
-
-    By how little steps let them sink in is not said.
-    """
-    from systems.broad_phase import near_pairs
-
-    particles, others = model.particles, obstacles(model)
-    node: NDArray[np.bool_] = np.ones(particles.count + len(others), dtype=bool)  # obstacles count as nodes
-    held = node.copy()
-    held[: particles.count] = (particles.mobility == 0.0).all(axis=1)
-    node[: particles.count] = nodes(model)
-
-    def among(pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
-        left_alone: NDArray[np.bool_] = np.logical_or(node[pairs].all(axis=1), held[pairs].all(axis=1))
-        return np.logical_not(left_alone)
-
-    displacement = particles.displacement.copy()
-    touching = near_pairs(particles.position + displacement, particles.radius, others)
-    if not among(touching).any():
-        return ""
-    from systems.collision.overlaps import overlaps, part
-
-    overlapping = overlaps(particles.position + displacement, particles.radius, others)
-    overlapping = overlapping[among(overlapping)]
-    count = len(overlapping)
-    if count == 0:
-        return ""
-    columns = particles.position, displacement, particles.radius, particles.mobility
-    left = part(*columns, among, kernels().part, others)
-    farthest = float(np.abs(displacement - particles.displacement).max())
-    model.writable("particles.displacement")[...] = displacement
-    if farthest <= UNSEEN * float(particles.radius.min()) and not left:
-        return ""
-    pairs = "1 pair of particles" if count == 1 else f"{count} pairs of particles"
-    note = f"{pairs} overlapped and were moved apart along their lines of centres."
-    if (overlapping[:, 1] >= particles.count).any():
-        pairs = "1 overlap" if count == 1 else f"{count} overlaps"
-        note = f"{pairs} of particles with others or with obstacles: they were moved apart."
-    return note if left == 0 else f"{note} {left} still overlap: move them, or free a direction."
-
-
 class PullingHand(Protocol):
-    """What pulls particles besides their constant forces; see systems/edit/pull.py."""
+    """A force on particles besides their constant forces; see systems/edit/pull.py."""
 
     def forces(self, count: int) -> NDArray[np.float64]:
         """Force on each of so many particles (kN), shape (count, 2)."""
@@ -90,8 +42,8 @@ class Flight:
     """The particles of one model on their exact paths from impact to impact.
 
     measures, compile_seconds, follows_state: as of Dynamics. unbalanced: force on each particle as last observed (kN).
-    What the paths are is part of the model's state: clock.paths. pull: of a hand; its force is constant during a step,
-    so that the paths are exact in it.
+    The paths are part of the model's state: clock.collision_state. pull: a hand's force, constant during a step, so that
+    paths are exact within it.
     """
 
     def __init__(self, model: Model, impacts: Impacts, pull: PullingHand | None = None) -> None:
@@ -99,13 +51,13 @@ class Flight:
         self.model = model
         self.measures = np.zeros(len(Measure))
         self.unbalanced = np.zeros((model.particles.count, 2))
-        self.follows_state = False  # what is pressed together stays so by contacts
+        self.follows_state = False  # contacts keep particles at rest, too
         self._impacts = impacts
         self._pull = pull
-        for unit in (EVENTS, WINDOWS):
+        for unit in (EVENTS, HORIZONS):
             unit.load()
         if PILES.is_compiled():
-            PILES.load()  # an edit that needs it would wait for that
+            PILES.load()  # now, so that an edit that needs it does not wait
         self.bind()
         self.compile_seconds = time.perf_counter() - started
 
@@ -159,21 +111,22 @@ class Flight:
                 obstacles=obstacles(self.model),
                 lost=clock.dissipated_impact,
             )
-            if self._pull is None and clock.paths is not None and self._fits(clock.paths):
-                self._flying.follow(clock.paths)
+            saved = clock.collision_state
+            if self._pull is None and isinstance(saved, FreeFlightState) and self._fits(saved):
+                self._flying.resume(saved)
             self._state_revision = self.model.newest(Role.STATE)
         assert self._flying is not None
         return self._flying
 
-    def _fits(self, paths: Paths) -> bool:
-        """True if the paths lead through the present state, bit for bit."""
+    def _fits(self, saved: FreeFlightState) -> bool:
+        """True if saved paths lead through the present state, bit for bit."""
         particles, now = self.model.particles, self.model.clock.time
         count = particles.count + len(obstacles(self.model))
-        inside = (paths.contacts < count).all() and len(paths.crowd) == CROWD
-        if paths.motion.shape != (particles.count, len(MOVING)) or not inside:
+        inside = (saved.contacts < count).all() and len(saved.pile) == len(PILE_COUNTS) + len(PILE_NUMBERS)
+        if saved.motion.shape != (particles.count, len(FLIGHT)) or not inside:
             return False
-        u, v, a = paths.motion[:, 0:2], paths.motion[:, 2:4], paths.motion[:, 4:6]
-        s = (now - paths.motion[:, 6])[:, None]
+        u, v, a = saved.motion[:, 0:2], saved.motion[:, 2:4], saved.motion[:, 4:6]
+        s = (now - saved.motion[:, FLIGHT.index(Disc.EPOCH)])[:, None]
         here = u + s * (v + 0.5 * s * a)
         return bool((here == particles.displacement).all() and (v + s * a == particles.velocity).all())
 
@@ -269,7 +222,7 @@ class Flight:
         self.model.writable("clock.dissipated_impact")[0] = discs.lost_at(now)
         self.model.writable("clock.time")[0] = now
         self.model.writable("clock.steps")[0] += steps
-        self.model.writable("clock.paths")[0] = discs.paths()
+        self.model.writable("clock.collision_state")[0] = discs.state()
         self._state_revision = self.model.newest(Role.STATE)
 
     # --- reading -----------------------------------------------------------------------------------

@@ -1,13 +1,14 @@
-"""Repose: the equilibrium near by in which a pile ends that hardly moves any more.
+"""The equilibrium of a pile: where a pile that hardly moves any more comes to rest.
 
-What is sought is where the motion ends, not a short cut to it: an equilibrium counts only where no disc is farther
-from it than a fortieth of its radius; from farther away, the pile goes on moving.
+The equilibrium sought is that in which the motion ends, not a short cut to another one: it counts only where no disc
+is farther from it than a fortieth of its radius; from farther away, the pile goes on moving.
 
-It is a least of the potential energy −f·x under gaps ≥ 0. Since discs are convex, a stable one has as many contacts
-as freedoms, and these alone determine it. It is found by the interior-point method: gaps s and forces λ follow
+The equilibrium is a minimum of the potential energy −f·x under gaps ≥ 0. Since discs are convex, a stable one has
+as many contacts as freedoms, and these alone determine it. It is found by the interior-point method: gaps s and
+forces λ follow
     f + Nᵀ λ = 0,   s = gap(x),   λ s = μ,   μ → 0
 by Newton's method, with the normals N at the present x and a little inertia, so that discs that nothing holds yet do
-not run away (Nocedal, Wright, Numerical Optimization (2006), chapter 19).
+not drift away (Nocedal, Wright, Numerical Optimization (2006), chapter 19).
 """
 
 from __future__ import annotations
@@ -28,22 +29,22 @@ FARTHEST = 0.025  # of its radius: an equilibrium to which a disc would go farth
 FREE_STRIDE = 1.0  # radii by which inertia lets a disc go in an iteration that nothing holds
 FIRST_BARRIER = 1e-5  # μ at first, in weight × radius of the lighter and the smaller of a pair
 QUICK, SLOW = 0.03, 0.8  # what is left of μ after an iteration that got far, and after others
-FAR = 0.5  # of the way that Newton's method wanted
+LONG_STEP = 0.5  # of Newton's step: an iteration that takes more of it got far
 TO_EDGE = 0.995  # of the way to where a gap or a force vanishes
-STILL, BALANCED = 1e-10, 5e-10  # radii that discs move at the end, and what is unbalanced of the largest weight
+STILL, BALANCED = 1e-10, 5e-10  # at the end: motion in radii, residual force in largest weights
 CLOSED = 1e-13  # μ at the end
-SOON = 10  # iterations after which discs move little, or no equilibrium is near
-LITTLE = 1e-2  # radii
-MOST_ITERATIONS = 60  # 10 to 30 are usual
+EARLY_ITERATIONS = 10  # after which discs move less than LITTLE radii, or no equilibrium is near
+LITTLE = 1e-2
+MOST_NEWTON_ITERATIONS = 60  # 10 to 30 are usual
 SYMMETRIC = {"SymmetricMode": True}
 
 
 @dataclass(frozen=True)
-class Repose:
+class PileEquilibrium:
     """The equilibrium of a pile.
 
-    discs: that lie in the pile, shape (k,). displacement: of all to there, shape (n, 2), m. pairs: that push each
-    other, shape (c, 2). forces: how strongly, shape (c,), N.
+    discs: the discs that lie in the pile, shape (k,). displacement: of all discs to the equilibrium, shape (n, 2), m.
+    pairs: that push each other, shape (c, 2). forces: between them, shape (c,), N.
     """
 
     discs: Rows
@@ -54,7 +55,7 @@ class Repose:
 
 @dataclass
 class _Gaps:
-    """Pairs that may touch: their gaps (slack, m) and forces (N) as iterated, and what is natural for them (J)."""
+    """Pairs that may touch: iterates of their gaps (slack, m) and forces (N), and the scale of their product (J)."""
 
     pairs: Rows
     slack: Floats
@@ -62,14 +63,14 @@ class _Gaps:
     scale: Floats
 
 
-class Resting:
-    """Discs that lie on one another, on what is held and on obstacles.
+class EquilibriumSearch:
+    """The search for the equilibrium of discs that lie on one another, on held discs and on obstacles.
 
     place: centres, shape (n, 2), m. radius: shape (n,), m. inverse_mass: of each direction, shape (n, 2), 1/kg,
-    0 where it is held. pull: acceleration without contacts, shape (n, 2), m/s². may_collide: tells which of the
-    pairs it is given do, in which obstacles count on after the discs. pushing: pairs of which
-    it is known that they push, the lower number first, shape (c, 2); forces: how strongly, shape (c,), N. A disc in
-    none of these flies: it is not moved, and what it comes near is not at rest.
+    0 where it is held. pull: acceleration without contacts, shape (n, 2), m/s². may_collide: selects the pairs that collide;
+    in pairs, the numbers of obstacles follow those of the discs. pushing: pairs that are known to push, the lower
+    number first, shape (c, 2); forces: between them, shape (c,), N. A disc in none of these pairs flies: it is not
+    moved, and a disc that it comes near is not at rest.
     """
 
     def __init__(
@@ -109,8 +110,8 @@ class Resting:
         pairs = near_pairs(self._place, (1.0 + AROUND) * self._radius, self._obstacles)
         return pairs[self._moves[pairs].any(axis=1) & self._may_collide(pairs)]
 
-    def repose(self) -> Repose | None:
-        """The equilibrium, if it is near and rests on nothing that flies by."""
+    def solve(self) -> PileEquilibrium | None:
+        """The equilibrium, if it is near and no disc in it rests on a flying one; else None."""
         if len(self._force) == 0 or not self._iterate():
             return None
         pairs, slack, force = self._gaps.pairs, self._gaps.slack, self._gaps.force
@@ -119,19 +120,19 @@ class Resting:
         if self._flies[pairs[pushing]].any():
             return None
         displacement = self._place - self._start
-        return Repose(np.flatnonzero(self._moves), displacement, pairs[pushing], force[pushing])
+        return PileEquilibrium(np.flatnonzero(self._moves), displacement, pairs[pushing], force[pushing])
 
     def _iterate(self) -> bool:
-        """Newton's method as far as it leads; True if to an equilibrium near by."""
+        """Iterate by Newton's method; True if it converges to an equilibrium near by."""
         barrier, gaps = FIRST_BARRIER, self._gaps
-        for turn in range(MOST_ITERATIONS):
+        for turn in range(MOST_NEWTON_ITERATIONS):
             try:
                 motion, opening, change, left = self._newton(barrier)
             except RuntimeError:  # singular
                 return False
             forward, stronger = _share(gaps.slack, opening), _share(gaps.force, change)
             self._place = self._place + forward * motion
-            astray = turn >= SOON and self._farthest(motion) > LITTLE
+            astray = turn >= EARLY_ITERATIONS and self._farthest(motion) > LITTLE
             if astray or not self._farthest(self._place - self._start) <= AROUND:
                 return False
             gaps.slack += forward * opening
@@ -139,15 +140,15 @@ class Resting:
             present = float((gaps.force * gaps.slack / gaps.scale).mean())
             if self._farthest(motion) <= STILL and left <= BALANCED and present <= CLOSED:
                 return self._farthest(self._place - self._start) <= FARTHEST
-            barrier = max((QUICK if min(forward, stronger) > FAR else SLOW) * present, 0.1 * CLOSED)
+            barrier = max((QUICK if min(forward, stronger) > LONG_STEP else SLOW) * present, 0.1 * CLOSED)
         return False
 
     def _farthest(self, motion: Floats) -> float:
-        """The longest of displacements, in the radius of its disc."""
+        """The longest of displacements, in radii of its disc."""
         return float((np.abs(motion).max(axis=1) / self._radius).max())
 
     def _listed(self, pushing: Rows, forces: Floats) -> _Gaps:
-        """The pairs that are near, with the forces of those that push, and such gaps that λ s = μ where they are small."""
+        """The pairs that are near, with the forces of the pushing ones, and gaps such that λ s = μ where gaps are small."""
         pairs = self._near()
         size = self._size[pairs].min(axis=1)
         scale = self._weight[pairs].min(axis=1) * size
@@ -160,7 +161,7 @@ class Resting:
         return _Gaps(pairs, slack, np.where(known > 0.0, force, FIRST_BARRIER * scale / slack), scale)
 
     def _gap(self, pairs: Rows) -> tuple[Floats, Floats]:
-        """Gaps, and unit vectors from the first of each pair to what is nearest of the second."""
+        """Gaps, and unit vectors from the first of each pair to the nearest point of the second."""
         others = self._obstacles
         place = np.concatenate([self._place, others.start])
         span = np.concatenate([np.zeros_like(self._place), others.span])
@@ -170,7 +171,7 @@ class Resting:
         return distance - radius[pairs].sum(axis=1), line / distance[:, None]
 
     def _newton(self, barrier: float) -> tuple[Floats, Floats, Floats, float]:
-        """Newton's step: of places, gaps and forces; and how much of the largest weight is unbalanced before it."""
+        """Newton's step: of places, gaps and forces; and the residual force before it, as a share of the largest weight."""
         gaps = self._gaps
         gap, normal = self._gap(gaps.pairs)
         slack, force = gaps.slack, gaps.force
@@ -191,7 +192,7 @@ class Resting:
         return motion, opening, wanted - force - stiffness * opening, left
 
     def _derivative(self, pairs: Rows, normal: Floats) -> csr_matrix:
-        """N: how gaps follow from the unknown displacements."""
+        """N: the derivative of the gaps by the unknown displacements."""
         unknown = self._unknown[pairs]
         known = unknown >= 0
         rows = np.broadcast_to(np.arange(len(pairs))[:, None, None], unknown.shape)
@@ -201,6 +202,6 @@ class Resting:
 
 
 def _share(value: Floats, change: Floats) -> float:
-    """How much of a change leaves all values positive, at most all of it."""
+    """The largest share of a change, at most 1, that leaves all values positive."""
     shrinking = change < 0.0
     return min(1.0, TO_EDGE * float((-value[shrinking] / change[shrinking]).min(initial=np.inf)))

@@ -4,21 +4,21 @@ import math
 
 from systems.collision.kernels import compiled
 
-FIRM = 1e-11  # of what a contact yields by itself, by which it gives way: what gaps leave open is the least force then
+FIRM = 1e-11  # added to the compliance of each contact, as a share: makes forces unique, the least ones
 ROUND_OFF = 1e-12  # of the largest gap
-PATIENCE = 10  # exchanges of many contacts at once that may fail to leave fewer wrong
+PATIENCE = 10  # exchanges of many contacts at once that need not leave fewer contacts wrong
 MOST_EXCHANGES = 60
-OPEN, PUSHING, FIXED = 0, 1, 2  # sides of a contact; FIXED: what cannot yield is not pushed
+OPEN, PUSHING, FIXED = 0, 1, 2  # sides of a contact; FIXED: without compliance, never pushed
 
 
 @compiled
 def complementary(slope, gap, forces, found, matrix, scale, offset, sides, wrong):
     """Forces F ≥ 0, shape (c,), into `found`, that leave gaps ≥ 0, either being 0 in each contact; False if none are found.
 
-    gap: that with the given forces, and slope: how gaps follow forces, so that they become gap + slope (F − forces).
-    Contacts that are wrong, for they pull or overlap, change sides all at once, or, where that goes round in circles,
-    the last of them (Júdice, Pires, Computers & Operations Research 21, 1994).
-    matrix, shape (c, c + 1), scale, offset, sides and wrong, shape (c,): to work with.
+    gap: gaps with the given forces; slope: derivative of the gaps, which become gap + slope (F − forces).
+    Contacts that are wrong, since they pull or overlap, change sides all at once, or, where that goes round in circles,
+    only the last of them (Júdice, Pires, Computers & Operations Research 21, 1994).
+    matrix, shape (c, c + 1), scale, offset, sides and wrong, shape (c,): work space.
     """
     count = gap.shape[0]
     largest = _prepare(slope, gap, forces, scale, offset, sides)
@@ -40,7 +40,7 @@ def complementary(slope, gap, forces, found, matrix, scale, offset, sides, wrong
 
 @compiled
 def _prepare(slope, gap, forces, scale, offset, sides):
-    """Scale every contact by what it yields, and find the gaps without forces; returns the largest of these."""
+    """Scale every contact by its compliance, and find the gaps without forces; returns the largest gap."""
     count, largest = gap.shape[0], 0.0
     for c in range(count):
         scale[c] = math.sqrt(max(slope[c, c], 0.0))
@@ -101,7 +101,7 @@ def _pivot(k, n, matrix):
 
 @compiled
 def _find_wrong(slope, least, found, scale, offset, sides, wrong):
-    """Note which contacts pull, or overlap by more than `least`; returns how many, and the last of them."""
+    """Mark contacts that pull, or overlap by more than `least`; returns their number, and the last of them."""
     number, last = 0, -1
     for c in range(found.shape[0]):
         wrong[c] = found[c] < 0.0

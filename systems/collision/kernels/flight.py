@@ -1,62 +1,15 @@
-"""Flight of discs from event to event: the earliest meeting happens, then what it changed is foreseen anew.
+"""Flight of discs from event to event: the earliest impact happens, then the impacts of discs on new paths are computed.
 
-Every disc keeps the epoch of its own last change; nothing else is touched. Discs that touch at the instant of
-an event, directly or through others, take part in it together. Where contacts last, events are also the steps
-in which their forces are renewed.
+Every disc keeps the epoch of its own last change; other discs are not touched. Discs that touch at the instant of an
+event, directly or through others, take part in it together. Where contacts persist, events are also the ends of steps,
+when their forces are renewed.
 """
 
 import math
 
 import numpy as np
 
-from systems.collision.columns import (
-    AX,
-    AY,
-    BIAS,
-    BOUNCE,
-    CELL,
-    CHANGES,
-    DISTANCE,
-    END,
-    EPOCH,
-    EVENTS,
-    FORCE,
-    GX,
-    GY,
-    IMPACTS,
-    IMPULSE,
-    LAYERS,
-    LEVEL,
-    LOSS,
-    NEXT,
-    NOISE,
-    NONE,
-    NOW,
-    NX,
-    NY,
-    OPENING,
-    OTHER,
-    OX,
-    OY,
-    QUEUED,
-    RADIUS,
-    RENEW,
-    REPORTED,
-    REST_HEIGHT,
-    ROUND,
-    SPARES,
-    SPEED_NOISE,
-    STEP,
-    STEP_END,
-    STEPPING,
-    UX,
-    UY,
-    VX,
-    VY,
-    WX,
-    WY,
-    Reason,
-)
+from systems.collision.columns import NONE, SPEED_NOISE, Contact, Count, Detail, Disc, Entry, Number, Reason
 from systems.collision.kernels import compiled
 from systems.collision.kernels.grid import (
     enclose,
@@ -69,21 +22,22 @@ from systems.collision.kernels.grid import (
     sort,
 )
 from systems.collision.kernels.heap import drop_first, is_void
-from systems.collision.kernels.horizon import expect, is_joined
+from systems.collision.kernels.horizon import is_joined, schedule_impact
 from systems.collision.kernels.impact import respond
 from systems.collision.kernels.persistent_contact import (
-    find_lasting,
-    forget_lasting,
+    enter_persistent,
+    find_persistent,
+    forget_persistent,
     is_held,
-    note_lasting,
     stop_sinking,
     support,
 )
-from systems.collision.kernels.pile import begin_steps, crowded, note_pushes, step
+from systems.collision.kernels.pile import begin_steps, crowded, step
+from systems.collision.kernels.pile_pairs import enter_pushing_pairs
 from systems.collision.kernels.projection import compliance, opening_rate
 from systems.collision.kernels.time_of_impact import (
-    NEVER,
-    is_answered_for,
+    INFINITY,
+    is_shared_end,
     nearest,
     place_noise,
     relative_motion,
@@ -91,90 +45,87 @@ from systems.collision.kernels.time_of_impact import (
     touch_speed,
 )
 
-DONE, BUSY, REPORT_FULL = int(Reason.DONE), int(Reason.BUSY), int(Reason.REPORT_FULL)
-GO_ON = int(Reason.GO_ON)
-QUEUE_FULL, GROUP_FULL = int(Reason.QUEUE_FULL), int(Reason.GROUP_FULL)
-TINY = 1e-300  # m; distance of centres that coincide
+COINCIDENT = 1e-300  # m; in place of the distance of centres that coincide
 
 
 @compiled
-def fly(until, most_events, discs, grid, ties, queue, group, report, numbers, counts):
-    """Let the events of the present window happen up to a time (s), at most `most_events` of them. Returns a Reason.
+def fly(until, most_events, discs, grid, constraints, queue, group, report, numbers, counts):
+    """Let the events of the present horizon happen up to a time (s), at most `most_events` of them. Returns a Reason.
 
-    After DONE, every disc is on its path at `until`; after any other reason, call again when it is dealt with.
+    After DONE, every disc is on its path at `until`; after any other reason, remove the reason and call again.
     """
-    last = counts[EVENTS] + most_events
-    while counts[RENEW] == 0 and counts[STEPPING] == 0:
-        while counts[QUEUED] > 0 and is_void(queue, 0, discs):
-            drop_first(queue, counts[QUEUED])
-            counts[QUEUED] -= 1
-        stop = min(until, numbers[END])
-        if counts[QUEUED] == 0 or queue.times[0] > stop:
-            numbers[NOW] = max(numbers[NOW], stop)
-            if until <= numbers[END]:
-                return DONE
-            counts[RENEW] = 1
-        elif counts[EVENTS] >= last:
-            return BUSY
+    last = counts[Count.EVENTS] + most_events
+    while counts[Count.RENEW] == 0 and counts[Count.STEPPING] == 0:
+        while counts[Count.QUEUED] > 0 and is_void(queue, 0, discs):
+            drop_first(queue, counts[Count.QUEUED])
+            counts[Count.QUEUED] -= 1
+        stop = min(until, numbers[Number.HORIZON_END])
+        if counts[Count.QUEUED] == 0 or queue.times[0] > stop:
+            numbers[Number.NOW] = max(numbers[Number.NOW], stop)
+            if until <= numbers[Number.HORIZON_END]:
+                return Reason.DONE
+            counts[Count.RENEW] = 1
+        elif counts[Count.EVENTS] >= last:
+            return Reason.BUSY
         else:
-            numbers[NOW] = max(numbers[NOW], queue.times[0])
-            reason = _happen(discs, grid, ties, queue, group, report, numbers, counts)
-            if reason != DONE:
+            numbers[Number.NOW] = max(numbers[Number.NOW], queue.times[0])
+            reason = _next_event(discs, grid, constraints, queue, group, report, numbers, counts)
+            if reason != Reason.DONE:
                 return reason
-    return GO_ON
+    return Reason.GO_ON
 
 
 @compiled
-def _happen(discs, grid, ties, queue, group, report, numbers, counts):
-    """The first event of the queue happens. Returns a Reason."""
-    i, j = np.int64(queue.meetings[0, 0]), np.int64(queue.meetings[0, 1])
-    count, touching = _gather(i, j, discs, grid, ties, group, numbers, counts)
-    full = touching > group.links.shape[0] or 2 * touching > counts[SPARES]
-    if full or counts[REPORTED] + touching > report.pairs.shape[0]:
+def _next_event(discs, grid, constraints, queue, group, report, numbers, counts):
+    """Let the first event of the queue happen. Returns a Reason."""
+    i, j = np.int64(queue.impacts[0, 0]), np.int64(queue.impacts[0, 1])
+    count, touching = _gather(i, j, discs, grid, constraints, group, numbers, counts)
+    full = touching > group.links.shape[0] or 2 * touching > counts[Count.SPARES]
+    if full or counts[Count.REPORTED] + touching > report.pairs.shape[0]:
         _dismiss(count, group)
-        return GROUP_FULL if full else REPORT_FULL
+        return Reason.GROUP_FULL if full else Reason.REPORT_FULL
     if crowded(touching, numbers, counts):
         _dismiss(count, group)
         begin_steps(numbers, counts)
-        return DONE
-    drop_first(queue, counts[QUEUED])
-    counts[QUEUED] -= 1
-    counts[EVENTS] += 1
+        return Reason.DONE
+    drop_first(queue, counts[Count.QUEUED])
+    counts[Count.QUEUED] -= 1
+    counts[Count.EVENTS] += 1
     stop_sinking(count, touching, group)
     respond(count, touching, _restitution(touching, discs, group, numbers), group)
     _report(touching, discs, group, report, numbers, counts)
-    _note_noise(count, touching, discs, group)
+    _set_noise(count, touching, discs, group)
     duration = support(count, touching, discs, group, numbers)
-    _make_contacts_last(count, touching, discs, ties, group, counts)
+    _keep_contacts(count, touching, discs, constraints, group, counts)
     struck = 0 if i == j else 2
     _redirect(count, struck, duration, discs, group, numbers)
     _enclose_anew(count, discs, grid, group, numbers, counts)
-    reason = DONE
-    if not _expect_anew(count, discs, grid, ties, queue, group, numbers, counts):
-        counts[RENEW] = 1
-        reason = QUEUE_FULL
+    reason = Reason.DONE
+    if not _schedule_anew(count, discs, grid, constraints, queue, group, numbers, counts):
+        counts[Count.RENEW] = 1
+        reason = Reason.QUEUE_FULL
     _dismiss(count, group)
     return reason
 
 
 @compiled
-def take_steps(until, most_steps, discs, grid, ties, pile, report, numbers, counts):
+def take_steps(until, most_steps, discs, grid, constraints, pile, report, numbers, counts):
     """Let a pile take its steps, at most `most_steps`, until it is at rest or dissolved. Returns a Reason."""
-    last, reason = counts[EVENTS] + most_steps, GO_ON
-    while counts[STEPPING] and reason == GO_ON:
-        if numbers[STEP_END] > until:
-            numbers[NOW] = max(numbers[NOW], until)
-            reason = DONE
-        elif counts[EVENTS] >= last:
-            reason = BUSY
+    last, reason = counts[Count.EVENTS] + most_steps, Reason.GO_ON
+    while counts[Count.STEPPING] and reason == Reason.GO_ON:
+        if numbers[Number.STEP_END] > until:
+            numbers[Number.NOW] = max(numbers[Number.NOW], until)
+            reason = Reason.DONE
+        elif counts[Count.EVENTS] >= last:
+            reason = Reason.BUSY
         else:
-            numbers[NOW] = numbers[STEP_END]
-            reason = step(discs, grid, ties, pile, report, numbers, counts)
-            if reason == DONE:
-                counts[EVENTS] += 1
-                reason = GO_ON
-    if counts[STEPPING]:
-        note_pushes(discs, ties, pile, counts)
+            numbers[Number.NOW] = numbers[Number.STEP_END]
+            reason = step(discs, grid, constraints, pile, report, numbers, counts)
+            if reason == Reason.DONE:
+                counts[Count.EVENTS] += 1
+                reason = Reason.GO_ON
+    if counts[Count.STEPPING]:
+        enter_pushing_pairs(discs, constraints, pile, counts)
     return reason
 
 
@@ -186,17 +137,18 @@ def _admit(i, count, discs, group, time):
     """Make a disc the next member of the group, with its velocity at the time."""
     group.members[count] = i
     group.place[i] = count
-    group.mobility[count, 0], group.mobility[count, 1] = discs[i, WX], discs[i, WY]
+    group.mobility[count, 0], group.mobility[count, 1] = discs[i, Disc.WX], discs[i, Disc.WY]
     group.motion[count, 0], group.motion[count, 1] = _velocity(i, discs, time)
 
 
 @compiled
 def _velocity(i, discs, time):
-    """Velocity of a disc; at the end of a step in lasting contact that of RATTLE before its projection."""
-    s = time - discs[i, EPOCH]
-    vx, vy, ax, ay = discs[i, VX], discs[i, VY], discs[i, AX], discs[i, AY]
-    if (ax != discs[i, GX] or ay != discs[i, GY]) and (vx != 0.0 or vy != 0.0 or ax != 0.0 or ay != 0.0):
-        return vx + 0.5 * s * (ax + discs[i, GX]), vy + 0.5 * s * (ay + discs[i, GY])
+    """Velocity of a disc; at the end of a step in persistent contact, the velocity of RATTLE before its projection."""
+    s = time - discs[i, Disc.EPOCH]
+    vx, vy, ax, ay = discs[i, Disc.VX], discs[i, Disc.VY], discs[i, Disc.AX], discs[i, Disc.AY]
+    moves = vx != 0.0 or vy != 0.0 or ax != 0.0 or ay != 0.0
+    if moves and (ax != discs[i, Disc.GX] or ay != discs[i, Disc.GY]):
+        return vx + 0.5 * s * (ax + discs[i, Disc.GX]), vy + 0.5 * s * (ay + discs[i, Disc.GY])
     return vx + s * ax, vy + s * ay
 
 
@@ -208,29 +160,30 @@ def _dismiss(count, group):
 
 @compiled
 def _link(i, j, force, touching, discs, group, time):
-    """Note a contact of the group; those for which there is no room are only counted."""
+    """Add a contact to the group; a contact for which there is no room is only counted."""
     if touching < group.links.shape[0]:
         dx, dy, _, _, _, _ = relative_motion(discs, i, j, time)
         dx, dy, rounded = nearest(dx, dy, j, discs)
         distance = math.sqrt(dx * dx + dy * dy)
         group.links[touching, 0], group.links[touching, 1] = group.place[i], group.place[j]
         contact = group.contacts[touching]
-        contact[ROUND] = rounded
+        contact[Contact.ROUND] = rounded
         if distance == 0.0:  # no direction is better than another
-            dx = distance = TINY
-        contact[NX], contact[NY], contact[DISTANCE] = dx / distance, dy / distance, distance
-        contact[BIAS], contact[FORCE] = 0.0, force
-        contact[OPENING] = compliance(touching, touching, group)
+            dx = distance = COINCIDENT
+        contact[Contact.NX], contact[Contact.NY] = dx / distance, dy / distance
+        contact[Contact.DISTANCE] = distance
+        contact[Contact.BIAS], contact[Contact.FORCE] = 0.0, force
+        contact[Contact.COMPLIANCE] = compliance(touching, touching, group)
     return touching + 1
 
 
 @compiled
-def _gather(i, j, discs, grid, ties, group, numbers, counts):
-    """The group of i and j: all that touches them now, directly or through others that can move.
+def _gather(i, j, discs, grid, constraints, group, numbers, counts):
+    """Gather the group of i and j: all discs that touch them now, directly or through discs that can move.
 
-    Returns how many members and contacts it has. The contact of i and j, if they are two, is the first.
+    Returns the numbers of members and contacts. The contact of i and j, if they are two, is the first.
     """
-    now = numbers[NOW]
+    now = numbers[Number.NOW]
     _admit(i, 0, discs, group, now)
     count, touching = 1, 0
     if i != j:
@@ -240,14 +193,14 @@ def _gather(i, j, discs, grid, ties, group, numbers, counts):
     while m < count:
         a = group.members[m]
         if not is_held(a, discs):
-            count, touching = _gather_lasting(m, count, touching, discs, ties, group, now)
+            count, touching = _gather_persistent(m, count, touching, discs, constraints, group, now)
             left, bottom, right, top = place_box(a, discs, now)
-            near = neighbours(a, left, bottom, right, top, grid, counts[LAYERS], numbers[CELL])
+            near = neighbours(a, left, bottom, right, top, grid, counts[Count.LAYERS], numbers[Number.CELL])
             sort(grid.found, near)
             for k in range(near):
                 b = grid.found[k]
                 met = i != j and m < 2 and group.place[b] == 1 - m
-                if not met and _is_new(m, b, discs, group) and _touch(a, b, discs, ties, now):
+                if not met and _is_new(m, b, discs, group) and _touch(a, b, discs, constraints, now):
                     if group.place[b] == NONE:
                         _admit(b, count, discs, group, now)
                         count += 1
@@ -258,57 +211,58 @@ def _gather(i, j, discs, grid, ties, group, numbers, counts):
 
 @compiled
 def _is_new(m, b, discs, group):
-    """False if the contacts of disc b, and so that with member m, are noted already."""
+    """False if the contacts of disc b, and so its contact with member m, are in the group already."""
     return group.place[b] == NONE or group.place[b] > m or is_held(b, discs)
 
 
 @compiled
-def _touch(a, b, discs, ties, now):
-    """True if two discs touch that may collide and have no lasting contact."""
+def _touch(a, b, discs, constraints, now):
+    """True if two discs touch, may collide and have no persistent contact."""
     dx, dy, _, _, _, _ = relative_motion(discs, a, b, now)
-    if is_answered_for(dx, dy, b, discs):
+    if is_shared_end(dx, dy, b, discs):
         return False
     dx, dy, _ = nearest(dx, dy, b, discs)
-    reach = discs[a, RADIUS] + discs[b, RADIUS] + place_noise(discs, a, b, now)
+    reach = discs[a, Disc.RADIUS] + discs[b, Disc.RADIUS] + place_noise(discs, a, b, now)
     if dx * dx + dy * dy > reach * reach:
         return False
-    return not is_joined(a, b, ties) and find_lasting(a, b, ties) == NONE
+    return not is_joined(a, b, constraints) and find_persistent(a, b, constraints) == NONE
 
 
 @compiled
-def _gather_lasting(m, count, touching, discs, ties, group, now):
-    """Add the lasting contacts of member m."""
+def _gather_persistent(m, count, touching, discs, constraints, group, now):
+    """Add the persistent contacts of member m."""
     a = group.members[m]
-    entry = ties.first_lasting[a]
+    entry = constraints.first_persistent[a]
     while entry != NONE:
-        b = ties.lasting[entry, OTHER]
+        b = constraints.persistent[entry, Entry.OTHER]
         dx, dy, _, _, _, _ = relative_motion(discs, a, b, now)
-        if _is_new(m, b, discs, group) and not is_answered_for(dx, dy, b, discs):
+        if _is_new(m, b, discs, group) and not is_shared_end(dx, dy, b, discs):
             if group.place[b] == NONE:
                 _admit(b, count, discs, group, now)
                 count += 1
-            touching = _link(a, b, ties.forces[entry], touching, discs, group, now)
-        entry = ties.lasting[entry, NEXT]
+            touching = _link(a, b, constraints.forces[entry], touching, discs, group, now)
+        entry = constraints.persistent[entry, Entry.NEXT]
     return count, touching
 
 
-# --- what it does -------------------------------------------------------------------------------------------
+# --- the event -------------------------------------------------------------------------------------------
 
 
 @compiled
 def _restitution(touching, discs, group, numbers):
-    """The least restitution of what approaches faster than rest; 0 if nothing in the group does."""
-    least = NEVER
+    """The least restitution of the contacts that approach faster than the speed of rest; 0 if there are none."""
+    least = INFINITY
     for c in range(touching):
         i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
-        if opening_rate(c, group.motion, group) < -rest_speed(i, j, discs, numbers[REST_HEIGHT], numbers[NOW]):
-            least = min(least, discs[j, BOUNCE])
-    return least if least < NEVER else 0.0
+        slow = rest_speed(i, j, discs, numbers[Number.REST_HEIGHT], numbers[Number.NOW])
+        if opening_rate(c, group.motion, group) < -slow:
+            least = min(least, discs[j, Disc.BOUNCE])
+    return least if least < INFINITY else 0.0
 
 
 @compiled
 def _report(touching, discs, group, report, numbers, counts):
-    """Report the contacts that had an impulse, other than to bring to rest what moves by round-off only.
+    """Report the contacts with an impulse larger than one that stops a motion of round-off only.
 
     The energy lost is −Σ p (s + s')/2, with s, s' the speeds of separation before and after; in a joint
     impact, where contacts pass energy on, each has a share of the sum in proportion to its impulse.
@@ -316,123 +270,123 @@ def _report(touching, discs, group, report, numbers, counts):
     loss, impulses = 0.0, 0.0
     for c in range(touching):
         before, after = opening_rate(c, group.initial, group), opening_rate(c, group.motion, group)
-        loss -= 0.5 * group.contacts[c, IMPULSE] * (before + after)
-        impulses += group.contacts[c, IMPULSE]
-    numbers[LOSS] += loss
+        loss -= 0.5 * group.contacts[c, Contact.TOTAL_IMPULSE] * (before + after)
+        impulses += group.contacts[c, Contact.TOTAL_IMPULSE]
+    numbers[Number.LOSS] += loss
     for c in range(touching):
-        impulse = group.contacts[c, IMPULSE]
+        impulse = group.contacts[c, Contact.TOTAL_IMPULSE]
         i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
-        slow = max(group.noise[0], touch_speed(discs, i, j, numbers[NOW]))
-        if impulse * group.contacts[c, OPENING] > slow:
-            k = counts[REPORTED]
+        slow = max(group.noise[0], touch_speed(discs, i, j, numbers[Number.NOW]))
+        if impulse * group.contacts[c, Contact.COMPLIANCE] > slow:
+            k = counts[Count.REPORTED]
             report.pairs[k, 0], report.pairs[k, 1] = min(i, j), max(i, j)
-            report.details[k, 0] = numbers[NOW]
-            report.details[k, 1] = impulse
-            report.details[k, 2] = loss * (impulse / impulses)
-            report.details[k, 3], report.details[k, 4] = _place(i, group.contacts[c], discs, numbers[NOW])
-            counts[REPORTED] += 1
-            counts[IMPACTS] += 1
+            report.details[k, Detail.TIME] = numbers[Number.NOW]
+            report.details[k, Detail.IMPULSE] = impulse
+            report.details[k, Detail.LOSS] = loss * (impulse / impulses)
+            x, y = _place(i, group.contacts[c], discs, numbers[Number.NOW])
+            report.details[k, Detail.X], report.details[k, Detail.Y] = x, y
+            counts[Count.REPORTED] += 1
+            counts[Count.IMPACTS] += 1
 
 
 @compiled
 def _place(i, contact, discs, time):
     """The point at which a disc touches another in the direction of its contact."""
-    s = time - discs[i, EPOCH]
-    x = discs[i, OX] + discs[i, UX] + s * (discs[i, VX] + 0.5 * s * discs[i, AX])
-    y = discs[i, OY] + discs[i, UY] + s * (discs[i, VY] + 0.5 * s * discs[i, AY])
-    return x + discs[i, RADIUS] * contact[NX], y + discs[i, RADIUS] * contact[NY]
+    s = time - discs[i, Disc.EPOCH]
+    x = discs[i, Disc.OX] + discs[i, Disc.UX] + s * (discs[i, Disc.VX] + 0.5 * s * discs[i, Disc.AX])
+    y = discs[i, Disc.OY] + discs[i, Disc.UY] + s * (discs[i, Disc.VY] + 0.5 * s * discs[i, Disc.AY])
+    return x + discs[i, Disc.RADIUS] * contact[Contact.NX], y + discs[i, Disc.RADIUS] * contact[Contact.NY]
 
 
 @compiled
-def _make_contacts_last(count, touching, discs, ties, group, counts):
-    """Enter the contacts with a force into the table, instead of all that the members had."""
+def _keep_contacts(count, touching, discs, constraints, group, counts):
+    """Enter the contacts with a force into the table of persistent contacts, in place of all entries of the members."""
     for m in range(count):
-        forget_lasting(group.members[m], ties, counts)
+        forget_persistent(group.members[m], constraints, counts)
     for c in range(touching):
-        force = group.contacts[c, FORCE]
+        force = group.contacts[c, Contact.FORCE]
         if force > 0.0:
             i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
-            note_lasting(i, j, force, discs, ties, counts)
-            note_lasting(j, i, force, discs, ties, counts)
+            enter_persistent(i, j, force, discs, constraints, counts)
+            enter_persistent(j, i, force, discs, constraints, counts)
             for disc in (i, j):
-                pull = math.hypot(discs[disc, GX], discs[disc, GY])
-                discs[disc, NOISE] += SPEED_NOISE * math.sqrt(pull * discs[disc, RADIUS])
+                pull = math.hypot(discs[disc, Disc.GX], discs[disc, Disc.GY])
+                discs[disc, Disc.NOISE] += SPEED_NOISE * math.sqrt(pull * discs[disc, Disc.RADIUS])
 
 
 @compiled
-def _note_noise(count, touching, discs, group):
-    """Round-off in the members' velocities: of what they are and of the impulses that made them so.
+def _set_noise(count, touching, discs, group):
+    """Set the round-off in the members' velocities: of the velocities and of the impulses that caused them.
 
-    Where impulses at several contacts were sought together, it is what was not worth seeking further.
+    Of impulses of several contacts, it is the tolerance of their projection.
     """
     for m in range(count):
         speed = abs(group.motion[m, 0]) + abs(group.motion[m, 1])
-        discs[group.members[m], NOISE] = group.noise[0] if touching > 1 else SPEED_NOISE * speed
+        discs[group.members[m], Disc.NOISE] = group.noise[0] if touching > 1 else SPEED_NOISE * speed
     if touching == 1:
         for m in range(count):
-            change = group.contacts[0, IMPULSE] * max(group.mobility[m, 0], group.mobility[m, 1])
-            discs[group.members[m], NOISE] += SPEED_NOISE * change
+            change = group.contacts[0, Contact.TOTAL_IMPULSE] * max(group.mobility[m, 0], group.mobility[m, 1])
+            discs[group.members[m], Disc.NOISE] += SPEED_NOISE * change
 
 
 @compiled
 def _redirect(count, struck, duration, discs, group, numbers):
-    """Start new paths now: of the first `struck` members and of those whose velocity or acceleration changed.
+    """Start new paths now: of the first `struck` members and of all whose velocity or acceleration changed.
 
-    Those that contacts push as they move get the group's next step: it may fall apart before.
+    The end of the group's step is due for members that contacts push as they move.
     """
-    now = numbers[NOW]
+    now = numbers[Number.NOW]
     for m in range(count):
         i = group.members[m]
-        s = now - discs[i, EPOCH]
+        s = now - discs[i, Disc.EPOCH]
         vx, vy, ax, ay = group.other[m, 0], group.other[m, 1], group.motion[m, 0], group.motion[m, 1]
-        old = vx == discs[i, VX] + s * discs[i, AX] and vy == discs[i, VY] + s * discs[i, AY]
-        old = old and ax == discs[i, AX] and ay == discs[i, AY]
-        pushed = ax != discs[i, GX] or ay != discs[i, GY]
+        old = vx == discs[i, Disc.VX] + s * discs[i, Disc.AX] and ax == discs[i, Disc.AX]
+        old = old and vy == discs[i, Disc.VY] + s * discs[i, Disc.AY] and ay == discs[i, Disc.AY]
+        pushed = ax != discs[i, Disc.GX] or ay != discs[i, Disc.GY]
         pushed = pushed and (vx != 0.0 or vy != 0.0 or ax != 0.0 or ay != 0.0)
-        discs[i, STEP] = now + duration if pushed else NEVER
+        discs[i, Disc.STEP] = now + duration if pushed else INFINITY
         if is_held(i, discs) or (old and m >= struck and not pushed):
             continue
-        discs[i, UX] += s * (discs[i, VX] + 0.5 * s * discs[i, AX])
-        discs[i, UY] += s * (discs[i, VY] + 0.5 * s * discs[i, AY])
-        discs[i, VX], discs[i, VY], discs[i, AX], discs[i, AY] = vx, vy, ax, ay
-        discs[i, EPOCH] = now
-        discs[i, CHANGES] += 1.0
+        discs[i, Disc.UX] += s * (discs[i, Disc.VX] + 0.5 * s * discs[i, Disc.AX])
+        discs[i, Disc.UY] += s * (discs[i, Disc.VY] + 0.5 * s * discs[i, Disc.AY])
+        discs[i, Disc.VX], discs[i, Disc.VY], discs[i, Disc.AX], discs[i, Disc.AY] = vx, vy, ax, ay
+        discs[i, Disc.EPOCH] = now
+        discs[i, Disc.CHANGES] += 1.0
 
 
 @compiled
 def _enclose_anew(count, discs, grid, group, numbers, counts):
-    """Give the discs with new paths new boxes; the window is opened anew if one is too large for the grid."""
-    layers, cell = counts[LAYERS], numbers[CELL]
+    """Set the boxes of the discs with new paths; a new horizon is opened if a box is too large for the grid."""
+    layers, cell = counts[Count.LAYERS], numbers[Number.CELL]
     for m in range(count):
         i = group.members[m]
-        if discs[i, EPOCH] == numbers[NOW] and not is_held(i, discs):
+        if discs[i, Disc.EPOCH] == numbers[Number.NOW] and not is_held(i, discs):
             leave(i, grid, layers, cell)
-            enclose(i, discs, grid, numbers[NOW], numbers[END])
+            enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.HORIZON_END])
             level = level_of(i, grid, cell)
             grid.layer[i] = layer_of(level, grid, layers)
             if grid.layer[i] == layers:
-                counts[LEVEL] = max(counts[LEVEL], level)
-                counts[RENEW] = 1
+                counts[Count.LEVEL] = max(counts[Count.LEVEL], level)
+                counts[Count.RENEW] = 1
             enter(i, grid, layers, cell)
 
 
 @compiled
-def _expect_anew(count, discs, grid, ties, queue, group, numbers, counts):
-    """Foresee the meetings of the discs with new paths. False if the queue is full."""
-    if counts[RENEW]:
+def _schedule_anew(count, discs, grid, constraints, queue, group, numbers, counts):
+    """Schedule the impacts of the discs with new paths. False if the queue is full."""
+    if counts[Count.RENEW]:
         return True
     for m in range(count):
         i = group.members[m]
-        if discs[i, EPOCH] != numbers[NOW] or is_held(i, discs):
+        if discs[i, Disc.EPOCH] != numbers[Number.NOW] or is_held(i, discs):
             continue
         left, bottom, right, top = grid.boxes[i]
-        near = neighbours(i, left, bottom, right, top, grid, counts[LAYERS], numbers[CELL])
-        grid.found[near] = i  # and the step of its lasting contacts
+        near = neighbours(i, left, bottom, right, top, grid, counts[Count.LAYERS], numbers[Number.CELL])
+        grid.found[near] = i  # and the end of the step of its persistent contacts
         for k in range(near + 1):
             j = grid.found[k]
-            again = (
-                group.place[j] != NONE and j < i and discs[j, EPOCH] == numbers[NOW] and not is_held(j, discs)
-            )
-            if not again and not expect(i, j, discs, ties, queue, numbers, counts):
+            again = group.place[j] != NONE and j < i and discs[j, Disc.EPOCH] == numbers[Number.NOW]
+            again = again and not is_held(j, discs)
+            if not again and not schedule_impact(i, j, discs, constraints, queue, numbers, counts):
                 return False
     return True

@@ -1,37 +1,23 @@
-"""A hierarchical hash grid of boxes: which discs can meet before the present window ends.
+"""A hierarchical hash grid of boxes: which discs can collide before the present horizon ends.
 
-Every disc has a box around its path until the window's end, and belongs to the finest layer whose cells are
+Every disc has a box around its path until the horizon's end, and belongs to the finest layer whose cells are
 larger than the box. It is entered as native into the one to four cells of that layer that its box overlaps,
 and as guest into those of all coarser layers. Two boxes that overlap then share a cell of the coarser one's
 layer, whatever their sizes: a very large or very fast disc costs no more than a look at all others.
 
 The entries 4 (kind × discs + disc) to + 3 are a disc's cells, with kind = 2 × layer, + 1 for guests: left bottom,
-left top, right bottom, right top. Those of a bucket are chained; which cell one is of follows from the disc's box.
+left top, right bottom, right top. The entries of a bucket are chained; the cell of an entry follows from the disc's box.
 """
 
 import math
 
-from systems.collision.columns import (
-    AX,
-    AY,
-    EPOCH,
-    NONE,
-    OX,
-    OY,
-    RADIUS,
-    TX,
-    TY,
-    UX,
-    UY,
-    VX,
-    VY,
-)
+from systems.collision.columns import NONE, Disc
 from systems.collision.kernels import compiled
 from systems.collision.kernels.time_of_impact import extent
 
 FARTHEST_CELL = 2.0**40  # cells from the origin; farther out cells grow, so that they can be told apart
 COARSEST = 63
-MARGIN = 1e-13  # of a disc's coordinates, added to its box: above what counts as touching
+BOX_MARGIN = 1e-13  # of a disc's coordinates, added to its box: more than the noise of a gap
 
 
 @compiled
@@ -48,27 +34,27 @@ def _range(u, v, a, start, end):
 
 @compiled
 def enclose(i, discs, grid, now, end):
-    """Set the box of a disc to what its path covers from now to end."""
-    start, stop = now - discs[i, EPOCH], end - discs[i, EPOCH]
-    low_x, high_x = _range(discs[i, UX], discs[i, VX], discs[i, AX], start, stop)
-    low_y, high_y = _range(discs[i, UY], discs[i, VY], discs[i, AY], start, stop)
-    low_x, high_x = low_x + min(discs[i, TX], 0.0), high_x + max(discs[i, TX], 0.0)
-    low_y, high_y = low_y + min(discs[i, TY], 0.0), high_y + max(discs[i, TY], 0.0)
-    margin = MARGIN * max(extent(discs, i, now), extent(discs, i, end))
-    around = discs[i, RADIUS] + margin
-    grid.boxes[i, 0] = discs[i, OX] + low_x - around
-    grid.boxes[i, 1] = discs[i, OY] + low_y - around
-    grid.boxes[i, 2] = discs[i, OX] + high_x + around
-    grid.boxes[i, 3] = discs[i, OY] + high_y + around
+    """Set the box of a disc around its path from now to end."""
+    start, stop = now - discs[i, Disc.EPOCH], end - discs[i, Disc.EPOCH]
+    low_x, high_x = _range(discs[i, Disc.UX], discs[i, Disc.VX], discs[i, Disc.AX], start, stop)
+    low_y, high_y = _range(discs[i, Disc.UY], discs[i, Disc.VY], discs[i, Disc.AY], start, stop)
+    low_x, high_x = low_x + min(discs[i, Disc.TX], 0.0), high_x + max(discs[i, Disc.TX], 0.0)
+    low_y, high_y = low_y + min(discs[i, Disc.TY], 0.0), high_y + max(discs[i, Disc.TY], 0.0)
+    margin = BOX_MARGIN * max(extent(discs, i, now), extent(discs, i, end))
+    around = discs[i, Disc.RADIUS] + margin
+    grid.boxes[i, 0] = discs[i, Disc.OX] + low_x - around
+    grid.boxes[i, 1] = discs[i, Disc.OY] + low_y - around
+    grid.boxes[i, 2] = discs[i, Disc.OX] + high_x + around
+    grid.boxes[i, 3] = discs[i, Disc.OY] + high_y + around
 
 
 @compiled
 def place_box(i, discs, now):
-    """Box around what a disc covers now."""
-    s = now - discs[i, EPOCH]
-    x = discs[i, OX] + (discs[i, UX] + s * (discs[i, VX] + 0.5 * s * discs[i, AX]))
-    y = discs[i, OY] + (discs[i, UY] + s * (discs[i, VY] + 0.5 * s * discs[i, AY]))
-    around = discs[i, RADIUS] + MARGIN * extent(discs, i, now)
+    """Box around a disc at its present place."""
+    s = now - discs[i, Disc.EPOCH]
+    x = discs[i, Disc.OX] + (discs[i, Disc.UX] + s * (discs[i, Disc.VX] + 0.5 * s * discs[i, Disc.AX]))
+    y = discs[i, Disc.OY] + (discs[i, Disc.UY] + s * (discs[i, Disc.VY] + 0.5 * s * discs[i, Disc.AY]))
+    around = discs[i, Disc.RADIUS] + BOX_MARGIN * extent(discs, i, now)
     return x - around, y - around, x + around, y + around
 
 
@@ -102,7 +88,7 @@ def layer_of(level, grid, layers):
 
 @compiled
 def _bucket(cx, cy, kind, grid):
-    """Where the chain of a cell begins; cells side by side lie together in memory."""
+    """The bucket of a cell; neighbouring cells lie together in memory."""
     return (cx + cy * 0x9E3779B97F4A7C1 + kind * 0x165667B19E3779F) & (grid.heads.shape[0] - 1)
 
 
@@ -201,7 +187,7 @@ def _look_into(cx, cy, kind, inverse, i, left, bottom, right, top, count, grid):
 
 @compiled
 def sort(found, count):
-    """Bring a few numbers into ascending order: a grid made anew may find them in another one."""
+    """Sort a few numbers: the order in which a grid finds discs depends on when it was made."""
     for k in range(1, count):
         value = found[k]
         while k > 0 and found[k - 1] > value:

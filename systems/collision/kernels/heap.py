@@ -1,48 +1,48 @@
-"""A binary heap of meetings, earliest first; equal times in the order of the discs' numbers."""
+"""A binary heap of impacts, earliest first; equal times in the order of the discs' numbers."""
 
 import numpy as np
 
-from systems.collision.columns import CHANGES, MOST_CHANGES
+from systems.collision.columns import MOST_CHANGES, Disc
 from systems.collision.kernels import compiled
 
 
 @compiled
 def _before(time, i, j, k, queue):
-    """True if a meeting comes before the one at k."""
+    """True if an impact comes before the one at k."""
     other = queue.times[k]
     if time != other:
         return time < other
-    if i != queue.meetings[k, 0]:
-        return i < queue.meetings[k, 0]
-    return j < queue.meetings[k, 1]
+    if i != queue.impacts[k, 0]:
+        return i < queue.impacts[k, 0]
+    return j < queue.impacts[k, 1]
 
 
 @compiled
 def _place(queue, k, time, i, j, changes_i, changes_j):
     queue.times[k] = time
-    queue.meetings[k, 0] = i
-    queue.meetings[k, 1] = j
-    queue.meetings[k, 2] = changes_i
-    queue.meetings[k, 3] = changes_j
+    queue.impacts[k, 0] = i
+    queue.impacts[k, 1] = j
+    queue.impacts[k, 2] = changes_i
+    queue.impacts[k, 3] = changes_j
 
 
 @compiled
-def _meeting(queue, k):
-    """What is at k, in numbers that need no code of their own for being short in the queue."""
-    i, j = np.int64(queue.meetings[k, 0]), np.int64(queue.meetings[k, 1])
-    return queue.times[k], i, j, np.int64(queue.meetings[k, 2]), np.int64(queue.meetings[k, 3])
+def _impact_at(queue, k):
+    """The impact at k, as int64: 32-bit numbers would be compiled separately wherever they are used."""
+    i, j = np.int64(queue.impacts[k, 0]), np.int64(queue.impacts[k, 1])
+    return queue.times[k], i, j, np.int64(queue.impacts[k, 2]), np.int64(queue.impacts[k, 3])
 
 
 @compiled
 def _move(queue, source, target):
     queue.times[target] = queue.times[source]
     for c in range(4):
-        queue.meetings[target, c] = queue.meetings[source, c]
+        queue.impacts[target, c] = queue.impacts[source, c]
 
 
 @compiled
 def push(queue, size, time, i, j, changes_i, changes_j):
-    """Add a meeting to a heap of `size` that has room for it."""
+    """Add an impact to a heap of `size` that has room for it."""
     k = size
     while k > 0:
         parent = (k - 1) // 2
@@ -55,13 +55,13 @@ def push(queue, size, time, i, j, changes_i, changes_j):
 
 @compiled
 def _sink(queue, size, k):
-    """Let the meeting at k sink to where it belongs."""
-    time, i, j, changes_i, changes_j = _meeting(queue, k)
+    """Let the impact at k sink to its place."""
+    time, i, j, changes_i, changes_j = _impact_at(queue, k)
     while 2 * k + 1 < size:
         child = 2 * k + 1
         right = child + 1
         if right < size:
-            other, a, b, _, _ = _meeting(queue, right)
+            other, a, b, _, _ = _impact_at(queue, right)
             if _before(other, a, b, child, queue):
                 child = right
         if _before(time, i, j, child, queue):
@@ -73,7 +73,7 @@ def _sink(queue, size, k):
 
 @compiled
 def drop_first(queue, size):
-    """Remove the earliest meeting; the heap then has size − 1."""
+    """Remove the earliest impact; the heap then has size − 1."""
     if size > 1:
         _move(queue, size - 1, 0)
         _sink(queue, size - 1, 0)
@@ -81,20 +81,20 @@ def drop_first(queue, size):
 
 @compiled
 def changes(i, discs):
-    """How often the path of a disc has changed, as a meeting notes it."""
-    return int(discs[i, CHANGES]) & MOST_CHANGES
+    """Number of changes of the path of a disc, as the queue keeps it."""
+    return int(discs[i, Disc.CHANGES]) & MOST_CHANGES
 
 
 @compiled
 def is_void(queue, k, discs):
-    """True if a disc of the meeting has changed its path since."""
-    _, i, j, changes_i, changes_j = _meeting(queue, k)
+    """True if a disc of the impact at k has changed its path since."""
+    _, i, j, changes_i, changes_j = _impact_at(queue, k)
     return changes_i != changes(i, discs) or changes_j != changes(j, discs)
 
 
 @compiled
 def purge(queue, size, discs):
-    """Remove the void meetings; returns how many are left."""
+    """Remove the void impacts; returns the number of impacts that are left."""
     kept = 0
     for k in range(size):
         if not is_void(queue, k, discs):

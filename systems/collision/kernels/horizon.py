@@ -1,52 +1,17 @@
-"""Windows of time: for how long meetings are foreseen, and between which discs.
+"""The horizon: up to which time impacts are computed in advance, and of which pairs of discs.
 
-When a window opens, every disc gets a box around its path until the window's end, and the meetings of discs
-whose boxes overlap are foreseen and queued. What is foreseen for two discs follows from their paths alone, so
-that windows, boxes, grid and queue can be thrown away and made anew at any time without changing a bit of what
-comes out.
+When a horizon opens, every disc gets a box around its path until the horizon's end, and the impacts of discs whose
+boxes overlap are computed and queued. The impact of two discs follows from their paths alone, so that horizon, boxes,
+grid and queue can be discarded and made anew at any time without changing a bit of the results.
 """
 
-from systems.collision.columns import (
-    AX,
-    AY,
-    CELL,
-    CROWDING,
-    END,
-    EPOCH,
-    LAYERS,
-    LEVEL,
-    NONE,
-    NOW,
-    OX,
-    OY,
-    QUEUED,
-    RADIUS,
-    RENEW,
-    SHARED,
-    STEP,
-    TX,
-    TY,
-    UX,
-    UY,
-    VX,
-    VY,
-    WINDOW,
-    Reason,
-)
+from systems.collision.columns import NONE, Count, Disc, Number, Reason
 from systems.collision.kernels import compiled
-from systems.collision.kernels.grid import (
-    COARSEST,
-    box_size,
-    enclose,
-    enter,
-    layer_of,
-    level_of,
-    neighbours,
-)
+from systems.collision.kernels.grid import COARSEST, box_size, enclose, enter, layer_of, level_of, neighbours
 from systems.collision.kernels.heap import changes, purge, push
-from systems.collision.kernels.persistent_contact import find_lasting
+from systems.collision.kernels.persistent_contact import find_persistent
 from systems.collision.kernels.time_of_impact import (
-    NEVER,
+    INFINITY,
     first_approach,
     first_touch,
     is_straight,
@@ -55,180 +20,178 @@ from systems.collision.kernels.time_of_impact import (
     speed_noise,
 )
 
-DONE, QUEUE_FULL, GRID_FULL = int(Reason.DONE), int(Reason.QUEUE_FULL), int(Reason.GRID_FULL)
-
-LONGEST_WINDOW, SHORTEST_WINDOW = 2.0**20, 2.0**-200  # s
+LONGEST_HORIZON, SHORTEST_HORIZON = 2.0**20, 2.0**-200  # s
 BOX_COST = 2.5  # of renewing a disc's box, relative to that of looking at one neighbour (measured)
-CROWD = 64  # neighbours per disc; a window with more is opened anew with a shorter one
-SAMPLE = 128  # discs that decide the size of the grid's cells
+MOST_NEIGHBOURS = 64  # per disc; with more, a shorter horizon is opened
+SAMPLED_DISCS = 128  # discs that decide the size of the grid's cells
 
 
 @compiled
-def is_joined(i, j, ties):
+def is_joined(i, j, constraints):
     """True if two discs never collide."""
-    k = ties.first[i]
-    while k < ties.first[i + 1] and ties.partners[k] != j:
+    k = constraints.first[i]
+    while k < constraints.first[i + 1] and constraints.partners[k] != j:
         k += 1
-    return k < ties.first[i + 1]
+    return k < constraints.first[i + 1]
 
 
 @compiled
-def foresee(i, j, discs, ties, end):
-    """Time at which two discs next touch while they approach, up to `end`; NEVER if they do not.
+def next_impact(i, j, discs, constraints, end):
+    """Time at which two discs next touch while they approach, up to `end`; INFINITY if they do not.
 
-    For i = j: when the forces in the disc's lasting contacts are due again.
+    For i = j: when the forces in the disc's persistent contacts are due again.
     """
     if i == j:
-        return discs[i, STEP]
+        return discs[i, Disc.STEP]
     if i > j:
         i, j = j, i
-    start = max(discs[i, EPOCH], discs[j, EPOCH])
-    dx, dy, vx, vy, ax, ay = relative_motion(discs, i, j, start)
+    start = max(discs[i, Disc.EPOCH], discs[j, Disc.EPOCH])
+    path = relative_motion(discs, i, j, start)
+    dx, dy, vx, vy, ax, ay = path
     straight = is_straight(j, discs)
     if ax == 0.0 and ay == 0.0 and dx * vx + dy * vy >= 0.0 and not straight:
-        return NEVER
-    reach = discs[i, RADIUS] + discs[j, RADIUS]
+        return INFINITY
+    reach = discs[i, Disc.RADIUS] + discs[j, Disc.RADIUS]
     noise, growth = speed_noise(discs, i, j, start), pull_noise(discs, i, j)
     if straight:
-        tx, ty = discs[j, TX], discs[j, TY]
-        time = start + first_touch(
-            dx, dy, vx, vy, ax, ay, tx, ty, discs[j, SHARED], reach, noise, growth, end - start, False
-        )
+        tx, ty, shared = discs[j, Disc.TX], discs[j, Disc.TY], discs[j, Disc.SHARED]
+        time = start + first_touch(path, tx, ty, shared, reach, noise, growth, end - start, False)
     else:
-        time = start + first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, end - start, False)
-    if time > end or is_joined(i, j, ties) or find_lasting(i, j, ties) != NONE:
-        return NEVER
+        time = start + first_approach(path, reach, noise, growth, end - start, False)
+    if time > end or is_joined(i, j, constraints) or find_persistent(i, j, constraints) != NONE:
+        return INFINITY
     return time
 
 
 @compiled
-def expect(i, j, discs, ties, queue, numbers, counts):
-    """Foresee a meeting and queue it if it falls into the window. False if the queue is full."""
-    time = foresee(i, j, discs, ties, numbers[END])
-    if time > numbers[END]:
+def schedule_impact(i, j, discs, constraints, queue, numbers, counts):
+    """Compute the next impact of two discs and queue it if it is within the horizon. False if the queue is full."""
+    time = next_impact(i, j, discs, constraints, numbers[Number.HORIZON_END])
+    if time > numbers[Number.HORIZON_END]:
         return True
     capacity = queue.times.shape[0]
-    if counts[QUEUED] == capacity:
-        counts[QUEUED] = purge(queue, capacity, discs)
-        if counts[QUEUED] > capacity - capacity // 8:
+    if counts[Count.QUEUED] == capacity:
+        counts[Count.QUEUED] = purge(queue, capacity, discs)
+        if counts[Count.QUEUED] > capacity - capacity // 8:
             return False
     i, j = min(i, j), max(i, j)
-    push(queue, counts[QUEUED], time, i, j, changes(i, discs), changes(j, discs))
-    counts[QUEUED] += 1
+    push(queue, counts[Count.QUEUED], time, i, j, changes(i, discs), changes(j, discs))
+    counts[Count.QUEUED] += 1
     return True
 
 
 @compiled
-def open_window(discs, grid, ties, queue, numbers, counts):
-    """Choose a window that begins now, box all discs and queue all meetings in it. Returns a Reason."""
-    counts[RENEW] = 1
+def open_horizon(discs, grid, constraints, queue, numbers, counts):
+    """Choose a horizon from now on, box all discs and queue all impacts within it. Returns a Reason."""
+    counts[Count.RENEW] = 1
     _choose_length(discs, numbers)
     while True:
-        area, _ = _survey(discs, numbers, numbers[WINDOW])
+        area, _ = _survey(discs, numbers, numbers[Number.HORIZON])
         resting, _ = _survey(discs, numbers, 0.0)
-        crowd = NEVER if area <= 2.0 * resting else CROWD * discs.shape[0]
-        reason, pairs = _fill(crowd, discs, grid, ties, queue, numbers, counts)
-        if reason != DONE:
+        most = INFINITY if area <= 2.0 * resting else MOST_NEIGHBOURS * discs.shape[0]
+        reason, pairs = _fill(most, discs, grid, constraints, queue, numbers, counts)
+        if reason != Reason.DONE:
             return reason
-        if pairs <= crowd:
+        if pairs <= most:
             break
-        numbers[WINDOW] = max(0.25 * numbers[WINDOW], SHORTEST_WINDOW)
-    numbers[CROWDING] = max(pairs, 0.05 * discs.shape[0]) / area
-    counts[RENEW] = 0
-    return DONE
+        numbers[Number.HORIZON] = max(0.25 * numbers[Number.HORIZON], SHORTEST_HORIZON)
+    numbers[Number.CROWDING] = max(pairs, 0.05 * discs.shape[0]) / area
+    counts[Count.RENEW] = 0
+    return Reason.DONE
 
 
 @compiled
-def _fill(crowd, discs, grid, ties, queue, numbers, counts):
-    """Boxes, grid and queue of a window. Returns a Reason and how many boxes overlap; gives up above `crowd`."""
-    numbers[END] = numbers[NOW] + numbers[WINDOW]
+def _fill(most, discs, grid, constraints, queue, numbers, counts):
+    """Fill boxes, grid and queue. Returns a Reason and the number of boxes that overlap; stops above `most`."""
+    numbers[Number.HORIZON_END] = numbers[Number.NOW] + numbers[Number.HORIZON]
     for i in range(discs.shape[0]):
-        enclose(i, discs, grid, numbers[NOW], numbers[END])
+        enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.HORIZON_END])
     set_layers(grid, numbers, counts)
-    layers, cell = counts[LAYERS], numbers[CELL]
+    layers, cell = counts[Count.LAYERS], numbers[Number.CELL]
     if 8 * discs.shape[0] * layers > grid.after.shape[0]:
-        return GRID_FULL, 0
+        return Reason.GRID_FULL, 0
     grid.heads[:] = NONE
-    counts[QUEUED] = 0
+    counts[Count.QUEUED] = 0
     pairs = 0
     for i in range(discs.shape[0]):
         left, bottom, right, top = grid.boxes[i]
         near = neighbours(i, left, bottom, right, top, grid, layers, cell)
-        grid.found[near] = i  # and the step of its lasting contacts
+        grid.found[near] = i  # and the step of its persistent contacts
         for k in range(near + 1):
-            if not expect(i, grid.found[k], discs, ties, queue, numbers, counts):
-                return QUEUE_FULL, 0
+            if not schedule_impact(i, grid.found[k], discs, constraints, queue, numbers, counts):
+                return Reason.QUEUE_FULL, 0
         enter(i, grid, layers, cell)
         pairs += near
-        if pairs > crowd:
+        if pairs > most:
             break
-    return DONE, pairs
+    return Reason.DONE, pairs
 
 
-# --- length of the window: what costs least -------------------------------------------------------------
+# --- length of the horizon: the cheapest -------------------------------------------------------------
 
 
 @compiled
-def _survey(discs, numbers, window):
-    """Sums over all discs: the areas of their boxes (m²) for a length of the window, and radius × speed (m²/s).
+def _survey(discs, numbers, horizon):
+    """Sums over all discs: the areas of their boxes (m²) for a length of the horizon (s), and radius × speed (m²/s).
 
     No box counts for more than would hold half of all discs.
     """
-    most = 0.5 * discs.shape[0] / numbers[CROWDING]
+    most = 0.5 * discs.shape[0] / numbers[Number.CROWDING]
     area, sweep = 0.0, 0.0
     for i in range(discs.shape[0]):
-        s = numbers[NOW] - discs[i, EPOCH]
-        speed = max(abs(discs[i, VX] + s * discs[i, AX]), abs(discs[i, VY] + s * discs[i, AY]))
-        pull = max(abs(discs[i, AX]), abs(discs[i, AY]))
-        side = 2.0 * discs[i, RADIUS] + window * (speed + 0.5 * window * pull)
+        s = numbers[Number.NOW] - discs[i, Disc.EPOCH]
+        ax, ay = discs[i, Disc.AX], discs[i, Disc.AY]
+        speed = max(abs(discs[i, Disc.VX] + s * ax), abs(discs[i, Disc.VY] + s * ay))
+        pull = max(abs(ax), abs(ay))
+        side = 2.0 * discs[i, Disc.RADIUS] + horizon * (speed + 0.5 * horizon * pull)
         area += min(side * side, most)
-        sweep += min(discs[i, RADIUS] * speed, most / window)
+        sweep += min(discs[i, Disc.RADIUS] * speed, most / horizon)
     return area, sweep
 
 
 @compiled
-def _cost(discs, numbers, window):
-    """Cost per second: all boxes and pairs once a window, and those of two discs for every impact.
+def _cost(discs, numbers, horizon):
+    """Cost per second: all boxes and pairs once a horizon, and those of two discs for every impact.
 
     With 2 × crowding discs per area, crowding × area pairs of boxes overlap and about crowding × sweep pairs
     of discs meet per second.
     """
-    area, sweep = _survey(discs, numbers, window)
-    pairs = numbers[CROWDING] * area
+    area, sweep = _survey(discs, numbers, horizon)
+    pairs = numbers[Number.CROWDING] * area
     count = discs.shape[0]
-    return (BOX_COST * count + pairs) / window + 2.0 * numbers[CROWDING] * sweep * (
-        BOX_COST + 2.0 * pairs / count
-    )
+    impacts = 2.0 * numbers[Number.CROWDING] * sweep
+    return (BOX_COST * count + pairs) / horizon + impacts * (BOX_COST + 2.0 * pairs / count)
 
 
 @compiled
 def _choose_length(discs, numbers):
-    """Adapt the length of the window to speeds and crowding; seek it the first time."""
+    """Adapt the length of the horizon to speeds and crowding; search for it the first time."""
     if discs.shape[0] == 0:
-        numbers[WINDOW] = LONGEST_WINDOW
+        numbers[Number.HORIZON] = LONGEST_HORIZON
         return
     steps = 1
-    if numbers[WINDOW] == 0.0:
-        numbers[WINDOW] = 1.0
-        numbers[CROWDING] = 0.5 * discs.shape[0] / _spread(discs)
+    if numbers[Number.HORIZON] == 0.0:
+        numbers[Number.HORIZON] = 1.0
+        numbers[Number.CROWDING] = 0.5 * discs.shape[0] / _spread(discs)
         steps = 300
     for _ in range(steps):
-        window = numbers[WINDOW]
-        cost = _cost(discs, numbers, window)
-        if _cost(discs, numbers, 0.5 * window) < cost:
-            numbers[WINDOW] = max(0.5 * window, SHORTEST_WINDOW)
-        elif _cost(discs, numbers, 2.0 * window) < cost:
-            numbers[WINDOW] = min(2.0 * window, LONGEST_WINDOW)
-        if numbers[WINDOW] == window:
+        horizon = numbers[Number.HORIZON]
+        cost = _cost(discs, numbers, horizon)
+        if _cost(discs, numbers, 0.5 * horizon) < cost:
+            numbers[Number.HORIZON] = max(0.5 * horizon, SHORTEST_HORIZON)
+        elif _cost(discs, numbers, 2.0 * horizon) < cost:
+            numbers[Number.HORIZON] = min(2.0 * horizon, LONGEST_HORIZON)
+        if numbers[Number.HORIZON] == horizon:
             return
 
 
 @compiled
 def _spread(discs):
     """Area (m²) of a box around all discs, in the first estimate of how crowded they are."""
-    left, bottom, right, top = NEVER, NEVER, -NEVER, -NEVER
+    left, bottom, right, top = INFINITY, INFINITY, -INFINITY, -INFINITY
     for i in range(discs.shape[0]):
-        x, y, r = discs[i, OX] + discs[i, UX], discs[i, OY] + discs[i, UY], discs[i, RADIUS]
+        x, y = discs[i, Disc.OX] + discs[i, Disc.UX], discs[i, Disc.OY] + discs[i, Disc.UY]
+        r = discs[i, Disc.RADIUS]
         left, right = min(left, x - r), max(right, x + r)
         bottom, top = min(bottom, y - r), max(top, y + r)
     return (right - left) * (top - bottom)
@@ -241,10 +204,10 @@ def _spread(discs):
 def set_layers(grid, numbers, counts):
     """Choose the finest cells and the layers that the boxes need, and give every disc its layer."""
     count = grid.boxes.shape[0]
-    numbers[CELL] = _cell_size(grid)
-    needed = 1 << min(counts[LEVEL], COARSEST)
+    numbers[Number.CELL] = _cell_size(grid)
+    needed = 1 << min(counts[Count.LEVEL], COARSEST)
     for i in range(count):
-        grid.layer[i] = level_of(i, grid, numbers[CELL])
+        grid.layer[i] = level_of(i, grid, numbers[Number.CELL])
         needed |= 1 << grid.layer[i]
     layers = 0
     for level in range(COARSEST + 1):
@@ -253,8 +216,8 @@ def set_layers(grid, numbers, counts):
             layers += 1
     for i in range(count):
         grid.layer[i] = layer_of(grid.layer[i], grid, layers)
-    counts[LAYERS] = layers
-    counts[LEVEL] = 0
+    counts[Count.LAYERS] = layers
+    counts[Count.LEVEL] = 0
 
 
 @compiled
@@ -270,9 +233,9 @@ def _cell_size(grid):
 def _quantile(grid, share):
     """The least size of a sampled box that at least a share of the sampled boxes do not exceed."""
     count = grid.boxes.shape[0]
-    stride = max(count // SAMPLE, 1)
+    stride = max(count // SAMPLED_DISCS, 1)
     sampled = (count + stride - 1) // stride
-    best = NEVER
+    best = INFINITY
     for i in range(0, count, stride):
         size = box_size(i, grid)
         if size < best:

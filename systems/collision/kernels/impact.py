@@ -7,7 +7,7 @@ Restitution e blends this with the plastic answer, the projection onto all conta
 v = e v_elastic + (1 − e) v_plastic. For a single contact it is Newton's law.
 """
 
-from systems.collision.columns import ACTIVE, BIAS, GIVEN, IMPULSE, OPENING
+from systems.collision.columns import Contact, Mark
 from systems.collision.kernels import compiled
 from systems.collision.kernels.projection import (
     MOST_SWEEPS,
@@ -18,19 +18,19 @@ from systems.collision.kernels.projection import (
     push_apart,
 )
 
-MANY_REFLECTIONS = 256  # in one impact, after which to look whether there ever is an end to them
-MOST_REFLECTIONS = 1000000  # after these, or where there is none, the rest of it is taken as plastic
+REFLECTIONS_BEFORE_JAM_TEST = 256  # in one impact, after which a test shows whether they can ever end
+MOST_REFLECTIONS = 1000000  # after these, or where they never end, the rest of the impact is plastic
 
 
 @compiled
 def respond(members, count, restitution, group):
     """Carry out the impact of a group of `count` contacts whose normals, openings and biases are set.
 
-    `motion` goes from the velocities before to those after, `initial` keeps those before; sets IMPULSE.
+    `motion` goes from the velocities before the impact to those after it; `initial` keeps the former. Sets TOTAL_IMPULSE.
     """
     begin(members, group)
     for c in range(count):
-        group.contacts[c, IMPULSE] = 0.0
+        group.contacts[c, Contact.TOTAL_IMPULSE] = 0.0
     if count == 1:
         _respond_alone(restitution, group)
         return
@@ -47,9 +47,9 @@ def respond(members, count, restitution, group):
 def _respond_alone(restitution, group):
     """Newton's law: the speed of approach is reversed and multiplied by the restitution."""
     speed = opening_rate(0, group.motion, group)
-    if speed < 0.0 and group.contacts[0, OPENING] > 0.0:
-        impulse = -(1.0 + restitution) * speed / group.contacts[0, OPENING]
-        group.contacts[0, IMPULSE] = impulse
+    if speed < 0.0 and group.contacts[0, Contact.COMPLIANCE] > 0.0:
+        impulse = -(1.0 + restitution) * speed / group.contacts[0, Contact.COMPLIANCE]
+        group.contacts[0, Contact.TOTAL_IMPULSE] = impulse
         push_apart(0, impulse, group)
 
 
@@ -58,14 +58,14 @@ def _reflect(members, count, group):
     """The elastic impact."""
     contacts, motion, start = group.contacts, group.motion, group.start
     for turn in range(MOST_REFLECTIONS):
-        if turn == MANY_REFLECTIONS and _is_jammed(members, count, group):
+        if turn == REFLECTIONS_BEFORE_JAM_TEST and _is_jammed(members, count, group):
             break
         approaching = 0
         for c in range(count):
-            contacts[c, GIVEN] = 0.0
+            contacts[c, Contact.IMPULSE] = 0.0
             speed = opening_rate(c, motion, group)
-            if speed < -group.noise[0] and contacts[c, OPENING] > 0.0:
-                group.marks[ACTIVE, approaching] = c
+            if speed < -group.noise[0] and contacts[c, Contact.COMPLIANCE] > 0.0:
+                group.marks[Mark.ACTIVE, approaching] = c
                 approaching += 1
         if approaching == 0:
             return
@@ -74,18 +74,18 @@ def _reflect(members, count, group):
             for d in range(2):
                 motion[m, d] += motion[m, d] - start[m, d]
         for k in range(approaching):
-            c = group.marks[ACTIVE, k]
-            contacts[c, IMPULSE] += 2.0 * contacts[c, GIVEN]
+            c = group.marks[Mark.ACTIVE, k]
+            contacts[c, Contact.TOTAL_IMPULSE] += 2.0 * contacts[c, Contact.IMPULSE]
     _make_plastic(members, count, group)
     for c in range(count):
-        contacts[c, IMPULSE] += contacts[c, GIVEN]
+        contacts[c, Contact.TOTAL_IMPULSE] += contacts[c, Contact.IMPULSE]
 
 
 @compiled
 def _is_jammed(members, count, group):
     """True if no motion opens all contacts that pushed so far: some of them will approach for ever.
 
-    Such are those of a row of discs between two walls. (Gordan's alternative: impulses that cancel each other
+    An example is a row of discs between two walls. (Gordan's alternative: impulses that cancel each other
     everywhere.) The least motion that opens all at the same speed is sought as a projection.
     """
     speed, active = 0.0, 0
@@ -95,28 +95,28 @@ def _is_jammed(members, count, group):
     for m in range(members):
         group.motion[m, 0], group.motion[m, 1] = 0.0, 0.0
     for c in range(count):
-        if group.contacts[c, IMPULSE] > 0.0:
-            group.contacts[c, BIAS], group.contacts[c, GIVEN] = -speed, 0.0
-            group.marks[ACTIVE, active] = c
+        if group.contacts[c, Contact.TOTAL_IMPULSE] > 0.0:
+            group.contacts[c, Contact.BIAS], group.contacts[c, Contact.IMPULSE] = -speed, 0.0
+            group.marks[Mark.ACTIVE, active] = c
             active += 1
     project(members, active, 0.0, MOST_SWEEPS, group)
     jammed = False
     for k in range(active):
-        c = group.marks[ACTIVE, k]
+        c = group.marks[Mark.ACTIVE, k]
         jammed = jammed or opening_rate(c, group.motion, group) < -0.5 * speed
-        group.contacts[c, BIAS] = 0.0
+        group.contacts[c, Contact.BIAS] = 0.0
     copy_motion(group.other, group.motion, members)
     return jammed
 
 
 @compiled
 def _make_plastic(members, count, group):
-    """The plastic impact of all contacts; impulses in column GIVEN."""
+    """The plastic impact of all contacts; impulses in column IMPULSE."""
     active = 0
     for c in range(count):
-        group.contacts[c, GIVEN] = 0.0
-        if group.contacts[c, OPENING] > 0.0:
-            group.marks[ACTIVE, active] = c
+        group.contacts[c, Contact.IMPULSE] = 0.0
+        if group.contacts[c, Contact.COMPLIANCE] > 0.0:
+            group.marks[Mark.ACTIVE, active] = c
             active += 1
     project(members, active, 0.0, MOST_SWEEPS, group)
 
@@ -129,5 +129,5 @@ def _blend(members, count, restitution, group):
             elastic, plastic = group.other[m, d], group.motion[m, d]
             group.motion[m, d] = restitution * elastic + (1.0 - restitution) * plastic
     for c in range(count):
-        elastic, plastic = group.contacts[c, IMPULSE], group.contacts[c, GIVEN]
-        group.contacts[c, IMPULSE] = restitution * elastic + (1.0 - restitution) * plastic
+        elastic, plastic = group.contacts[c, Contact.TOTAL_IMPULSE], group.contacts[c, Contact.IMPULSE]
+        group.contacts[c, Contact.TOTAL_IMPULSE] = restitution * elastic + (1.0 - restitution) * plastic

@@ -1,22 +1,22 @@
-"""Discs that overlap are moved apart along their lines of centres, shares by inverse mass; out of obstacles as well."""
+"""Overlap removal: discs are moved apart along their lines of centres, in shares by inverse mass, and out of obstacles."""
 
 import math
 
 from systems.collision.kernels import compiled
 from systems.collision.kernels.time_of_impact import nearest_of_piece
 
-MORE = 0.05  # of an overlap, by which discs are moved farther than apart: sweeps then come to an end
-MOST_SWEEPS = 400  # over the same pairs
-GOLDEN_ANGLE = 2.399963229728653  # between the directions of discs with one centre, so that all differ
+OVERCORRECTION = 0.05  # of an overlap, by which discs are moved farther than necessary, so that sweeps end
+MOST_OVERLAP_SWEEPS = 400  # over the same pairs
+GOLDEN_ANGLE = 2.399963229728653  # between the directions in which discs with one centre move
 
 
 @compiled
 def separate(first, second, position, displacement, radius, inverse_mass, span, slack):
-    """Move the discs of pairs that overlap by more than slack × reach apart; returns how many sweeps it took.
+    """Move the discs of pairs that overlap by more than slack × reach apart; returns the number of sweeps.
 
-    Held directions do not move, nor do obstacles, which have a span. What is left after MOST_SWEEPS stays.
+    Held directions do not move, nor do obstacles, which have a span. Overlaps that MOST_OVERLAP_SWEEPS leave stay.
     """
-    for sweep in range(MOST_SWEEPS):
+    for sweep in range(MOST_OVERLAP_SWEEPS):
         apart = True
         for k in range(first.shape[0]):
             i, j = first[k], second[k]
@@ -39,7 +39,7 @@ def separate(first, second, position, displacement, radius, inverse_mass, span, 
             along += (inverse_mass[i, 1] + inverse_mass[j, 1]) * y * y
             if along == 0.0:
                 continue
-            share = (1.0 + MORE * (sweep > 0)) * overlap / along
+            share = (1.0 + OVERCORRECTION * (sweep > 0)) * overlap / along
             displacement[i, 0] -= share * inverse_mass[i, 0] * x
             displacement[i, 1] -= share * inverse_mass[i, 1] * y
             displacement[j, 0] += share * inverse_mass[j, 0] * x
@@ -47,4 +47,4 @@ def separate(first, second, position, displacement, radius, inverse_mass, span, 
             apart = False
         if apart:
             return sweep
-    return MOST_SWEEPS
+    return MOST_OVERLAP_SWEEPS

@@ -7,21 +7,7 @@ solution of many.
 
 import math
 
-from systems.collision.columns import (
-    ACTIVE,
-    BEFORE,
-    BIAS,
-    CHOSEN,
-    DIRECT,
-    DIRECTION,
-    EPSILON,
-    GIVEN,
-    NX,
-    NY,
-    OPENING,
-    SPEED_NOISE,
-    STATE,
-)
+from systems.collision.columns import DIRECT, EPSILON, SPEED_NOISE, Contact, Mark
 from systems.collision.kernels import compiled
 
 IDLE, FITTED, DEPENDENT = 0, 1, 2
@@ -33,15 +19,16 @@ def opening_rate(c, motion, group):
     """Rate at which a contact opens; negative: it closes."""
     a, b = group.links[c, 0], group.links[c, 1]
     x, y = motion[b, 0] - motion[a, 0], motion[b, 1] - motion[a, 1]
-    return group.contacts[c, NX] * x + group.contacts[c, NY] * y + group.contacts[c, BIAS]
+    nx, ny = group.contacts[c, Contact.NX], group.contacts[c, Contact.NY]
+    return nx * x + ny * y + group.contacts[c, Contact.BIAS]
 
 
 @compiled
 def compliance(c, d, group):
     """Rate at which a unit impulse in contact d opens contact c: N_cᵀ M⁻¹ N_d, 1/kg."""
     first, second = group.contacts[c], group.contacts[d]
-    ends = group.links[c], group.links[d]
-    return coupling(ends, first[NX], first[NY], second[NX], second[NY], group.mobility)
+    nx, ny, px, py = first[Contact.NX], first[Contact.NY], second[Contact.NX], second[Contact.NY]
+    return coupling((group.links[c], group.links[d]), nx, ny, px, py, group.mobility)
 
 
 @compiled
@@ -63,7 +50,7 @@ def push_apart(c, impulse, group):
     """Give the discs of a contact opposite impulses that push them apart."""
     motion, mobility = group.motion, group.mobility
     a, b = group.links[c, 0], group.links[c, 1]
-    x, y = group.contacts[c, NX] * impulse, group.contacts[c, NY] * impulse
+    x, y = group.contacts[c, Contact.NX] * impulse, group.contacts[c, Contact.NY] * impulse
     motion[a, 0] -= mobility[a, 0] * x
     motion[a, 1] -= mobility[a, 1] * y
     motion[b, 0] += mobility[b, 0] * x
@@ -72,14 +59,14 @@ def push_apart(c, impulse, group):
 
 @compiled
 def copy_motion(source, target, members):
-    """Note a motion."""
+    """Copy a motion."""
     for m in range(members):
         target[m, 0], target[m, 1] = source[m, 0], source[m, 1]
 
 
 @compiled
 def begin(members, group):
-    """Note the motion as the initial one; what its largest part can feign by round-off is the noise."""
+    """Copy the motion to `initial`, and set the noise to the round-off of its largest part."""
     largest = 0.0
     for m in range(members):
         group.initial[m, 0], group.initial[m, 1] = group.motion[m, 0], group.motion[m, 1]
@@ -89,23 +76,23 @@ def begin(members, group):
 
 @compiled
 def project(members, active, tolerance, most, group):
-    """Project the motion for the first `active` contacts of marks[ACTIVE]; impulses in column GIVEN.
+    """Project the motion for the first `active` contacts of marks[ACTIVE]; impulses in column IMPULSE.
 
     tolerance: rate at which a contact of a large group may still close. most: sweeps over its contacts. Large groups
-    start from the impulses that GIVEN holds, small ones from none.
+    start from the impulses that IMPULSE holds, small ones from none.
     """
     copy_motion(group.motion, group.start, members)
     if active <= DIRECT:
         for k in range(active):
-            c = group.marks[ACTIVE, k]
-            group.contacts[c, GIVEN] = 0.0
-            group.marks[STATE, c] = IDLE
+            c = group.marks[Mark.ACTIVE, k]
+            group.contacts[c, Contact.IMPULSE] = 0.0
+            group.marks[Mark.STATE, c] = IDLE
         _solve_by_active_set(members, active, group)
         tolerance = 0.0
     else:
         for k in range(active):
-            c = group.marks[ACTIVE, k]
-            push_apart(c, group.contacts[c, GIVEN], group)
+            c = group.marks[Mark.ACTIVE, k]
+            push_apart(c, group.contacts[c, Contact.IMPULSE], group)
     sweep(active, most, tolerance, group)
 
 
@@ -117,13 +104,13 @@ def _solve_by_active_set(members, active, group):
         worst = _worst(active, group)
         if worst < 0:
             return
-        group.marks[CHOSEN, fitted] = worst
-        group.marks[STATE, worst] = FITTED
+        group.marks[Mark.CHOSEN, fitted] = worst
+        group.marks[Mark.STATE, worst] = FITTED
         fitted = _fit(fitted + 1, group)
         copy_motion(group.start, group.motion, members)
         for r in range(fitted):
-            c = group.marks[CHOSEN, r]
-            push_apart(c, group.contacts[c, GIVEN], group)
+            c = group.marks[Mark.CHOSEN, r]
+            push_apart(c, group.contacts[c, Contact.IMPULSE], group)
 
 
 @compiled
@@ -131,8 +118,8 @@ def _worst(active, group):
     """The idle contact that closes fastest, or −1."""
     worst, fastest = -1, 0.0
     for k in range(active):
-        c = group.marks[ACTIVE, k]
-        if group.marks[STATE, c] == IDLE:
+        c = group.marks[Mark.ACTIVE, k]
+        if group.marks[Mark.STATE, c] == IDLE:
             rate = opening_rate(c, group.motion, group)
             if rate < fastest and rate < -group.noise[0]:
                 worst, fastest = c, rate
@@ -146,25 +133,25 @@ def _fit(fitted, group):
     while fitted > 0:
         if not _solve(fitted, group):
             fitted -= 1  # the newest depends on the others, which stop it already
-            c = marks[CHOSEN, fitted]
-            contacts[c, GIVEN] = 0.0
-            marks[STATE, c] = DEPENDENT
+            c = marks[Mark.CHOSEN, fitted]
+            contacts[c, Contact.IMPULSE] = 0.0
+            marks[Mark.STATE, c] = DEPENDENT
             continue
         share = 1.0
         for r in range(fitted):
             if values[r] <= 0.0:
-                given = contacts[marks[CHOSEN, r], GIVEN]
-                share = min(share, given / (given - values[r]))
+                present = contacts[marks[Mark.CHOSEN, r], Contact.IMPULSE]
+                share = min(share, present / (present - values[r]))
         kept = 0
         for r in range(fitted):
-            c = marks[CHOSEN, r]
-            given = contacts[c, GIVEN]
-            if values[r] <= 0.0 and given <= share * (given - values[r]):
-                contacts[c, GIVEN] = 0.0
-                marks[STATE, c] = IDLE
+            c = marks[Mark.CHOSEN, r]
+            present = contacts[c, Contact.IMPULSE]
+            if values[r] <= 0.0 and present <= share * (present - values[r]):
+                contacts[c, Contact.IMPULSE] = 0.0
+                marks[Mark.STATE, c] = IDLE
             else:
-                contacts[c, GIVEN] = given + share * (values[r] - given)
-                marks[CHOSEN, kept] = c
+                contacts[c, Contact.IMPULSE] = present + share * (values[r] - present)
+                marks[Mark.CHOSEN, kept] = c
                 kept += 1
         if kept == fitted:
             return fitted
@@ -180,15 +167,15 @@ def _solve(count, group):
     """
     matrix, values = group.matrix, group.matrix[DIRECT]
     for r in range(count):
-        row = group.marks[CHOSEN, r]
+        row = group.marks[Mark.CHOSEN, r]
         values[r] = -opening_rate(row, group.start, group)
         for c in range(r + 1):
-            value = compliance(row, group.marks[CHOSEN, c], group)
+            value = compliance(row, group.marks[Mark.CHOSEN, c], group)
             for k in range(c):
                 value -= matrix[r, k] * matrix[c, k]
             if c < r:
                 matrix[r, c] = value / matrix[c, c]
-            elif value > 64.0 * EPSILON * group.contacts[row, OPENING]:
+            elif value > 64.0 * EPSILON * group.contacts[row, Contact.COMPLIANCE]:
                 matrix[r, r] = math.sqrt(value)
             else:
                 return False
@@ -204,7 +191,7 @@ def _solve(count, group):
 
 @compiled
 def sweep(active, most, tolerance, group):
-    """Gauss–Seidel, to and fro, from the impulses GIVEN so far, until rates change by less than the tolerance.
+    """Gauss–Seidel, to and fro, from the impulses so far, until rates change by less than the tolerance.
 
     Accelerated by conjugate directions: Silcowitz, Niebe, Erleben, "A nonsmooth nonlinear conjugate gradient method for
     interactive contact force problems", Vis. Comput. 26 (2010).
@@ -212,25 +199,26 @@ def sweep(active, most, tolerance, group):
     contacts, size = group.contacts, 0.0
     for turn in range(most):
         for k in range(active):
-            c = group.marks[ACTIVE, k]
-            contacts[c, BEFORE] = contacts[c, GIVEN]
+            c = group.marks[Mark.ACTIVE, k]
+            contacts[c, Contact.PREVIOUS] = contacts[c, Contact.IMPULSE]
         settled = _relax_all(active, 1, tolerance, group)
         if settled:
             return
         _relax_all(active, -1, tolerance, group)
         previous, size = size, 0.0
         for k in range(active):
-            c = group.marks[ACTIVE, k]
-            change = contacts[c, GIVEN] - contacts[c, BEFORE]
-            size += change * change * contacts[c, OPENING]
+            c = group.marks[Mark.ACTIVE, k]
+            change = contacts[c, Contact.IMPULSE] - contacts[c, Contact.PREVIOUS]
+            size += change * change * contacts[c, Contact.COMPLIANCE]
         share = size / previous if size <= previous and previous > 0.0 else 0.0
         keep = 1.0 if turn == 0 or share > 0.0 else 0.0
         for k in range(active):
-            c = group.marks[ACTIVE, k]
-            more = share * contacts[c, DIRECTION] if turn > 0 else 0.0
-            contacts[c, DIRECTION] = keep * (more + contacts[c, GIVEN] - contacts[c, BEFORE])
+            c = group.marks[Mark.ACTIVE, k]
+            more = share * contacts[c, Contact.DIRECTION] if turn > 0 else 0.0
+            swept = more + contacts[c, Contact.IMPULSE] - contacts[c, Contact.PREVIOUS]
+            contacts[c, Contact.DIRECTION] = keep * swept
             if more != 0.0:
-                contacts[c, GIVEN] += more
+                contacts[c, Contact.IMPULSE] += more
                 push_apart(c, more, group)
 
 
@@ -239,12 +227,12 @@ def _relax_all(active, way, tolerance, group):
     """Change the impulse of every contact, one by one, so that it neither closes nor pulls; True if none had to."""
     contacts, settled = group.contacts, True
     for k in range(active):
-        c = group.marks[ACTIVE, k if way > 0 else active - 1 - k]
+        c = group.marks[Mark.ACTIVE, k if way > 0 else active - 1 - k]
         rate = opening_rate(c, group.motion, group)
-        impulse = max(contacts[c, GIVEN] - rate / contacts[c, OPENING], 0.0)
-        change = impulse - contacts[c, GIVEN]
-        if abs(change) * contacts[c, OPENING] > max(tolerance, group.noise[0]):
+        impulse = max(contacts[c, Contact.IMPULSE] - rate / contacts[c, Contact.COMPLIANCE], 0.0)
+        change = impulse - contacts[c, Contact.IMPULSE]
+        if abs(change) * contacts[c, Contact.COMPLIANCE] > max(tolerance, group.noise[0]):
             push_apart(c, change, group)
-            contacts[c, GIVEN] = impulse
+            contacts[c, Contact.IMPULSE] = impulse
             settled = False
     return settled

@@ -10,47 +10,25 @@ All are evaluated along the path, which keeps the digits that expanded coefficie
 
 import math
 
-from systems.collision.columns import (
-    AX,
-    AY,
-    BOUNCE,
-    EPOCH,
-    EPSILON,
-    GX,
-    GY,
-    NOISE,
-    OX,
-    OY,
-    RADIUS,
-    SHARED,
-    SHARED_END,
-    SHARED_START,
-    SPEED_NOISE,
-    TX,
-    TY,
-    UX,
-    UY,
-    VX,
-    VY,
-)
+from systems.collision.columns import EPSILON, SHARED_END, SHARED_START, SPEED_NOISE, Disc
 from systems.collision.kernels import compiled
 
-NEVER = math.inf
+INFINITY = math.inf
 PLACE_NOISE = 64.0 * EPSILON  # of both positions and paths: discs this near touch
-MOST_ITERATIONS = 2200  # what bisection alone needs across all exponents and bits of a double; Newton: 5
+MOST_ROOT_ITERATIONS = 2200  # what bisection alone needs across all exponents and bits of a double; Newton: 5
 
 
 @compiled
 def relative_motion(discs, i, j, time):
     """Position, velocity and acceleration of disc j relative to disc i at a time."""
-    s = time - discs[i, EPOCH]
-    t = time - discs[j, EPOCH]
-    iax, iay, jax, jay = discs[i, AX], discs[i, AY], discs[j, AX], discs[j, AY]
-    ivx, ivy, jvx, jvy = discs[i, VX], discs[i, VY], discs[j, VX], discs[j, VY]
-    ux = discs[j, UX] + t * (jvx + 0.5 * t * jax) - (discs[i, UX] + s * (ivx + 0.5 * s * iax))
-    uy = discs[j, UY] + t * (jvy + 0.5 * t * jay) - (discs[i, UY] + s * (ivy + 0.5 * s * iay))
-    dx = (discs[j, OX] - discs[i, OX]) + ux
-    dy = (discs[j, OY] - discs[i, OY]) + uy
+    s = time - discs[i, Disc.EPOCH]
+    t = time - discs[j, Disc.EPOCH]
+    iax, iay, jax, jay = discs[i, Disc.AX], discs[i, Disc.AY], discs[j, Disc.AX], discs[j, Disc.AY]
+    ivx, ivy, jvx, jvy = discs[i, Disc.VX], discs[i, Disc.VY], discs[j, Disc.VX], discs[j, Disc.VY]
+    ux = discs[j, Disc.UX] + t * (jvx + 0.5 * t * jax) - (discs[i, Disc.UX] + s * (ivx + 0.5 * s * iax))
+    uy = discs[j, Disc.UY] + t * (jvy + 0.5 * t * jay) - (discs[i, Disc.UY] + s * (ivy + 0.5 * s * iay))
+    dx = (discs[j, Disc.OX] - discs[i, Disc.OX]) + ux
+    dy = (discs[j, Disc.OY] - discs[i, Disc.OY]) + uy
     vx = (jvx + t * jax) - (ivx + s * iax)
     vy = (jvy + t * jay) - (ivy + s * iay)
     return dx, dy, vx, vy, difference(iax, jax), difference(iay, jay)
@@ -59,13 +37,19 @@ def relative_motion(discs, i, j, time):
 @compiled
 def is_straight(i, discs):
     """True for an obstacle that has a length."""
-    return discs[i, TX] != 0.0 or discs[i, TY] != 0.0
+    return discs[i, Disc.TX] != 0.0 or discs[i, Disc.TY] != 0.0
+
+
+@compiled
+def smaller_radius(i, j, discs):
+    """Radius of the smaller of two discs, or of a disc at an obstacle."""
+    return discs[i, Disc.RADIUS] if is_straight(j, discs) else min(discs[i, Disc.RADIUS], discs[j, Disc.RADIUS])
 
 
 @compiled
 def nearest(dx, dy, j, discs):
-    """As nearest_of_piece, of disc or obstacle j."""
-    return nearest_of_piece(dx, dy, discs[j, TX], discs[j, TY])
+    """As nearest_of_piece, for disc or obstacle j."""
+    return nearest_of_piece(dx, dy, discs[j, Disc.TX], discs[j, Disc.TY])
 
 
 @compiled
@@ -84,18 +68,18 @@ def nearest_of_piece(dx, dy, tx, ty):
 
 
 @compiled
-def is_answered_for(dx, dy, j, discs):
-    """True if what is nearest of j from (dx, dy) before it is an end that it shares with another obstacle.
+def is_shared_end(dx, dy, j, discs):
+    """True if the nearest point of obstacle j, with its first end at (dx, dy), is an end that an earlier obstacle shares.
 
-    That one has the same gap then; were both in contact, their forces would not be determined.
+    The earlier obstacle has the same gap then; with both in contact, their forces would not be determined.
     """
-    shared = discs[j, SHARED]
+    shared = discs[j, Disc.SHARED]
     if shared == 0.0:
         return False
-    along = -(dx * discs[j, TX] + dy * discs[j, TY])
+    along = -(dx * discs[j, Disc.TX] + dy * discs[j, Disc.TY])
     if along <= 0.0:
         return shared != SHARED_END
-    return shared >= SHARED_END and along >= discs[j, TX] ** 2 + discs[j, TY] ** 2
+    return shared >= SHARED_END and along >= discs[j, Disc.TX] ** 2 + discs[j, Disc.TY] ** 2
 
 
 @compiled
@@ -109,15 +93,15 @@ def difference(first, second):
 @compiled
 def speed_at(discs, i, time):
     """Sum of the components' magnitudes of a disc's velocity."""
-    s = time - discs[i, EPOCH]
-    return abs(discs[i, VX] + s * discs[i, AX]) + abs(discs[i, VY] + s * discs[i, AY])
+    s = time - discs[i, Disc.EPOCH]
+    return abs(discs[i, Disc.VX] + s * discs[i, Disc.AX]) + abs(discs[i, Disc.VY] + s * discs[i, Disc.AY])
 
 
 @compiled
 def speed_noise(discs, i, j, time):
     """Relative speed (m/s) that the round-off of the two velocities can feign."""
     present = SPEED_NOISE * (speed_at(discs, i, time) + speed_at(discs, j, time))
-    return max(present, discs[i, NOISE] + discs[j, NOISE])
+    return max(present, discs[i, Disc.NOISE] + discs[j, Disc.NOISE])
 
 
 @compiled
@@ -125,15 +109,16 @@ def pull_noise(discs, i, j):
     """Relative acceleration (m/s²) that the round-off of the two accelerations can feign."""
     total = 0.0
     for disc in (i, j):
-        total += abs(discs[disc, AX]) + abs(discs[disc, AY]) + abs(discs[disc, GX]) + abs(discs[disc, GY])
+        path = abs(discs[disc, Disc.AX]) + abs(discs[disc, Disc.AY])
+        total += path + abs(discs[disc, Disc.GX]) + abs(discs[disc, Disc.GY])
     return 2.0 * SPEED_NOISE * total
 
 
 @compiled
 def extent(discs, i, time):
     """Magnitude of the numbers that make up a disc's position: its coordinates and its path since t = 0."""
-    place = abs(discs[i, OX]) + abs(discs[i, OY]) + abs(discs[i, UX]) + abs(discs[i, UY])
-    size = discs[i, RADIUS] + abs(discs[i, TX]) + abs(discs[i, TY])
+    place = abs(discs[i, Disc.OX]) + abs(discs[i, Disc.OY]) + abs(discs[i, Disc.UX]) + abs(discs[i, Disc.UY])
+    size = discs[i, Disc.RADIUS] + abs(discs[i, Disc.TX]) + abs(discs[i, Disc.TY])
     return place + size + speed_at(discs, i, time) * abs(time)
 
 
@@ -146,7 +131,11 @@ def place_noise(discs, i, j, time):
 @compiled
 def pull_on(discs, i, j):
     """The larger acceleration (m/s²) of two discs without contacts."""
-    return max(math.hypot(discs[i, GX], discs[i, GY]), math.hypot(discs[j, GX], discs[j, GY]))
+    first, second = (
+        math.hypot(discs[i, Disc.GX], discs[i, Disc.GY]),
+        math.hypot(discs[j, Disc.GX], discs[j, Disc.GY]),
+    )
+    return max(first, second)
 
 
 @compiled
@@ -162,85 +151,87 @@ def rest_speed(i, j, discs, rest_height, time):
     g is the larger acceleration of the two, h the height that is not worth a bounce.
     """
     speed = touch_speed(discs, i, j, time)
-    if discs[j, BOUNCE] < 1.0:
-        radius = discs[i, RADIUS] if is_straight(j, discs) else min(discs[i, RADIUS], discs[j, RADIUS])
+    if discs[j, Disc.BOUNCE] < 1.0:
+        radius = smaller_radius(i, j, discs)
         speed = max(speed, math.sqrt(2.0 * pull_on(discs, i, j) * rest_height * radius))
     return speed
 
 
 @compiled
-def first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, horizon, overlapping):
-    """The least s ≥ 0 at which the distance is at most `reach` and shrinks; NEVER if there is none.
+def first_approach(path, reach, noise, growth, horizon, overlapping):
+    """The least s ≥ 0 at which the distance is at most `reach` and shrinks; INFINITY if there is none.
 
-    noise + growth × s: speed of approach below which it counts as none. horizon: NEVER may be returned for
-    later times; what is returned for earlier ones does not depend on it, to the last bit. overlapping: the
-    discs overlap from the start and are left alone until they have separated.
+    path: relative position, velocity and acceleration, as of `relative_motion`. noise + growth × s: speed of
+    approach below which it counts as none. horizon: INFINITY may be returned for later times; an earlier time does not
+    depend on the horizon, to the last bit. overlapping: the discs overlap from the start and are left alone until they
+    have separated.
     """
+    dx, dy, vx, vy, ax, ay = path
     if ax == 0.0 and ay == 0.0:
-        return _first_on_lines(dx, dy, vx, vy, reach, noise, overlapping)
+        return _first_on_lines(path, reach, noise, overlapping)
     pull = math.sqrt(ax * ax + ay * ay)
     speed = math.sqrt(vx * vx + vy * vy)
     distance = math.sqrt(dx * dx + dy * dy)
     if distance - reach > horizon * (speed + 0.5 * horizon * pull):
-        return NEVER
+        return INFINITY
     last = (speed + math.sqrt(speed * speed + 2.0 * pull * (distance + reach))) / pull
-    return _first_on_parabolas(
-        dx, dy, vx, vy, ax, ay, reach, noise * reach, growth * reach, horizon, last, overlapping
-    )
+    return _first_on_parabolas(path, reach, noise * reach, growth * reach, horizon, last, overlapping)
 
 
 @compiled
-def _first_on_lines(dx, dy, vx, vy, reach, noise, overlapping):
+def _first_on_lines(path, reach, noise, overlapping):
     """Root of the quadratic; its discriminant |v|²R² − (d×v)² does not cancel for discs far apart."""
+    dx, dy, vx, vy, _, _ = path
     approach = dx * vx + dy * vy
     if approach >= -noise * reach:
-        return NEVER
+        return INFINITY
     excess = dx * dx + dy * dy - reach * reach
     if excess <= 0.0:
-        return NEVER if overlapping else 0.0
+        return INFINITY if overlapping else 0.0
     passing = dx * vy - dy * vx
     speed_reach = (vx * vx + vy * vy) * reach * reach
     if speed_reach < passing * passing:
-        return NEVER
+        return INFINITY
     return excess / (math.sqrt(speed_reach - passing * passing) - approach)
 
 
 @compiled
-def _first_on_parabolas(dx, dy, vx, vy, ax, ay, reach, noise, growth, horizon, last, overlapping):
+def _first_on_parabolas(path, reach, noise, growth, horizon, last, overlapping):
     """Root of the quartic: between the roots of f'' (a quadratic) f' is monotone, between those of f' f is.
 
     last: the discs only move apart after it. noise, growth: of f'.
     """
-    bend, other = _inflections(dx, dy, vx, vy, ax, ay)
+    first_bend, second_bend = _inflections(path)
     start = 0.0
     for piece in range(3):
-        end = bend if piece == 0 else other if piece == 1 else last
+        end = first_bend if piece == 0 else second_bend if piece == 1 else last
         end = min(end, last)
         if not end > start:
             continue
-        slope_start = _slope(dx, dy, vx, vy, ax, ay, start)
-        slope_end = _slope(dx, dy, vx, vy, ax, ay, end)
+        slope_start = _slope(path, start)
+        slope_end = _slope(path, end)
         turn = end
         if (slope_start < 0.0) != (slope_end < 0.0):
-            turn = _turn(dx, dy, vx, vy, ax, ay, start, end, slope_end < 0.0)
+            turn = _turn(path, start, end, slope_end < 0.0)
         if slope_start < 0.0:  # approaching until the turn
             low, high = start, turn
         else:  # approaching after it, if at all
             low, high = turn, end
         approaches = slope_start < -noise - growth * start or slope_end < -noise - growth * end
         if approaches and low < high:
-            s = _touch(dx, dy, vx, vy, ax, ay, reach, noise, growth, low, high, overlapping)
-            if s < NEVER:
+            s = _touch(path, reach, noise, growth, low, high, overlapping)
+            if s < INFINITY:
                 return s
         start = end
         if start > horizon:
-            return NEVER
-    return NEVER
+            return INFINITY
+    return INFINITY
 
 
 @compiled
-def _inflections(dx, dy, vx, vy, ax, ay):
+def _inflections(path):
     """The two roots of f'', ascending, or −1 twice: (v·v + d·a) + 3 v·a s + 3/2 a·a s²."""
+    dx, dy, vx, vy, ax, ay = path
     c = vx * vx + vy * vy + dx * ax + dy * ay
     b = 1.5 * (vx * ax + vy * ay)
     a = 1.5 * (ax * ax + ay * ay)
@@ -253,21 +244,24 @@ def _inflections(dx, dy, vx, vy, ax, ay):
 
 
 @compiled
-def _half_gap(dx, dy, vx, vy, ax, ay, reach, s):
+def _half_gap(path, reach, s):
+    dx, dy, vx, vy, ax, ay = path
     x = dx + s * (vx + 0.5 * s * ax)
     y = dy + s * (vy + 0.5 * s * ay)
     return 0.5 * (x * x + y * y - reach * reach)
 
 
 @compiled
-def _slope(dx, dy, vx, vy, ax, ay, s):
+def _slope(path, s):
+    dx, dy, vx, vy, ax, ay = path
     x = dx + s * (vx + 0.5 * s * ax)
     y = dy + s * (vy + 0.5 * s * ay)
     return x * (vx + s * ax) + y * (vy + s * ay)
 
 
 @compiled
-def _curvature(dx, dy, vx, vy, ax, ay, s):
+def _curvature(path, s):
+    dx, dy, vx, vy, ax, ay = path
     x = dx + s * (vx + 0.5 * s * ax)
     y = dy + s * (vy + 0.5 * s * ay)
     wx = vx + s * ax
@@ -276,18 +270,18 @@ def _curvature(dx, dy, vx, vy, ax, ay, s):
 
 
 @compiled
-def _turn(dx, dy, vx, vy, ax, ay, low, high, falling):
+def _turn(path, low, high, falling):
     """Root of f' between low and high, where it is monotone and changes sign: Newton kept in a bracket."""
-    s = low - _slope(dx, dy, vx, vy, ax, ay, low) / _curvature(dx, dy, vx, vy, ax, ay, low)
+    s = low - _slope(path, low) / _curvature(path, low)
     if not (low < s < high):
         s = 0.5 * (low + high)
-    for _ in range(MOST_ITERATIONS):
-        value = _slope(dx, dy, vx, vy, ax, ay, s)
+    for _ in range(MOST_ROOT_ITERATIONS):
+        value = _slope(path, s)
         if (value > 0.0) == falling:
             low = s
         else:
             high = s
-        step = value / _curvature(dx, dy, vx, vy, ax, ay, s)
+        step = value / _curvature(path, s)
         following = s - step
         if not (low < following < high):
             following = 0.5 * (low + high)
@@ -298,17 +292,17 @@ def _turn(dx, dy, vx, vy, ax, ay, low, high, falling):
 
 
 @compiled
-def _fall(dx, dy, vx, vy, ax, ay, noise, growth, low, high):
-    """The least s from low to high at which f' is below the noise, by bisection; NEVER if it is nowhere."""
-    if _slope(dx, dy, vx, vy, ax, ay, low) < -noise - growth * low:
+def _fall(path, noise, growth, low, high):
+    """The least s from low to high at which f' is below the noise, by bisection; INFINITY if it is nowhere."""
+    if _slope(path, low) < -noise - growth * low:
         return low
-    if not _slope(dx, dy, vx, vy, ax, ay, high) < -noise - growth * high:
-        return NEVER
-    for _ in range(MOST_ITERATIONS):
+    if not _slope(path, high) < -noise - growth * high:
+        return INFINITY
+    for _ in range(MOST_ROOT_ITERATIONS):
         s = 0.5 * (low + high)
         if s in (low, high):
             break
-        if _slope(dx, dy, vx, vy, ax, ay, s) < -noise - growth * s:
+        if _slope(path, s) < -noise - growth * s:
             high = s
         else:
             low = s
@@ -316,20 +310,20 @@ def _fall(dx, dy, vx, vy, ax, ay, noise, growth, low, high):
 
 
 @compiled
-def _touch(dx, dy, vx, vy, ax, ay, reach, noise, growth, low, high, overlapping):
+def _touch(path, reach, noise, growth, low, high, overlapping):
     """Root of f between low and high, where it falls; if it is negative at `low`, when it falls noticeably."""
-    if _half_gap(dx, dy, vx, vy, ax, ay, reach, low) <= 0.0:
-        return NEVER if overlapping else _fall(dx, dy, vx, vy, ax, ay, noise, growth, low, high)
-    if _half_gap(dx, dy, vx, vy, ax, ay, reach, high) > 0.0:
-        return NEVER
+    if _half_gap(path, reach, low) <= 0.0:
+        return INFINITY if overlapping else _fall(path, noise, growth, low, high)
+    if _half_gap(path, reach, high) > 0.0:
+        return INFINITY
     s = low
-    for _ in range(MOST_ITERATIONS):
-        value = _half_gap(dx, dy, vx, vy, ax, ay, reach, s)
+    for _ in range(MOST_ROOT_ITERATIONS):
+        value = _half_gap(path, reach, s)
         if value > 0.0:
             low = s
         else:
             high = s
-        following = s - value / _slope(dx, dy, vx, vy, ax, ay, s)
+        following = s - value / _slope(path, s)
         if not (low < following < high):
             following = 0.5 * (low + high)
         if abs(following - s) <= EPSILON * abs(s) or following in (low, high):
@@ -342,18 +336,19 @@ def _touch(dx, dy, vx, vy, ax, ay, reach, noise, growth, low, high, overlapping)
 
 
 @compiled
-def first_touch(dx, dy, vx, vy, ax, ay, tx, ty, shared, reach, noise, growth, horizon, overlapping):
-    """As first_approach, of a piece from (dx, dy) to (dx + tx, dy + ty) that moves relative to a disc.
+def first_touch(path, tx, ty, shared, reach, noise, growth, horizon, overlapping):
+    """As first_approach, for a piece whose first end is on `path` relative to a disc; (tx, ty) is the way to the other.
 
-    shared: its ends for which another piece answers, as in the column SHARED; they are left out.
+    shared: ends that another piece accounts for, as in the column SHARED; they are left out.
 
-    The foot of the perpendicular from the disc goes past an end at most four times; in between, what is nearest
-    is always the same end, or always the flat side.
+    The foot of the perpendicular from the disc goes past an end at most four times; in between, the nearest point
+    is always on the same end, or always on the flat side.
     """
+    dx, dy, vx, vy, ax, ay = path
     if tx == 0.0 and ty == 0.0:
         if shared != 0.0:
-            return NEVER
-        return first_approach(dx, dy, vx, vy, ax, ay, reach, noise, growth, horizon, overlapping)
+            return INFINITY
+        return first_approach(path, reach, noise, growth, horizon, overlapping)
     length = math.sqrt(tx * tx + ty * ty)
     nx, ny = ty / length, -tx / length
     foot, foot_v, foot_a = ny * dx - nx * dy, ny * vx - nx * vy, ny * ax - nx * ay
@@ -362,30 +357,30 @@ def first_touch(dx, dy, vx, vy, ax, ay, tx, ty, shared, reach, noise, growth, ho
         end = passing(foot, foot_v, foot_a, length, start)
         x, y = dx + start * (vx + 0.5 * start * ax), dy + start * (vy + 0.5 * start * ay)
         u, v = vx + start * ax, vy + start * ay
-        middle = 0.5 * (start + end) if end < NEVER else 2.0 * start + 1.0
+        middle = 0.5 * (start + end) if end < INFINITY else 2.0 * start + 1.0
         between = foot + middle * (foot_v + 0.5 * middle * foot_a)
         slow = noise + growth * start
         if 0.0 <= between <= length:
             gap_x, speed, pull = nx * x + ny * y, nx * u + ny * v, nx * ax + ny * ay
             s = _first_on_side(gap_x, speed, pull, reach, slow, growth, overlapping)
         elif shared == SHARED_START + SHARED_END or shared == (SHARED_START if between < 0.0 else SHARED_END):
-            s = NEVER
+            s = INFINITY
         else:
             if between > length:
                 x, y = x + tx, y + ty
-            s = first_approach(x, y, u, v, ax, ay, reach, slow, growth, horizon - start, overlapping)
+            s = first_approach((x, y, u, v, ax, ay), reach, slow, growth, horizon - start, overlapping)
         if s <= end - start:
             return start + s
         start = end
         if start > horizon:
             break
-    return NEVER
+    return INFINITY
 
 
 @compiled
 def passing(foot, speed, pull, length, start):
     """The first time after `start` at which the foot, on a parabola along a piece, passes one of its ends."""
-    earliest = NEVER
+    earliest = INFINITY
     for end in (0.0, length):
         first, second = _roots(foot - end, speed, pull)
         if first > start:
@@ -397,12 +392,12 @@ def passing(foot, speed, pull, length, start):
 
 @compiled
 def _roots(x, v, a):
-    """Where x + v s + a s²/2 changes its sign, ascending; NEVER for those there are not."""
+    """Where x + v s + a s²/2 changes its sign, ascending; INFINITY for roots that do not exist."""
     if a == 0.0:
-        return (-x / v if v != 0.0 else NEVER), NEVER
+        return (-x / v if v != 0.0 else INFINITY), INFINITY
     discriminant = v * v - 2.0 * a * x
     if not discriminant > 0.0:
-        return NEVER, NEVER
+        return INFINITY, INFINITY
     q = -(v + math.copysign(math.sqrt(discriminant), v))
     first, second = q / a, 2.0 * x / q
     return min(first, second), max(first, second)
@@ -410,26 +405,26 @@ def _roots(x, v, a):
 
 @compiled
 def _first_on_side(x, v, a, reach, noise, growth, overlapping):
-    """The least s ≥ 0 at which |x + v s + a s²/2| is at most `reach` and shrinks; NEVER if there is none.
+    """The least s ≥ 0 at which |x + v s + a s²/2| is at most `reach` and shrinks; INFINITY if there is none.
 
-    The one side that the disc is on is all that matters: it cannot get to the other one.
+    Only the side that the disc is on matters: the disc cannot get to the other one.
     """
     if x < 0.0:
         x, v, a = -x, -v, -a
     gap = x - reach
     if v >= 0.0 and a >= 0.0:
-        return NEVER
+        return INFINITY
     highest = gap if v <= 0.0 or a >= 0.0 else gap - 0.5 * v * v / a
     if highest <= 0.0:
         if overlapping:
-            return NEVER
+            return INFINITY
         if v < -noise:
             return 0.0
-        return (v + noise) / (-a - growth) * (1.0 + 8.0 * EPSILON) if a < -growth else NEVER
+        return (v + noise) / (-a - growth) * (1.0 + 8.0 * EPSILON) if a < -growth else INFINITY
     if v >= -noise and a >= -growth:
-        return NEVER
+        return INFINITY
     discriminant = v * v - 2.0 * a * gap
     if discriminant < 0.0:
-        return NEVER
+        return INFINITY
     root = math.sqrt(discriminant)
     return 2.0 * gap / (root - v) if v < 0.0 else (v + root) / -a

@@ -10,13 +10,18 @@ integrator is a function in place of `integrate`.
 # mypy: ignore-errors
 
 
-def verlet_begins(i, dt, state, predicted, *columns):
-    """x₊ = x + h v + h²/2 a; v* = v + h a; half of the way to v₊."""
+def total_force():
+    """ax, ay: the force on a particle with dampers and drag (kN)."""
     ax = force[i, 0]
     ay = force[i, 1]
     if RATES:
         ax += resisting[i, 0]
         ay += resisting[i, 1]
+
+
+def verlet_begins(i, dt, state, predicted, *columns):
+    """x₊ = x + h v + h²/2 a; v* = v + h a; half of the way to v₊."""
+    insert(total_force)
     ax *= particles_mobility[i, 0]
     ay *= particles_mobility[i, 1]
     vx = velocity[i, 0]
@@ -34,22 +39,14 @@ def verlet_begins(i, dt, state, predicted, *columns):
 
 def verlet_ends(i, dt, state, predicted, *columns):
     """v₊ = v + h/2 (a + a*), a* = a(x₊, v*); dampers and drag are then evaluated at v₊."""
-    ax = force[i, 0]
-    ay = force[i, 1]
-    if RATES:
-        ax += resisting[i, 0]
-        ay += resisting[i, 1]
+    insert(total_force)
     velocity[i, 0] += 0.5 * dt * (ax * particles_mobility[i, 0])
     velocity[i, 1] += 0.5 * dt * (ay * particles_mobility[i, 1])
 
 
 def taylor2_begins(i, dt, state, predicted, *columns):
     """The thesis' x₊ = x + v h + a h²/2; v₊ = v + a h."""
-    ax = force[i, 0]
-    ay = force[i, 1]
-    if RATES:
-        ax += resisting[i, 0]
-        ay += resisting[i, 1]
+    insert(total_force)
     gain_x = 0.5 * dt * (ax * particles_mobility[i, 0])
     gain_y = 0.5 * dt * (ay * particles_mobility[i, 1])
     velocity[i, 0] += gain_x
@@ -68,11 +65,7 @@ def taylor2_ends(i, dt, state, predicted, *columns):
 
 def euler_begins(i, dt, state, predicted, *columns):
     """v₊ = v + h a(x, v); x₊ = x + h v₊."""
-    ax = force[i, 0]
-    ay = force[i, 1]
-    if RATES:
-        ax += resisting[i, 0]
-        ay += resisting[i, 1]
+    insert(total_force)
     velocity[i, 0] += dt * (ax * particles_mobility[i, 0])
     velocity[i, 1] += dt * (ay * particles_mobility[i, 1])
     displacement[i, 0] += dt * velocity[i, 0]
@@ -111,7 +104,7 @@ def powers():
         power[k] = gained[k]
 
 
-def push(dt, velocity, force, resisting, predicted, *columns):
+def push(dt, velocity, force, resisting, predicted, particles_mobility):
     """predicted ← the velocities to which the present forces lead in a step."""
     for i in range(velocity.shape[0]):
         for d in range(2):
@@ -182,7 +175,7 @@ def advance(
             measure(displacement, velocity, force, resisting, measures, *columns)
             ahead = 0.0
             if LOADS:
-                push(dt, velocity, force, resisting, predicted, *columns)
+                push(dt, velocity, force, resisting, predicted, particles_mobility)
                 ahead = 1000.0 * dt * abs(load_power(time, predicted, *columns))
             reason = judge(measures, account, dt, SHADOW, ahead, time >= loads_end)
             if reason != StopReason.DONE:

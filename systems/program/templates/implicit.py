@@ -153,7 +153,7 @@ def correct(time, dt, by_x, by_v, trial, speed, forces, acceleration, correction
     straight, skew = work[STAGES + 11], work[STAGES + 12]
     along, across = rod_work[0], rod_work[1]
     tangent(time, dt, by_x, by_v, trial, speed, direction, along, across, diagonal, beside, *columns)
-    precondition(direction, along, across, diagonal, beside, straight, skew, *columns)
+    precondition(direction, along, across, diagonal, beside, straight, skew, rods_between, particles_mobility)
     for i in range(trial.shape[0]):
         for d in range(2):
             correction[i, d] = 0.0
@@ -171,7 +171,7 @@ def correct(time, dt, by_x, by_v, trial, speed, forces, acceleration, correction
     for _ in range(8 * trial.shape[0] + 64):
         if not size > enough:
             break
-        multiply(search, product, direction, along, across, diagonal, beside, *columns)
+        multiply(search, product, direction, along, across, diagonal, beside, rods_between, particles_mobility)
         curvature = 0.0
         for i in range(trial.shape[0]):
             curvature += search[i, 0] * product[i, 0] + search[i, 1] * product[i, 1]
@@ -191,7 +191,7 @@ def correct(time, dt, by_x, by_v, trial, speed, forces, acceleration, correction
     return size < math.inf
 
 
-def multiply(vector, product, direction, along, across, diagonal, beside, *columns):
+def multiply(vector, product, direction, along, across, diagonal, beside, rods_between, particles_mobility):
     """product ← (M + γh C + (γh)² K) vector; constrained directions are left out."""
     for i in range(vector.shape[0]):
         product[i, 0] = diagonal[i, 0] * vector[i, 0] + beside[i, 0] * vector[i, 1]
@@ -216,7 +216,7 @@ def multiply(vector, product, direction, along, across, diagonal, beside, *colum
                 product[i, d] = 0.0
 
 
-def precondition(direction, along, across, diagonal, beside, straight, skew, *columns):
+def precondition(direction, along, across, diagonal, beside, straight, skew, rods_between, particles_mobility):
     """straight, skew ← the inverses of the 2 × 2 blocks on the diagonal of the matrix."""
     for i in range(diagonal.shape[0]):
         straight[i, 0] = diagonal[i, 0]

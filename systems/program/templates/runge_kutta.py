@@ -17,7 +17,7 @@ def explicit_stages(time, dt, allowed, state, scratch, *columns):
         extrapolate(s, dt, displacement, velocity, work, trial, speed)
         at = time + NODES[s] * dt
         evaluate(at, dt, trial, speed, *forces, stage_power, *columns)
-        accelerate(force, resisting, work[s], *columns)
+        accelerate(force, resisting, work[s], particles_mobility)
         if POWERS or LOADS:
             for k in range(gained.shape[0]):
                 gained[k] += RESULT_V[0, s] * stage_power[k]
@@ -38,7 +38,7 @@ def extrapolate(s, dt, displacement, velocity, work, trial, speed):
             trial[i, d] = displacement[i, d] + dt * (NODES[s] * v + dt * q)
 
 
-def accelerate(force, resisting, acceleration, *columns):
+def accelerate(force, resisting, acceleration, particles_mobility):
     """acceleration ← that of the particles under the forces of a state (m/s²)."""
     for i in range(force.shape[0]):
         fx = force[i, 0]
@@ -250,7 +250,7 @@ def controlled(steps, first, origin, tolerance, limit, bounds, control, state, s
         if COMMITS:
             remember(time, h, displacement, account, *columns)
         evaluate(time, h, *state, power, *columns)
-        accelerate(force, resisting, work[0], *columns)
+        accelerate(force, resisting, work[0], particles_mobility)
         control[Control.LARGEST_DISPLACEMENT] = search[Search.LARGEST_DISPLACEMENT]
         control[Control.LARGEST_SPEED] = search[Search.LARGEST_SPEED]
         if tolerance > 0.0:
@@ -318,7 +318,7 @@ def advance(
     """
     if not fresh:
         evaluate(control[Control.TIME], control[Control.STEP_SIZE], *state, power, *columns)
-        accelerate(force, resisting, work[0], *columns)
+        accelerate(force, resisting, work[0], particles_mobility)
     taken = 0
     while taken < steps:
         wanted = min(steps - taken, steps_to_check(total + taken, total + taken))

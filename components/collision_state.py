@@ -1,0 +1,139 @@
+"""What a run with collisions goes on from besides the state of the particles, so that it goes on bit for bit.
+
+Of a model whose particles fly free it is a FreeFlightState, of one whose particles an integrator moves it is a
+PersistentContacts; a model has at most one of them, in the clock's column `collision_state`. Both are mappings: what a
+model file holds. Files written before the two were told apart hold one mapping for both, under the key `paths`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import FieldError
+
+Floats = NDArray[np.float64]
+Pairs = NDArray[np.int64]
+_DIMENSIONS = {"motion": 2, "forces": 1, "pile": 1, "longest_step": 0}  # of attributes that are real numbers
+
+
+class _Saved(Mapping[str, Any]):
+    """A mapping of the attributes `saved` and the `kind`, in what JSON can hold: ∞ is None."""
+
+    kind: ClassVar[str]
+    saved: ClassVar[tuple[str, ...]]
+
+    def _arrays(self) -> list[NDArray[Any]]:
+        return [np.asarray(getattr(self, key)) for key in self.saved]
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the arrays, bytes."""
+        return sum(array.nbytes for array in self._arrays())
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(("kind", *self.saved))
+
+    def __len__(self) -> int:
+        return 1 + len(self.saved)
+
+    def __getitem__(self, key: str) -> Any:
+        if key not in self.saved and key != "kind":
+            raise KeyError(key)
+        value = getattr(self, key)
+        return value if key == "kind" else _replaced(np.asarray(value).tolist(), math.inf, None)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, _Saved) or type(self) is not type(other):
+            return False
+        return [array.tobytes() for array in self._arrays()] == [array.tobytes() for array in other._arrays()]
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+class FreeFlightState(_Saved):
+    """The parabolas of all particles and the contacts that persist, of particles that fly free.
+
+    motion: one row per particle, its columns FLIGHT of systems/collision/columns.py. contacts: a particle and one that it
+    touches, in the order in which the flight looks at them, shape (k, 2). forces: in the contacts, N, shape (k,). pile:
+    PILE_COUNTS and PILE_NUMBERS of columns.py, how far a pile is with its steps, shape (7,).
+    """
+
+    kind = "free flight"
+    saved = ("motion", "contacts", "forces", "pile")
+
+    def __init__(self, motion: Floats, contacts: Pairs, forces: Floats, pile: Floats) -> None:
+        self.motion = motion
+        self.contacts = contacts
+        self.forces = forces
+        self.pile = pile
+
+
+class PersistentContacts(_Saved):
+    """The contacts that persist, of particles that an integrator moves.
+
+    pairs: two particles, or a particle and an obstacle, whose number follows those of the particles, shape (k, 2).
+    forces: that keep the pairs apart, N, shape (k,). longest_step: of the next step, s; ∞: as long as usual.
+    """
+
+    kind = "persistent contacts"
+    saved = ("pairs", "forces", "longest_step")
+
+    def __init__(self, pairs: NDArray[np.integer[Any]], forces: Floats, longest_step: float = math.inf) -> None:
+        self.pairs: Pairs = pairs.astype(np.int64)
+        self.forces = forces
+        self.longest_step = float(longest_step)
+
+
+CollisionState = FreeFlightState | PersistentContacts
+_KINDS: dict[str, type[CollisionState]] = {cls.kind: cls for cls in (FreeFlightState, PersistentContacts)}
+
+
+def check_collision_state(value: Any, where: str) -> CollisionState:
+    """The collision state that a model file holds. Raises FieldError."""
+    if isinstance(value, FreeFlightState | PersistentContacts):
+        return value
+    try:
+        entries = dict(value) if "kind" in value else _from_paths(**value)
+        kind = _KINDS[entries.pop("kind")]
+        found = kind(**{key: _read(key, entry) for key, entry in entries.items()})
+        count = len(found.contacts if isinstance(found, FreeFlightState) else found.pairs)
+        if len(found.forces) != count:
+            raise ValueError
+    except (TypeError, ValueError, KeyError, OverflowError):
+        raise FieldError(
+            f"{where}: it is not what a saved run holds; remove it, and the run goes on to within round-off."
+        ) from None
+    return found
+
+
+def _from_paths(motion: Any, contacts: Any, forces: Any, crowd: Any) -> dict[str, Any]:
+    """The entries of files of earlier programs: `crowd` is the pile, or without motion at most the longest step."""
+    if len(motion):
+        return {"kind": "free flight", "motion": motion, "contacts": contacts, "forces": forces, "pile": crowd}
+    (longest,) = crowd or [None]
+    return {"kind": "persistent contacts", "pairs": contacts, "forces": forces, "longest_step": longest}
+
+
+def _read(key: str, value: Any) -> Any:
+    """An attribute as a model file holds it. Raises ValueError or TypeError."""
+    if key in ("contacts", "pairs"):
+        array = np.array(value, dtype=np.int64).reshape(-1, 2)
+        holds = not (array < 0).any()
+    else:
+        array = np.array(_replaced(value, None, math.inf), dtype=np.float64)
+        holds = array.ndim == _DIMENSIONS.get(key) and not np.isnan(array).any()
+    if not holds:
+        raise ValueError
+    return array
+
+
+def _replaced(value: Any, old: Any, new: Any) -> Any:
+    """A value, or nested lists of values, with another one in place of `old`."""
+    if isinstance(value, list | tuple):
+        return [_replaced(entry, old, new) for entry in value]
+    return new if value == old else value

@@ -1,0 +1,182 @@
+"""The solver of a pile: impulses in the contacts of a step, by projected Gauss–Seidel sweeps.
+
+The step is that of Moreau and Jean (Jean, Comput. Methods Appl. Mech. Eng. 177, 1999): the velocities at the end,
+    v₁ = v₀ + h g + W N p,   n·Δv₁ + max(gap/h, e n·Δv₀ at an impact) ≥ 0 ⟂ p ≥ 0.
+"""
+
+import math
+
+from systems.collision.columns import Disc, Motion, Number, PileContact, Travel
+from systems.collision.kernels import compiled
+from systems.collision.kernels.persistent_contact import is_held
+from systems.collision.kernels.pile_pairs import separation
+from systems.collision.kernels.time_of_impact import rest_speed
+
+MOST_PILE_SWEEPS = 80  # to and fro over the contacts in a step; the next continues from its impulses
+ENERGY_ROUND_OFF = 1e-9  # of the energy of motion
+SIDE_BY_SIDE = 8  # contacts next to each other in the order of sweeps are far apart: computed at once
+
+
+@compiled
+def start_without_contacts(h, discs, pile):
+    """Set the velocities at the end of the step without contacts."""
+    for i in range(discs.shape[0]):
+        for d in range(2):
+            pile.motion[Motion.SPEED, i, d] = _free(i, d, h, discs, pile)
+            pile.motion[Motion.DIRECTION, i, d] = 0.0
+        pile.travel[Travel.NEAR, i] = 0.0
+
+
+@compiled
+def _free(i, d, h, discs, pile):
+    """u of a disc at the end of the step, without contacts; 0 where it is held."""
+    root = pile.motion[Motion.ROOT, i, d]
+    return (discs[i, Disc.VX + d] + h * discs[i, Disc.GX + d]) / root if root > 0.0 else 0.0
+
+
+@compiled
+def make_contacts(active, h, discs, pile, numbers):
+    """Make contacts of the chosen pairs, in the order of sweeps, with the impulses of the step before."""
+    length = (active + SIDE_BY_SIDE - 1) // SIDE_BY_SIDE
+    c = 0
+    for s in range(length):
+        for lane in range(SIDE_BY_SIDE):
+            if lane * length + s < active:
+                _make_contact(c, pile.chosen[lane * length + s], h, discs, pile, numbers)
+                c += 1
+
+
+@compiled
+def _make_contact(c, k, h, discs, pile, numbers):
+    contacts, motion = pile.contacts, pile.motion
+    i, j = pile.pairs[k, 0], pile.pairs[k, 1]
+    nx, ny, gap, vx, vy = separation(k, discs, pile, numbers)
+    pile.order[c] = k
+    contacts[c, PileContact.AX] = -nx * motion[Motion.ROOT, i, 0]
+    contacts[c, PileContact.AY] = -ny * motion[Motion.ROOT, i, 1]
+    contacts[c, PileContact.BX] = nx * motion[Motion.ROOT, j, 0]
+    contacts[c, PileContact.BY] = ny * motion[Motion.ROOT, j, 1]
+    opening = 0.0
+    for d in range(4):
+        opening += contacts[c, PileContact.AX + d] ** 2
+    root = math.sqrt(opening)
+    pile.scale[c] = root
+    contacts[c, PileContact.BIAS], contacts[c, PileContact.IMPULSE] = 0.0, 0.0
+    contacts[c, PileContact.PREVIOUS], contacts[c, PileContact.DIRECTION] = 0.0, 0.0
+    # a held disc takes no part: the other stands for it, so that contacts with one wall do not wait for one another
+    pile.ends[c, 0] = j if is_held(i, discs) else i
+    pile.ends[c, 1] = i if is_held(j, discs) else j
+    if opening == 0.0:
+        return
+    speed = nx * vx + ny * vy
+    gx, gy = discs[j, Disc.GX] - discs[i, Disc.GX], discs[j, Disc.GY] - discs[i, Disc.GY]
+    pulled = speed + h * (nx * gx + ny * gy)
+    bias = gap / h
+    if pulled + bias < 0.0 and bounces(speed, i, j, h, discs, pile, numbers):
+        bias = min(bias, discs[j, Disc.BOUNCE] * speed)
+    contacts[c, PileContact.BIAS] = bias / root
+    for d in range(4):
+        contacts[c, PileContact.AX + d] /= root
+    contacts[c, PileContact.IMPULSE] = contacts[c, PileContact.PREVIOUS] = pile.forces[k] * h * root
+    for d in range(2):
+        motion[Motion.SPEED, i, d] += contacts[c, PileContact.AX + d] * contacts[c, PileContact.IMPULSE]
+        motion[Motion.SPEED, j, d] += contacts[c, PileContact.BX + d] * contacts[c, PileContact.IMPULSE]
+
+
+@compiled
+def bounces(speed, i, j, h, discs, pile, numbers):
+    """True if discs bounce: `speed` (of separation, m/s) exceeds what free fall gives in two steps, in approach."""
+    slow = 2.0 * h * max(pile.travel[Travel.PULL, i], pile.travel[Travel.PULL, j])
+    return speed < -slow and speed < -rest_speed(i, j, discs, numbers[Number.REST_HEIGHT], numbers[Number.NOW])
+
+
+@compiled
+def find_impulses(active, tolerance, pile):
+    """Find the impulses after which contacts close no faster than about the tolerance.
+
+    Sweeps to and fro, accelerated by conjugate directions: Silcowitz, Niebe, Erleben, "A nonsmooth nonlinear
+    conjugate gradient method for interactive contact force problems", Vis. Comput. 26 (2010). Each sweep goes once
+    through memory: the acceleration of an impulse is added when its contact is relaxed.
+    """
+    size, share, keep = 0.0, 0.0, 0.0
+    for turn in range(MOST_PILE_SWEEPS):
+        _accelerate(share, keep, pile)
+        for c in range(active):
+            _relax_forward(c, share, keep, pile)
+        previous, size, fastest = size, 0.0, 0.0
+        for c in range(active - 1, -1, -1):
+            impulse = _relax(c, pile.contacts[c, PileContact.IMPULSE], pile)
+            change = impulse - pile.contacts[c, PileContact.PREVIOUS]
+            size += change * change
+            fastest = max(fastest, abs(change) * pile.scale[c])
+        if fastest <= tolerance:
+            return
+        share = size / previous if turn > 0 and size <= previous else 0.0
+        keep = 1.0 if turn == 0 or share > 0.0 else 0.0
+
+
+@compiled
+def _accelerate(share, keep, pile):
+    """Move the velocities by a share of the direction of the sweeps so far; `keep` adds the last sweep to it."""
+    motion = pile.motion
+    for i in range(motion.shape[1]):
+        for d in range(2):
+            more = share * motion[Motion.DIRECTION, i, d]
+            swept = more + motion[Motion.SPEED, i, d] - motion[Motion.PREVIOUS, i, d]
+            motion[Motion.DIRECTION, i, d] = keep * swept
+            motion[Motion.SPEED, i, d] += more
+            motion[Motion.PREVIOUS, i, d] = motion[Motion.SPEED, i, d]
+
+
+@compiled
+def _relax_forward(c, share, keep, pile):
+    """Move the impulse of a contact likewise, and relax the contact."""
+    contacts = pile.contacts
+    present = contacts[c, PileContact.IMPULSE]
+    more = share * contacts[c, PileContact.DIRECTION]
+    contacts[c, PileContact.DIRECTION] = keep * (more + present - contacts[c, PileContact.PREVIOUS])
+    contacts[c, PileContact.PREVIOUS] = present + more
+    _relax(c, present + more, pile)
+
+
+@compiled
+def _relax(c, before, pile):
+    """Change the impulse of a contact so that it neither closes nor pulls; returns the impulse."""
+    contacts, motion = pile.contacts, pile.motion
+    a, b = pile.ends[c, 0], pile.ends[c, 1]
+    ax, ay = contacts[c, PileContact.AX], contacts[c, PileContact.AY]
+    bx, by = contacts[c, PileContact.BX], contacts[c, PileContact.BY]
+    first = ax * motion[Motion.SPEED, a, 0] + ay * motion[Motion.SPEED, a, 1]
+    second = bx * motion[Motion.SPEED, b, 0] + by * motion[Motion.SPEED, b, 1]
+    impulse = max(before - ((first + second) + contacts[c, PileContact.BIAS]), 0.0)
+    contacts[c, PileContact.IMPULSE] = impulse
+    change = impulse - before
+    motion[Motion.SPEED, a, 0] += ax * change
+    motion[Motion.SPEED, a, 1] += ay * change
+    motion[Motion.SPEED, b, 0] += bx * change
+    motion[Motion.SPEED, b, 1] += by * change
+    return impulse
+
+
+@compiled
+def supplies_energy(active, h, discs, pile):
+    """True if the impulses could supply energy: they began too large, and sweeps have not corrected them.
+
+    Sweeps lessen ½ |u₁ − u₀|² + p·(N u₀ + b) with the motion u₀ without impulses; without impulses it is 0.
+    """
+    contacts, motion = pile.contacts, pile.motion
+    total, size = 0.0, 0.0
+    for i in range(discs.shape[0]):
+        for d in range(2):
+            free = _free(i, d, h, discs, pile)
+            motion[Motion.PREVIOUS, i, d] = free
+            total += 0.5 * (motion[Motion.SPEED, i, d] - free) ** 2
+            size += 0.5 * free * free
+    for c in range(active):
+        a, b = pile.ends[c, 0], pile.ends[c, 1]
+        ax, ay = contacts[c, PileContact.AX], contacts[c, PileContact.AY]
+        bx, by = contacts[c, PileContact.BX], contacts[c, PileContact.BY]
+        rate = ax * motion[Motion.PREVIOUS, a, 0] + ay * motion[Motion.PREVIOUS, a, 1]
+        rate += bx * motion[Motion.PREVIOUS, b, 0] + by * motion[Motion.PREVIOUS, b, 1]
+        total += contacts[c, PileContact.IMPULSE] * (rate + contacts[c, PileContact.BIAS])
+    return total > ENERGY_ROUND_OFF * size

@@ -1,0 +1,213 @@
+"""Crowds: discs under drag of which many touch take steps together."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from game import Session
+from systems.collision.columns import Contact, Group
+from systems.collision.driven.compiled import kernels
+from systems.collision.driven.crowds import CROWD_CONTACTS, NO_IMPACT, CrowdStepper
+from systems.collision.system import persistent_contacts
+from tests.systems.collision.test_driven_collisions import GRAVITY, box, energy_of_discs
+
+GRAVITY_PULL = 9.81
+
+
+def heap(count: int, width: float, *, seed: int = 0, **sections: Any) -> Session:
+    """Discs of several sizes, in rows above the floor of a box."""
+    rng = np.random.default_rng(seed)
+    columns = max(1, int(width / 0.13))
+    places = [
+        ((k % columns + 0.5) * width / columns - 0.5 * width, 0.07 + 0.13 * (k // columns))
+        for k in range(count)
+    ]
+    radii = rng.uniform(0.03, 0.06, count)
+    discs = [
+        {"position": list(place), "radius": radius, "mass": 400.0 * radius * radius}
+        for place, radius in zip(places, radii.tolist(), strict=True)
+    ]
+    sections = {"environment": GRAVITY | {"drag": 0.5}, "settings": {"restitution": 0.3}} | sections
+    return Session.open(box(discs, half=0.5 * width, **sections))
+
+
+def deepest(session: Session) -> float:
+    """By how much discs are in one another or in the floor, in the smallest radius."""
+    particles = session.particles
+    place, radius = particles.position + particles.displacement, particles.radius
+    apart = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1)) - radius[:, None] - radius
+    np.fill_diagonal(apart, np.inf)
+    return float(max(-apart.min(), (radius - place[:, 1]).max(), 0.0) / radius.min())
+
+
+def random_group(discs: int, slack: float, seed: int) -> Any:
+    """Discs each of which touches all others, in random directions, and their motion."""
+    rng = np.random.default_rng(seed)
+    links = np.array([(i, j) for j in range(discs) for i in range(j)])
+    angle = rng.uniform(0.0, 2.0 * math.pi, len(links))
+    group = Group.empty(discs, len(links))
+    group.links[...] = links
+    group.contacts[:, [Contact.NX, Contact.NY]] = np.column_stack([np.cos(angle), np.sin(angle)])
+    group.contacts[:, Contact.BIAS] = slack * rng.uniform(0.0, 1.0, len(links))
+    group.mobility[...], group.motion[...] = rng.uniform(0.2, 5.0, (discs, 1)), rng.normal(size=(discs, 2))
+    return group
+
+
+def opening(group: Any) -> NDArray[np.float64]:
+    """Rates at which contacts open, their biases included."""
+    apart = group.motion[group.links[:, 1]] - group.motion[group.links[:, 0]]
+    normal, bias = group.contacts[:, [Contact.NX, Contact.NY]], group.contacts[:, Contact.BIAS]
+    rates: NDArray[np.float64] = (normal * apart).sum(axis=1) + bias
+    return rates
+
+
+def pushed(group: Any) -> NDArray[np.float64]:
+    """What the impulses do to the motion."""
+    along = group.contacts[:, [Contact.NX, Contact.NY]] * group.contacts[:, [Contact.IMPULSE]]
+    total = np.zeros_like(group.motion)
+    np.add.at(total, group.links[:, 1], along)
+    np.add.at(total, group.links[:, 0], -along)
+    change: NDArray[np.float64] = group.mobility * total
+    return change
+
+
+@given(st.integers(0, 10**6), st.integers(2, 9), st.sampled_from([0.0, 0.7]))
+def test_contacts_are_held_apart_by_the_least_change_of_motion(seed: int, discs: int, slack: float) -> None:
+    """The conditions of Karush, Kuhn and Tucker, which only the least change satisfies."""
+    group = random_group(discs, slack, seed)
+    before = group.motion.copy()
+    kernels().resolve(discs, len(group.links), NO_IMPACT, 1e-13, group)
+    impulses, rates = group.contacts[:, Contact.IMPULSE], opening(group)
+    np.testing.assert_allclose(
+        group.motion, before + pushed(group), rtol=0, atol=1e-11 * (1.0 + impulses.max())
+    )
+    assert impulses.min() >= 0.0
+    assert rates.min() >= -1e-11 * (1.0 + impulses.max())
+    assert np.abs(impulses * rates).max() <= 1e-11 * (1.0 + impulses.max()) ** 2
+
+
+@example(seed=12, discs=12, known=0.34375)  # impulses after the last sweep that pull
+@given(st.integers(0, 10**6), st.integers(12, 20), st.floats(0.0, 1e3))
+def test_impulses_that_are_not_found_do_no_work(seed: int, discs: int, known: float) -> None:
+    """Sweeps over so many contacts that depend on one another go on for long, and may begin with any impulses."""
+    group = random_group(discs, 0.3, seed)
+    before = group.motion.copy()
+    group.contacts[:, Contact.IMPULSE] = known
+    kernels().resolve(discs, len(group.links), NO_IMPACT, 1e-13, group)
+    impulses = group.contacts[:, Contact.IMPULSE]
+    np.testing.assert_allclose(group.motion, before + pushed(group), rtol=0, atol=1e-9 * (1.0 + impulses.max()))
+    assert impulses.min() >= 0.0
+    assert (impulses * opening(group)).sum() <= 1e-9 * (1.0 + impulses.max()) ** 2
+    masses = 1.0 / group.mobility
+    assert (masses * group.motion**2).sum() <= (masses * before**2).sum() * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize(("width", "restitution", "seed"), [(0.9, 0.0, 1), (1.1, 0.3, 2), (0.6, 0.9, 3)])
+def test_energy_never_grows_and_nothing_sinks_in(width: float, restitution: float, seed: int) -> None:
+    session = heap(40, width, seed=seed, settings={"restitution": restitution})
+    before = energy_of_discs(session)
+    for _ in range(20):
+        session.run(time=0.05)
+        now = energy_of_discs(session)
+        assert now <= before + 1e-9
+        assert deepest(session) <= 1e-6
+        before = now
+    assert abs(session.energy.imbalance) <= 1e-10
+    assert len(session.impacts) > 50
+
+
+def test_a_heap_comes_to_rest_and_weighs_on_the_floor() -> None:
+    session = heap(36, 0.9)
+    assert session.run(until="rest", limit=60.0) == "at rest"
+    contacts, weight = persistent_contacts(session.model), GRAVITY_PULL * session.particles.mass.sum()
+    assert contacts is not None
+    assert len(contacts.pairs) >= CROWD_CONTACTS
+    floor = contacts.pairs[:, 1] == 36  # obstacles come after the particles, the floor first
+    assert contacts.forces[floor].sum() == pytest.approx(weight, rel=1e-7)
+    assert np.abs(session.particles.applied_force).max() <= 1e-8 * weight
+    assert deepest(session) <= 1e-6
+
+
+@pytest.mark.parametrize("integrator", ["velocity_verlet", "rk4"])
+def test_fixed_steps_lead_to_the_same_place_to_rest(integrator: str) -> None:
+    settings_ = {"restitution": 0.0, "integrator": integrator, "time_step": 1e-3}
+    session = heap(36, 0.9, settings=settings_)
+    assert session.run(until="rest", limit=60.0) == "at rest"
+    assert np.abs(session.particles.applied_force).max() <= 1e-8 * GRAVITY_PULL * session.particles.mass.sum()
+    assert deepest(session) <= 1e-6
+
+
+def taken(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """When steps of crowds were taken, from now on."""
+    times, step = [], CrowdStepper.step
+
+    def noted(self: CrowdStepper, *rest: Any) -> Any:
+        times.append(self.model.clock.time)
+        return step(self, *rest)
+
+    monkeypatch.setattr(CrowdStepper, "step", noted)
+    return times
+
+
+def test_a_saved_crowd_goes_on_with_the_same_bits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    times = taken(monkeypatch)
+    session = heap(40, 0.9)
+    session.run(time=0.12)
+    session.save(tmp_path / "heap.json")
+    other = Session.open(tmp_path / "heap.json")
+    times.clear()
+    for one in (session, other):
+        one.run(time=0.12)
+    assert len(times) >= 2 * 10
+    assert session.particles.displacement.tobytes() == other.particles.displacement.tobytes()
+    assert session.particles.velocity.tobytes() == other.particles.velocity.tobytes()
+
+
+def test_frames_do_not_change_the_bits_of_a_crowd(monkeypatch: pytest.MonkeyPatch) -> None:
+    times = taken(monkeypatch)
+    sessions = [heap(40, 0.9) for _ in range(2)]
+    for session, frames in zip(sessions, (60, 17), strict=True):
+        for k in range(1, frames + 1):
+            session.simulation.run_to(0.25 * k / frames, whole_steps=True)
+    steps = [session.model.clock.steps for session in sessions]
+    assert len(times) > 30
+    assert steps[0] == steps[1]
+    assert sessions[0].particles.velocity.tobytes() == sessions[1].particles.velocity.tobytes()
+
+
+def test_a_disc_that_falls_on_a_heap_bounces() -> None:
+    """By its own restitution, or nearly: what it strikes gives way."""
+    session = heap(30, 0.9, settings={"restitution": 0.8}, environment=GRAVITY | {"drag": 2.0})
+    assert session.run(until="rest", limit=60.0) == "at rest"
+    session.particles["p0"].velocity = (0.0, 0.0)
+    top = int(np.argmax((session.particles.position + session.particles.displacement)[:, 1]))
+    highest = (session.particles.position + session.particles.displacement)[top]
+    session.model.create(
+        type(session.particles[0]),
+        name=["ball"],
+        position=[(highest[0], highest[1] + 0.5)],
+        radius=0.05,
+        mass=1.0,
+    )
+    fastest = 0.0
+    for _ in range(60):
+        session.run(time=0.01)
+        fastest = max(fastest, session.particles["ball"].velocity[1])
+    assert 0.3 < fastest < 0.8 * math.sqrt(2 * GRAVITY_PULL * 0.5) + 0.1
+
+
+def test_an_edit_in_mid_run_does_not_speak_of_overlaps_that_steps_left() -> None:
+    session = heap(40, 0.9)
+    session.run(time=0.12)
+    assert 0.0 < deepest(session) < 1e-6
+    session.particles["p0"].force = (0.1, 0.0)
+    session.run(time=0.01)
+    assert session.simulation.note == ""

@@ -1,0 +1,383 @@
+"""Impacts and contacts with structures, and of particles under drag or a person's hand, through Session."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from components.collision_state import PersistentContacts
+from game import Session
+from systems.collision.driven.neighbours import NeighbourList
+from systems.collision.driven.stepper import DRIVEN
+from systems.collision.system import persistent_contacts
+from systems.edit.pull import hand_on
+
+GRAVITY = {"acceleration": [0.0, -9.81]}
+
+
+def truss(ball: dict[str, Any], restitution: float = 0.5, **settings: Any) -> dict[str, Any]:
+    """Two rods to two pins, and a ball above the node that they carry."""
+    rod = {"stiffness": 200, "damping": 0.2, "density": 3}
+    return {
+        "format": "pinjoint model",
+        "version": 1,
+        "environment": GRAVITY,
+        "settings": {"restitution": restitution, **settings},
+        "particles": [
+            {"name": "A", "position": [0.0, 0.0], "fixed": [True, True]},
+            {"name": "B", "position": [1.0, 0.5]},
+            {"name": "C", "position": [2.0, 0.0], "fixed": [True, True]},
+            {"name": "ball", "position": [1.0, 0.65], "mass": 2.0} | ball,
+        ],
+        "rods": [rod | {"name": "AB", "between": ["A", "B"]}, rod | {"name": "BC", "between": ["B", "C"]}],
+    }
+
+
+def test_what_a_window_loads_ahead_of_need_can_be_called() -> None:
+    """Here, not in the process that compiles it, nor in the frame in which the window calls it."""
+    DRIVEN.load()
+    assert DRIVEN.is_compiled()
+
+
+def state(session: Session) -> bytes:
+    particles = session.model.particles
+    return particles.displacement.tobytes() + particles.velocity.tobytes()
+
+
+def gap(session: Session) -> float:
+    """Between the rims of the ball and the node."""
+    node, ball = session.particles["B"], session.particles["ball"]
+    line = [
+        (b + v) - (a + u)
+        for a, u, b, v in zip(node.position, node.displacement, ball.position, ball.displacement, strict=True)
+    ]
+    return float(np.hypot(*line)) - (node.radius + ball.radius)
+
+
+def test_a_ball_comes_to_rest_on_a_truss_and_loads_it() -> None:
+    session = Session.open(truss({}))
+    assert session.run(until="rest") == "at rest"
+    assert abs(gap(session)) < 1e-6 * 0.05
+    loaded = Session.open(truss({"position": [1.0, 5.0], "fixed": [True, True]}))
+    loaded.particles["B"].force = (0.0, -2.0 * 9.81e-3)
+    loaded.settings.collisions = False
+    loaded.settle()
+    assert session.rods["AB"].axial_force == pytest.approx(loaded.rods["AB"].axial_force, rel=1e-7)
+    assert session.particles["A"].reaction == pytest.approx(loaded.particles["A"].reaction, rel=1e-7)
+
+
+def test_energy_is_accounted_for() -> None:
+    session = Session.open(truss({}))
+    session.run(time=0.5)
+    energy = session.energy
+    assert len(session.impacts) >= 3
+    assert energy.dissipated_impact > 0.05 * energy.work
+    assert energy.dissipated_impact == pytest.approx(session.impacts.energy_lost.sum(), rel=1e-3)
+    assert energy.imbalance == pytest.approx(0.0, abs=1e-7 * energy.work)
+
+
+def test_all_integrators_agree() -> None:
+    found = {}
+    for settings in ({}, {"integrator": "velocity_verlet", "time_step": 1e-4}, {"integrator": "rk4"}):
+        session = Session.open(truss({}, **settings))
+        session.run(time=0.19)
+        found[session.simulation.integrator.key] = session
+    exact = found.pop("dop853")
+    assert len(exact.impacts) >= 4
+    for session in found.values():
+        assert len(session.impacts) == len(exact.impacts)
+        np.testing.assert_allclose(session.impacts.time, exact.impacts.time, rtol=1e-4)
+        np.testing.assert_allclose(
+            session.model.particles.displacement, exact.model.particles.displacement, atol=1e-5
+        )
+
+
+@pytest.mark.parametrize("speed", [10.0, 1e3, 1e6])
+def test_nothing_tunnels_through_a_node(speed: float) -> None:
+    """First impact: impulse −(1 + e) v m_ball m_node / (m_ball + m_node), at the time of the free flight."""
+    document = truss({"position": [1.0, 3.0], "velocity": [0.0, -speed]}, integrator="velocity_verlet")
+    document["environment"] = {}
+    document["settings"]["time_step"] = 1e-2
+    session = Session.open(document)
+    session.settings.restitution = 0.5
+    session.run(time=3.0 / speed)
+    node = session.particles["B"].mass
+    assert session.impacts.time[0] == pytest.approx(2.4 / speed, rel=1e-12)
+    assert session.impacts.impulse[0] == pytest.approx(1.5 * speed * 2.0 * node / (2.0 + node), rel=1e-12)
+
+
+def test_how_a_run_is_divided_does_not_matter_nor_is_anything_lost_by_saving(tmp_path: Path) -> None:
+    whole, divided = Session.open(truss({})), Session.open(truss({}))
+    whole.run(steps=160)
+    for _ in range(8):
+        divided.run(steps=20)
+        divided.save(tmp_path / "saved.json")
+        divided = Session.open(tmp_path / "saved.json")
+    assert whole.model.clock.collision_state is not None, "the ball rests on the node by now"
+    assert state(whole) == state(divided)
+    assert whole.energy == divided.energy
+
+
+def test_undo_returns_the_same_bits_through_impacts_and_contact() -> None:
+    session, straight = Session.open(truss({})), Session.open(truss({}))
+    straight.run(steps=160)
+    session.run(steps=60)
+    middle = state(session)
+    session.run(steps=100)
+    assert state(session) == state(straight)
+    session.undo()
+    assert state(session) == middle
+    session.redo()
+    assert state(session) == state(straight)
+    session.run(steps=40)
+    assert session.step(-30)
+    session.run(steps=30)
+    straight.run(steps=40)
+    assert state(session) == state(straight)
+
+
+def test_particles_joined_by_a_rod_pass_through_each_other() -> None:
+    document = truss({})
+    document["particles"][3] = {"name": "ball", "position": [1.0, 0.58], "mass": 2.0}
+    document["rods"].append({"name": "B-ball", "between": ["B", "ball"], "stiffness": 1.0, "damping": 1.0})
+    session = Session.open(document)
+    session.run(time=0.2)
+    assert len(session.impacts) == 0
+
+
+def test_nodes_that_overlap_are_left_alone() -> None:
+    document = truss({"position": [1.0, 5.0], "fixed": [True, True]})
+    document["particles"].append({"name": "D", "position": [1.04, 0.45]})
+    document["rods"] += [
+        {"name": "AD", "between": ["A", "D"], "stiffness": 200, "damping": 1},
+        {"name": "CD", "between": ["C", "D"], "stiffness": 200, "damping": 1},
+    ]
+    session = Session.open(document)
+    session.run(time=0.2)
+    assert len(session.impacts) == 0
+    assert "overlap" not in session.message
+
+
+def test_what_is_pressed_together_from_rest_is_in_contact_at_once() -> None:
+    """A compressed rod is let go against a disc that touches it and parts by round-off: they meet before a moment
+    that can be told from the present one, which once let no time pass for ever."""
+    session = Session.open(
+        {
+            "format": "pinjoint model",
+            "version": 1,
+            "particles": [
+                {"name": "A", "position": [0, 0], "fixed": [True, True]},
+                {"name": "B", "position": [1, 0], "radius": 0.0625, "fixed": [False, True]},
+                {"name": "C", "position": [1.125, 0], "radius": 0.0625, "velocity": [1e-17, 0]},
+            ],
+            "rods": [{"name": "AB", "between": ["A", "B"], "rest_length": 1.001}],
+            "state": {"time": 0.5, "origin": 0.5},
+        }
+    )
+    session.run(steps=40)
+    assert session.model.clock.steps == 40
+    assert session.particles["C"].velocity[0] > 1.0
+    assert abs(session.energy.imbalance) < 1e-9 * session.energy.initial
+
+
+def test_drag_slows_particles_between_impacts() -> None:
+    """v = v₀ exp(−c t): distance to the impact v₀ (1 − exp(−c t))/c = 0.9 m."""
+    document = {
+        "format": "pinjoint model",
+        "version": 1,
+        "environment": {"drag": 1.0},
+        "particles": [
+            {"name": "p", "position": [0.0, 0.0], "velocity": [2.0, 0.0]},
+            {"name": "q", "position": [1.0, 0.0]},
+        ],
+    }
+    session = Session.open(document)
+    session.run(time=1.0)
+    assert session.impacts.time[0] == pytest.approx(-np.log(1.0 - 0.45), rel=1e-9)
+    assert session.particles["q"].velocity[0] == pytest.approx(2.0 * np.exp(-1.0), rel=1e-8)
+
+
+def test_a_structure_without_anything_near_it_takes_the_same_steps() -> None:
+    collides, alone = Session.open("warren_bridge"), Session.open("warren_bridge")
+    alone.settings.collisions = False
+    for session in (collides, alone):
+        session.run(steps=300)
+    assert "collision.discs" in [system.name for system in collides.simulation.plan]
+    assert state(collides) == state(alone)
+
+
+@pytest.mark.parametrize("below", ["floor", "disc"])
+def test_a_particle_under_drag_that_begins_in_contact_lies_there(below: str) -> None:
+    """Nothing moves at first, so that no speed tells that it is about to meet what it touches."""
+    document: dict[str, Any] = {
+        "format": "pinjoint model",
+        "version": 1,
+        "environment": GRAVITY | {"drag": 1.0},
+        "particles": [{"name": "p", "position": [0.0, 0.05]}],
+    }
+    if below == "floor":
+        document["components"] = {"walls.Wall": [{"name": "w", "start": [-1.0, 0.0], "end": [1.0, 0.0]}]}
+    else:
+        document["particles"].append({"name": "q", "position": [0.0, -0.05], "fixed": [True, True]})
+    session = Session.open(document)
+    session.run(time=0.1)
+    assert session.particles["p"].displacement == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert len(session.impacts) == 0
+
+
+# --- several things in contact at once ------------------------------------------------------------------------
+
+
+def box(discs: list[dict[str, Any]], half: float = 0.3, **sections: Any) -> dict[str, Any]:
+    """Discs between two walls on a floor, of half the width `half` (m)."""
+    ends = {
+        "floor": ([-half, 0.0], [half, 0.0]),
+        "left": ([-half, 0.0], [-half, 3.0]),
+        "right": ([half, 0.0], [half, 3.0]),
+    }
+    walls = [{"name": name, "start": start, "end": end} for name, (start, end) in ends.items()]
+    return {
+        "format": "pinjoint model",
+        "version": 1,
+        "environment": GRAVITY,
+        "particles": [{"name": f"p{k}", **disc} for k, disc in enumerate(discs)],
+        "components": {"walls.Wall": walls},
+    } | sections
+
+
+@pytest.mark.parametrize(("count", "restitution"), [(8, 0.5), (12, 0.0), (16, 0.0)])
+def test_energy_never_grows_where_rows_of_discs_fit_exactly_between_walls(
+    count: int, restitution: float
+) -> None:
+    """Six discs fill the box from wall to wall: which forces jam them is not determined, and must not matter."""
+    places = [(-0.2 + 0.13 * (k % 4) + 0.003 * k, 0.06 + 0.13 * (k // 4)) for k in range(count)]
+    discs = [{"position": list(place)} for place in places]
+    session = Session.open(
+        box(discs, environment=GRAVITY | {"drag": 0.5}, settings={"restitution": restitution})
+    )
+    before = energy_of_discs(session)
+    for _ in range(30):
+        how = session.run(time=0.1)
+        now = energy_of_discs(session)
+        assert now <= before + 1e-9 * abs(before)
+        before = now
+        if how == "at rest":
+            break
+    assert np.abs(session.particles.velocity).max() < 1.0
+    assert abs(session.energy.imbalance) <= 1e-10
+    assert_inside(session)
+
+
+def energy_of_discs(session: Session) -> float:
+    """Of motion and in the field of constant forces (J), 0 where they were drawn at rest."""
+    particles = session.particles
+    return session.energy.kinetic - 1000.0 * float((particles.constant_force * particles.displacement).sum())
+
+
+def assert_inside(session: Session) -> None:
+    """Nothing sunk in by 1e-6 of a radius."""
+    near = NeighbourList(session.model)
+    near.look_up()
+    near._list(near._least, near.displacement)
+    gap, _ = near.gaps(near.pairs, near.displacement)
+    assert gap.min(initial=0.0) >= -1e-6 * session.particles.radius.min()
+
+
+def assert_lies(session: Session) -> None:
+    """At rest, nothing sunk in by 1e-6 of a radius, and what holds it bears its weight."""
+    particles, near = session.model.particles, NeighbourList(session.model)
+    near.look_up()
+    assert_inside(session)
+    contacts = persistent_contacts(session.model)
+    assert contacts is not None
+    assert (contacts.forces >= 0.0).all()
+    _, normal = near.gaps(contacts.pairs, near.displacement)
+    force = 1000.0 * particles.constant_force
+    for (i, j), n, push in zip(contacts.pairs, normal, contacts.forces, strict=True):
+        force[i] -= push * n
+        if j < particles.count:
+            force[j] += push * n
+    alone = np.ones(particles.count, dtype=bool)
+    alone[session.model.rods.between.ravel()] = False
+    weight = 1000.0 * np.abs(particles.constant_force).max()
+    assert np.abs(force[alone]).max() <= 1e-6 * weight
+
+
+@pytest.mark.parametrize("drag", [0.5, 20.0])
+def test_a_small_pile_comes_to_rest_under_drag(drag: float) -> None:
+    """What opened within a step once met again at its start, for ever."""
+    discs = [{"position": [-0.2 + 0.13 * (k % 4) + 0.003 * k, 0.06 + 0.13 * (k // 4)]} for k in range(8)]
+    environment = GRAVITY | {"drag": drag}
+    session = Session.open(box(discs, environment=environment, settings={"restitution": 0.0}))
+    assert session.run(until="rest", limit=20.0) == "at rest"
+    assert_lies(session)
+    assert abs(session.energy.imbalance) < 1e-9 * session.energy.work
+
+
+@pytest.mark.parametrize("integrator", ["esdirk4", "dop853"])
+def test_an_integrator_of_either_kind_brings_a_ball_to_rest_on_a_truss(integrator: str) -> None:
+    session = Session.open(truss({}, integrator=integrator))
+    session.model.rods[0].damping = session.model.rods[1].damping = 20.0
+    assert session.run(until="rest") == "at rest"
+    assert session.rods["AB"].axial_force == pytest.approx(-0.0587925291, rel=1e-7)
+    assert abs(session.energy.imbalance) < 1e-6 * session.energy.work
+    assert_lies(session)
+
+
+def test_a_ball_rests_on_a_cable() -> None:
+    """Where it settles: the cable, loaded by its weight at mid span, is in balance with it."""
+    rope = {"stiffness": 100, "damping": 2.0, "density": 1, "tension_only": True}
+    document = truss({"position": [1.0, 0.1], "mass": 1.0, "fixed": [True, False]}, restitution=0.3)
+    document["particles"][1]["position"] = [1.0, -0.1]
+    document["rods"] = [rope | {"name": name, "between": list(name)} for name in ("AB", "BC")]
+    session = Session.open(document)
+    assert session.run(until="rest", limit=20.0) == "at rest"
+    assert_lies(session)
+    x, y = np.add(session.particles["B"].position, session.particles["B"].displacement)
+    pull = session.rods["AB"].axial_force
+    node = session.particles["B"].mass
+    assert pull == pytest.approx(9.81e-3 * (1.0 + node) * np.hypot(x, y) / (-2.0 * y), rel=1e-7)
+
+
+def test_a_ball_that_makes_a_truss_yield_rests_on_what_is_left() -> None:
+    """Its energy goes into impacts, dampers and plastic strain; afterwards no rod exceeds its strength."""
+    document = truss({"mass": 20.0}, restitution=0.5)
+    for rod in document["rods"]:
+        rod |= {"tensile_strength": 0.3, "compressive_strength": 0.3, "damping": 2.0}
+    session = Session.open(document)
+    assert session.run(until="rest") == "at rest"
+    assert_lies(session)
+    energy = session.energy
+    assert energy.dissipated_plastic > 0.1 * energy.work
+    assert abs(energy.imbalance) < 1e-6 * energy.work
+    assert np.abs(session.model.rods.axial_force).max() <= 0.3 * (1.0 + 1e-12)
+
+
+def test_a_hand_presses_a_disc_onto_a_node() -> None:
+    """From aside, then from above; it never passes, and all work is accounted for, in impacts and contact."""
+    session = Session.open(truss({"position": [0.2, 1.5]}))
+    session.simulation.advance(0)
+    hand = hand_on(session.model, session.view, session.particles["ball"], lambda: session.pace)
+    for k in range(20):
+        session.timeline.hold(hand.at((0.8, -0.8 if k < 10 else -1.1)))
+        session.run(time=0.1)
+        assert gap(session) > -1e-6 * 0.05
+    session.timeline.hold(None)
+    energy = session.energy
+    assert len(session.impacts) > 0
+    assert abs(energy.imbalance) < 1e-6 * (abs(energy.work) + energy.dissipated_damping)
+
+
+def test_a_step_that_is_cut_does_not_outlast_the_run() -> None:
+    """What is jammed is followed in steps that are short at first, but not shorter than a run that ends before."""
+    disc = {"position": [0.0, 0.05], "velocity": [0.05, 0.0]}
+    session = Session.open(box([disc], environment=GRAVITY | {"drag": 0.5}, settings={"restitution": 0.0}))
+    session.run(time=0.1)
+    contacts = persistent_contacts(session.model)
+    assert contacts is not None
+    session.model.writable("clock.collision_state")[0] = PersistentContacts(
+        contacts.pairs, contacts.forces, 0.5 * session.model.clock.step_size
+    )
+    session.run(time=1e-4)
+    assert session.time == pytest.approx(0.1001, abs=1e-15)

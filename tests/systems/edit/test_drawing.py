@@ -1,0 +1,156 @@
+"""Particles and rods, as a person draws them."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from components.view import Preview
+from game import Session
+from tests.systems.edit.hand import FRAME, press_at, preview
+
+
+def test_p_makes_a_free_particle_of_1_kg_under_the_pointer(empty: Session) -> None:
+    press_at(empty, "p", 0.25, -0.5)
+    [particle] = empty.particles
+    assert particle.name == "particle 1"
+    assert particle.position == (0.25, -0.5)
+    assert (particle.mass, particle.fixed, particle.velocity) == (1.0, (False, False), (0.0, 0.0))
+    assert empty.notice == "Particle 1: (25, -50) cm"
+
+
+@pytest.mark.parametrize(
+    ("at", "expected"),
+    [
+        ((0.46, 1.04), (0.5, 1.0)),  # both within 5 px of a line
+        ((0.46, 1.2), (0.5, 1.2)),  # each axis by itself
+        ((0.3, 0.97), (0.3, 1.0)),
+        ((0.3, 0.2), (0.3, 0.2)),
+        ((0.44, 0.06), (0.44, 0.06)),  # 6 px away
+    ],
+)
+def test_it_snaps_to_lines_of_the_shown_grid_within_5_px(
+    empty: Session, at: tuple[float, float], expected: tuple[float, float]
+) -> None:
+    empty.press("g")
+    press_at(empty, "p", *at)
+    assert empty.particles[0].position == expected
+
+
+def test_without_a_shown_grid_it_does_not_snap(empty: Session) -> None:
+    empty.press("g")
+    empty.press("h")
+    press_at(empty, "p", 0.46, 1.04)
+    assert empty.particles[0].position == (0.46, 1.04)
+
+
+def test_no_second_particle_at_the_same_place(empty: Session) -> None:
+    press_at(empty, "p", 0.0, 0.0)
+    press_at(empty, "p", 0.05, 0.0)
+    assert empty.particles.count == 1
+    assert empty.notice.startswith("Particle 1 is here already")
+
+
+def test_particles_are_made_while_time_passes(triangle: Session) -> None:
+    triangle.press("space")
+    triangle.frame(FRAME)
+    press_at(triangle, "p", 3.0, 3.0)
+    triangle.frame(FRAME)
+    assert triangle.scene == "simulation"
+    assert triangle.particles.count == 4
+
+
+def test_l_over_a_particle_then_l_over_another(two: Session) -> None:
+    press_at(two, "l", 0.0, 0.0)
+    press_at(two, "l", 1.5, 0.0)
+    [rod] = two.rods
+    assert [end.name for end in rod.ends] == ["particle 1", "particle 2"]
+    assert two.notice == "Rod 1: 1.5 m"
+    assert two.particles["particle 1"].mass == pytest.approx(6.15 * 1.5 / 2, rel=1e-15)
+    assert two.gesture is None
+
+
+def test_l_then_a_click(two: Session) -> None:
+    press_at(two, "l", 0.0, 0.0)
+    two.click(1.5, 0.0)
+    assert two.rods.count == 1
+
+
+def test_the_length_is_shown_before_the_rod_is_made(two: Session) -> None:
+    press_at(two, "l", 0.0, 0.0)
+    two.point(1.0, 1.0)
+    assert preview(two) == Preview("rod", (0.0, 0.0), (1.0, 1.0), "1.41 m")
+    two.point(1.47, 0.03)  # snaps to the particle
+    assert preview(two) == Preview("rod", (0.0, 0.0), (1.5, 0.0), "1.5 m")
+
+
+def test_esc_cancels_the_rod_and_stays_in_pause(two: Session) -> None:
+    press_at(two, "l", 0.0, 0.0)
+    two.press("escape")
+    two.frame(FRAME)
+    assert (two.scene, two.gesture, two.view.preview) == ("pause", None, None)
+    press_at(two, "l", 1.5, 0.0)
+    assert two.rods.count == 0
+
+
+def test_a_rod_that_cannot_be_is_refused_and_the_tool_goes_on(two: Session) -> None:
+    press_at(two, "l", 0.0, 0.0)
+    press_at(two, "l", 0.0, 0.0)
+    assert "two different particles" in two.notice
+    press_at(two, "l", 0.7, 0.9)
+    assert two.notice.startswith("A rod ends at a particle")
+    press_at(two, "l", 1.5, 0.0)
+    assert two.rods.count == 1
+    press_at(two, "l", 1.5, 0.0)
+    press_at(two, "l", 0.0, 0.0)
+    assert two.rods.count == 1
+    assert "joined already, by rod 1" in two.notice
+
+
+def test_the_rod_tool_drags_from_particle_to_particle_until_it_is_put_away(two: Session) -> None:
+    press_at(two, "p", 0.0, 1.0)
+    press_at(two, "l", -1.0, -1.0)  # over nothing: the tool is in hand
+    two.drag((0.0, 0.0), (1.5, 0.0))
+    two.drag((1.5, 0.0), (0.0, 1.0))
+    assert two.rods.count == 2
+    two.click(0.0, 1.0)
+    two.click(0.0, 0.0)
+    assert two.rods.count == 3
+    two.press("escape")
+    two.drag((0.0, 1.0), (0.0, 1.3))
+    assert two.rods.count == 3
+    assert two.particles["particle 3"].position == (0.0, 1.3)
+
+
+def test_a_drag_with_l_held_makes_a_rod(two: Session) -> None:
+    press_at(two, "l", 0.0, 0.0)
+    two.drag((0.0, 0.0), (1.5, 0.0))
+    assert two.rods.count == 1
+    assert two.gesture is None
+
+
+def test_a_rod_between_displaced_particles_has_their_distance_at_creation(two: Session) -> None:
+    two.particles["particle 2"].displacement = (0.0, 0.2)
+    press_at(two, "l", 0.0, 0.0)
+    press_at(two, "l", 1.5, 0.2)
+    [rod] = two.rods
+    assert rod.rest_length == math.hypot(1.5, 0.2)
+    assert abs(rod.axial_force) < 1e-9
+
+
+def test_attaching_and_deleting_a_rod_recomputes_masses_as_one_entry(two: Session) -> None:
+    two.particles["particle 1"].mass = 50.0
+    press_at(two, "l", 0.0, 0.0)
+    press_at(two, "l", 1.5, 0.0)
+    assert two.particles["particle 1"].mass == pytest.approx(4.6125, rel=1e-15)
+    two.particles["particle 2"].mass = 70.0
+    two.select(two.rods[0])
+    two.press("delete")
+    assert [particle.mass for particle in two.particles] == [1.0, 1.0]
+    two.press("ctrl+z")
+    assert two.particles["particle 2"].mass == 70.0
+    two.press("ctrl+z")
+    two.press("ctrl+z")
+    assert two.rods.count == 0
+    assert two.particles["particle 1"].mass == 50.0

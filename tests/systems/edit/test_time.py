@@ -1,0 +1,140 @@
+"""Going through time: steps, pace, restart."""
+
+from __future__ import annotations
+
+import pytest
+
+from components.snapshot import Snapshot
+from game import Session
+from game.documents.history.timeline import Timeline
+from systems.edit.pull import Hand
+from tests.systems.edit.hand import FRAME, assert_same_state, opened, run_frames
+
+
+def test_steps_forward_and_back_are_the_same_bit_for_bit(triangle: Session) -> None:
+    states = [Snapshot.take(triangle.model)]
+    for _ in range(200):
+        triangle.press("right")
+        states.append(Snapshot.take(triangle.model))
+    assert triangle.model.clock.steps == 200
+    for step in (199, 198, 150, 129, 128, 127, 3):
+        while triangle.model.clock.steps > step:
+            triangle.press("left")
+        assert_same_state(triangle, states[step])
+    for _ in range(10):
+        triangle.press("right")
+    assert_same_state(triangle, states[13])
+
+
+def test_stepping_back_through_a_run_in_frames(triangle: Session) -> None:
+    triangle.press("space")
+    run_frames(triangle, 600)
+    triangle.press("space")
+    last = triangle.model.clock.steps
+    target = last - 321
+    reference = opened()
+    reference.run(steps=target)
+    assert triangle.step(-321)
+    assert_same_state(triangle, Snapshot.take(reference.model))
+    triangle.press("shift+left")
+    assert triangle.model.clock.steps < target - 1
+    assert triangle.step(321 + target - triangle.model.clock.steps)
+    assert triangle.model.clock.steps == last
+
+
+def test_stepping_back_through_a_pull_repeats_what_the_hand_did(triangle: Session) -> None:
+    triangle.press("space")
+    run_frames(triangle, 60)
+    triangle.grab(1.0, 1.0)
+    states = {}
+    for index in range(12):
+        triangle.drag_to(1.0 + 0.05 * index, 1.0)
+        run_frames(triangle, 6)
+        states[triangle.model.clock.steps] = Snapshot.take(triangle.model)
+    triangle.drop()
+    triangle.frame(FRAME)
+    triangle.press("space")
+    at = sorted(states)[5]
+    assert triangle.step(at - triangle.model.clock.steps)
+    for name in ("particles.displacement", "particles.velocity"):
+        then, now = states[at].columns[name], triangle.model.column(name)
+        assert now.tobytes() == then.tobytes()
+
+
+def test_stepping_back_after_a_pull_does_not_pull_again(
+    triangle: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    triangle.press("space")
+    run_frames(triangle, 20)
+    triangle.grab(1.0, 1.0)
+    triangle.drag_to(1.2, 1.0)
+    run_frames(triangle, 10)
+    triangle.drop()
+    triangle.frame(FRAME)
+    triangle.press("space")
+    states = [Snapshot.take(triangle.model)]
+    for _ in range(4):
+        triangle.press("right")
+        states.append(Snapshot.take(triangle.model))
+    taken: list[Hand | None] = []
+    monkeypatch.setattr(triangle.pull, "take", taken.append)
+    for step in (3, 1, 0):
+        while triangle.model.clock.steps > states[step].columns["clock.steps"][0]:
+            triangle.press("left")
+        assert_same_state(triangle, states[step])
+    assert taken == []
+
+
+def test_going_back_stops_where_something_was_edited_and_undo_goes_on(triangle: Session) -> None:
+    triangle.run(steps=300)
+    triangle.particles["B"].force = (10.0, 0.0)
+    triangle.run(steps=50)
+    assert not triangle.step(-100)
+    assert triangle.model.clock.steps == 300
+    triangle.press("left")
+    assert "as far back" in triangle.notice
+
+
+def test_moments_are_thinned_out_within_a_memory_bound(triangle: Session) -> None:
+    timeline = Timeline(
+        triangle.simulation, triangle.pull, memory=20 * triangle.simulation.checkpoint().state.size
+    )
+    with timeline.recording():
+        triangle.simulation.advance(20_000)
+    assert triangle.simulation.halted
+    steps = triangle.model.clock.steps
+    assert steps > 1000
+    assert timeline.kept <= 20
+    reference = opened()
+    reference.run(steps=777)
+    assert timeline.go_to(777)
+    assert_same_state(triangle, Snapshot.take(reference.model))
+    assert timeline.kept <= 21
+
+
+def test_pace_goes_from_a_hundred_thousandth_to_fast(triangle: Session) -> None:
+    for _ in range(40):
+        triangle.press("-")
+    assert triangle.clock.factor == pytest.approx(1e-5, rel=1e-12)
+    triangle.press("space")
+    for _ in range(5):
+        triangle.frame(FRAME)
+    # Less than one step in five frames, yet time does not stand still: what is due is carried over.
+    triangle.press("0")
+    for _ in range(5):
+        triangle.frame(FRAME)
+    assert triangle.model.clock.steps > 0
+    for _ in range(40):
+        triangle.press("+")
+    assert triangle.clock.factor == pytest.approx(1e3, rel=1e-12)
+
+
+def test_restart_keeps_edits(triangle: Session) -> None:
+    triangle.run(steps=100)
+    triangle.particles["B"].force = (1.0, 2.0)
+    triangle.run(steps=100)
+    triangle.press("r")
+    assert triangle.model.clock.steps == 0
+    assert triangle.particles["B"].force == (1.0, 2.0)
+    triangle.press("ctrl+z")
+    assert triangle.model.clock.steps == 200

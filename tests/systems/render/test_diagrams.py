@@ -1,0 +1,139 @@
+"""Force diagrams in a picture."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from components.model import Model
+from components.particle import Particle
+from components.tags import DiagramShown
+from systems.render.diagrams import diagram_factor, scale_step, written
+from systems.render.marks import Bars, Stamps
+from systems.render.picture import compose
+from systems.render.supports import DOWN, LEFT, RIGHT, UP
+from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
+
+
+def test_values_of_the_thesis_triangle() -> None:
+    texts = picture_of(triangle(), all_diagrams=True).texts
+    for value in ("−28.34", "−198.03", "20.07", "120.00", "160.00", "20.01", "139.99"):
+        assert f"{value} kN" in texts
+    assert texts.count("120.00 kN") == 2  # the load at B and the reaction at C
+    assert {"A", "B", "C", "AB", "BC", "CA"} <= set(texts)
+
+
+def test_diagram_heights_are_proportional_to_forces_and_shrink_together() -> None:
+    model = triangle()
+    for scale in (0.1, 1.0, 7.0):
+        model.settings.diagram_scale = scale
+        picture = picture_of(model, all_diagrams=True)
+        (red,) = marks_of(picture, Bars, LIGHT.tension)
+        (blue,) = marks_of(picture, Bars, LIGHT.compression)
+        corners = np.concatenate([blue.corners, red.corners])
+        heights = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
+        factor = diagram_factor(198.02746, 0.0, scale, 0.15 * 600)
+        np.testing.assert_allclose(heights, np.array([28.34277, 198.02746, 20.0679]) * scale * factor)
+        note = [text for text in picture.texts if "diagrams ×" in text]
+        assert bool(note) == (factor != 1.0)
+        assert all(f"diagrams ×{factor:g}" in text for text in note)
+
+
+@given(st.floats(1e-3, 1e9), st.floats(1e-3, 1e3), st.floats(1.0, 500.0))
+def test_scale_step_fits_and_wastes_no_more_than_a_step(largest: float, scale: float, room: float) -> None:
+    factor = scale_step(largest, scale, room)
+    assert room / 2.001 < largest * scale * factor <= room * (1 + 1e-9)
+
+
+@given(st.floats(0.0, 1e9), st.floats(0.0, 1e9), st.floats(1e-3, 1e3), st.floats(10.0, 500.0))
+def test_diagrams_always_fit_and_keep_their_scale_where_it_will_do(
+    largest: float, loads: float, scale: float, room: float
+) -> None:
+    factor = diagram_factor(largest, loads, scale, room)
+    assert largest * scale * factor <= room * (1 + 1e-9)
+    if largest * scale <= room and not 1e-4 < loads < 0.05 * room:
+        assert factor == 1.0
+    if factor > 1.0:
+        assert loads * factor <= 0.3 * room * (1 + 1e-9)
+
+
+def test_diagrams_of_small_loads_are_enlarged_and_stay_so_while_the_forces_vibrate() -> None:
+    model = triangle()
+    fill(model, "particles.constant_force", [(0, 0), (0.12, -0.16), (0, 0)])
+    notes = []
+    for share in (1e-9, 0.5e-3, 1e-3):
+        fill(model, "rods.axial_force", np.array([-28.34277, -198.02746, 20.0679]) * share)
+        notes += [text for text in picture_of(model, all_diagrams=True).texts if "diagrams ×" in text]
+    assert len(notes) == 3
+    assert len(set(notes)) == 1
+
+
+def test_diagrams_stand_outside_of_the_structure() -> None:
+    picture = picture_of(triangle(), all_diagrams=True)
+    middle = view_of(triangle()).camera.to_pixels((1.0, 1.0 / 3.0))
+    diagrams = [corners for bars in marks_of(picture, Bars) for corners in bars.corners]
+    assert len(diagrams) >= 3
+    for corners in diagrams:
+        on_rod, off_rod = (corners[0] + corners[3]) / 2, (corners[1] + corners[2]) / 2
+        assert np.linalg.norm(off_rod - middle) > np.linalg.norm(on_rod - middle)
+
+
+def test_a_rod_without_force_is_black_and_reads_zero() -> None:
+    model = triangle()
+    fill(model, "rods.axial_force", [0.0, -1e-7, 1.0])
+    picture = picture_of(model, all_diagrams=True)
+    (black,) = marks_of(picture, Bars, LIGHT.zero)
+    assert len(black.corners) == 2
+    assert LIGHT.zero[:3] == (0, 0, 0)
+    assert picture.texts.count("0.00 kN") == 2
+
+
+def test_only_marked_elements_show_their_diagrams() -> None:
+    model = triangle()
+    model.tag(model.rods["CA"], DiagramShown)
+    model.tag(model.particles["A"], DiagramShown)
+    texts = picture_of(model).texts
+    assert "20.07 kN" in texts
+    assert "20.01 kN" in texts
+    assert not {"−28.34 kN", "−198.03 kN", "120.00 kN"} & set(texts)
+
+
+def test_arrows_point_along_the_force_and_meet_the_rim() -> None:
+    model = Model()
+    model.create(Particle, 4, position=[(0, 0), (1, 0), (2, 0), (3, 0)])
+    fill(model, "particles.applied_force", [(1.0, 0), (0, 2.0), (-3.0, 0), (0, -0.00009)])
+    fill(model, "particles.reaction", [(0, 0), (0, 0), (0, 0), (0.00011, 0)])
+    view = view_of(model)
+    arrows = [s for s in marks_of(compose(model, view, LIGHT), Stamps) if s.symbol == "arrow"]
+    assert not arrows
+    view.all_diagrams = True
+    picture = compose(model, view, LIGHT)
+    arrows = [s for s in marks_of(picture, Stamps) if s.symbol == "arrow" and s.size == 20.0]
+    pixels = view.camera.to_pixels(model.particles.position)
+    radius = 0.05 * view.camera.scale
+    by_row = {int(np.argmin(np.abs(pixels[:, 0] - at[0]))): (s.turns, at) for s in arrows for at in s.at}
+    assert {row: turns for row, (turns, _) in by_row.items()} == {0: RIGHT, 1: UP, 2: LEFT, 3: RIGHT}
+    for row, (_, at) in by_row.items():
+        assert np.linalg.norm(at - pixels[row]) == pytest.approx(radius + 2.0)
+    assert {"1.00 kN", "2.00 kN", "3.00 kN", "0.0001 kN"} <= set(picture.texts)
+    assert all(s.ink[:3] == (0, 100, 255) for s in arrows)
+
+
+def test_a_load_on_a_crowded_side_pushes_from_the_free_one() -> None:
+    """The load on top of the triangle stands above it; its head ends at the rim."""
+    model = triangle()
+    view = view_of(model, all_diagrams=True)
+    arrows = [s for s in marks_of(compose(model, view, LIGHT), Stamps) if s.symbol == "arrow"]
+    top = view.camera.to_pixels((1.0, 1.0))
+    (down,) = [s for s in arrows if s.turns == DOWN]
+    np.testing.assert_allclose(down.at, [top - [0, 0.05 * view.camera.scale + 2.0 + 20.0]])
+
+
+@pytest.mark.parametrize(
+    ("force", "text"),
+    [(-28.34277, "−28.34"), (198.0, "198.00"), (-0.0049, "0.00"), (0.0, "0.00"), (-0.005001, "−0.01")],
+)
+def test_written_forces(force: float, text: str) -> None:
+    assert written(force) == text

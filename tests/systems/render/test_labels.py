@@ -1,0 +1,180 @@
+"""Names and values, and where they find room."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from components.camera import Viewport
+from components.model import Model
+from components.particle import Particle
+from components.rod import spawn_rods
+from components.tags import Hovered, Selected
+from components.view import Status
+from systems.render.diagrams import written
+from systems.render.labels import FAINT, STRONG, Label, Occupancy, Placed, place_labels
+from systems.render.marks import Panel, Text
+from systems.render.picture import compose
+from tests.reference.boxes import overlapping, text_boxes
+from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, view_of
+
+
+def random_model(seed: int, particles: int, rods: int) -> Model:
+    rng = np.random.default_rng(seed)
+    model = Model()
+    model.create(
+        Particle, particles, position=rng.uniform(0, 4, (particles, 2)), fixed=rng.random((particles, 2)) < 0.2
+    )
+    pairs = np.array(list(itertools.combinations(range(particles), 2)))
+    chosen = rng.choice(len(pairs), min(rods, len(pairs)), replace=False)
+    spawn_rods(model, pairs[chosen])
+    fill(model, "rods.axial_force", rng.normal(0, 100, len(chosen)))
+    fill(model, "particles.applied_force", rng.normal(0, 50, (particles, 2)))
+    return model
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    st.integers(0, 10_000),
+    st.integers(2, 30),
+    st.sampled_from([(600, 600, 1.0), (1280, 800, 1.0), (320, 240, 1.0), (1200, 1200, 2.0), (200, 500, 1.0)]),
+    st.booleans(),
+)
+def test_texts_never_overlap_and_stay_in_the_viewport(seed: int, n: int, size: tuple, problem: bool) -> None:
+    width, height, ratio = size
+    model = random_model(seed, n, 3 * n)
+    model.tag(model.rods[0], Selected)
+    status = Status(
+        1.2e-3, 1e-3, "running", "Esc stops", "It diverged: a time step of 1 s is too large." * problem
+    )
+    view = view_of(model, width, height, heading="Pause", all_diagrams=True, pixel_ratio=ratio, status=status)
+    picture = compose(model, view, LIGHT)
+    boxes = text_boxes(marks_of(picture, Text))
+    assert overlapping(boxes) == []
+    for text, left, top, right, bottom in boxes:
+        assert left >= -1, text
+        assert top >= -1, text
+        assert right <= width + 1, text
+        assert bottom <= height + 1, text
+
+
+def test_values_lie_clear_of_one_anothers_backing() -> None:
+    picture = picture_of(random_model(3, 25, 70), width=1000, height=800, all_diagrams=True)
+    pills = [m for m in marks_of(picture, Panel) if m.fill[3] == round(255 * 0.86)]
+    boxes = [("", p.left, p.top, p.left + p.width, p.top + p.height) for p in pills]
+    assert len(boxes) > 40
+    assert overlapping(boxes) == []
+
+
+def test_without_room_the_largest_and_the_selected_values_remain() -> None:
+    model = random_model(5, 24, 200)
+    forces = np.linspace(1.0, 200.0, 200)
+    fill(model, "rods.axial_force", forces)
+    fill(model, "particles.applied_force", np.zeros((24, 2)))
+    model.tag(model.rods[0], Selected)
+    texts = picture_of(model, width=500, height=500, all_diagrams=True).texts
+    shown = [force for force in forces if written(force) in texts]
+    assert 20 < len(shown) < 150
+    assert written(forces[-1]) in texts
+    assert written(forces[0]) in texts
+    assert np.mean(shown) > np.mean(forces)
+
+
+def test_very_short_rods_show_no_values_and_say_so() -> None:
+    model = Model()
+    count = 60
+    model.create(Particle, count, position=[(0.1 * i, 0.0) for i in range(count)])
+    spawn_rods(model, [(i, i + 1) for i in range(count - 1)])
+    fill(model, "rods.axial_force", np.arange(1.0, count))
+    texts = picture_of(model, all_diagrams=True).texts
+    assert any("zoom in" in text for text in texts)
+    assert written(59.0) not in texts
+
+
+def test_names_of_all_show_only_where_there_are_few() -> None:
+    model = random_model(1, 20, 30)
+    assert not [text for text in picture_of(model).texts if text.startswith(("particle", "rod"))]
+    model.tag(model.rods["rod 3"], Selected)
+    model.tag(model.particles["particle 2"], Hovered)
+    assert {"rod 3", "particle 2"} <= set(picture_of(model).texts)
+
+
+PLACES = [(30.0, 50.0), (70.0, 50.0)]
+
+
+def place_of(blocked: float | None, placed: Placed, line: tuple[float, int] | None = None) -> float | None:
+    """The x at which a label stands that may be at 30 or 70, by a square that is taken and a line."""
+    occupancy = Occupancy(Viewport(0, 0, 100, 100), 1.0)
+    if blocked is not None:
+        occupancy.block(blocked - 5.0, 45.0, 10.0, 10.0)
+    if line is not None:
+        occupancy.line(np.array([[line[0], 0.0]]), np.array([[line[0], 100.0]]), line[1])
+    label = Label("1", PLACES, 11, LIGHT.text, 0.0, key=("rods.name", 7))
+    marks = place_labels([label], occupancy, 1.0, placed)
+    return next((mark.x for mark in marks if isinstance(mark, Text)), None)
+
+
+def test_labels_stay_where_they_were_in_the_last_picture() -> None:
+    placed: Placed = {}
+    assert place_of(30.0, placed) == 70.0
+    assert placed == {("rods.name", 7): 1}
+    assert place_of(None, placed) == 70.0
+    assert place_of(70.0, placed) == 30.0
+    assert place_of(None, placed) == 30.0
+    assert place_of(None, {}) == 30.0
+
+
+def test_labels_move_to_where_they_cover_less() -> None:
+    assert place_of(None, {("rods.name", 7): 1}, (70.0, STRONG)) == 30.0
+    assert place_of(None, {("rods.name", 7): 1}, (30.0, STRONG)) == 70.0
+    assert place_of(30.0, {("rods.name", 7): 0}, (70.0, FAINT)) == 70.0
+
+
+def test_what_has_no_place_any_more_is_forgotten() -> None:
+    placed = {("rods.name", 7): 1, ("rods.name", 8): 0}
+    occupancy = Occupancy(Viewport(0, 0, 100, 100), 1.0)
+    assert place_labels([], occupancy, 1.0, placed) == []
+    assert not placed
+
+
+def share_that_stays(model: Model, placed: Placed, *, forget: bool) -> float:
+    """The least share of the values in one picture that the one before had, too, while forces vibrate by a tenth."""
+    view, told, rng = view_of(model, 500, 500, all_diagrams=True), [], np.random.default_rng(6)
+    for _ in range(5):
+        fill(model, "rods.axial_force", np.linspace(100.0, 200.0, 200) * rng.uniform(0.9, 1.1, 200))
+        if forget:
+            placed.clear()
+        texts = compose(model, view, LIGHT, placed).texts
+        told.append({row for name, row in placed if name == "rods.axial_force"})
+        assert all(written(float(model.rods.axial_force[row])) in texts for row in told[-1])
+    return min(len(now & before) / len(now) for before, now in itertools.pairwise(told))
+
+
+def test_values_come_and_go_only_where_forces_change_much() -> None:
+    model, placed = random_model(5, 24, 200), {}
+    fill(model, "particles.applied_force", np.zeros((24, 2)))
+    assert share_that_stays(model, {}, forget=True) < 0.75
+    assert share_that_stays(model, placed, forget=False) > 0.85
+    weak = min(row for name, row in placed if name == "rods.axial_force")
+    fill(model, "rods.axial_force", np.where(np.arange(200) == weak, 1.0, 180.0))
+    compose(model, view_of(model, 500, 500, all_diagrams=True), LIGHT, placed)
+    assert ("rods.axial_force", weak) not in placed
+
+
+def test_values_of_many_forces_leave_the_rods_to_their_own_where_there_is_room() -> None:
+    model, count = Model(), 30
+    model.create(Particle, count, position=[(0.0, float(i)) for i in range(count)])
+    spawn_rods(model, [(i, i + 1) for i in range(count - 1)])
+    fill(model, "rods.axial_force", np.arange(1.0, count))
+    fill(model, "particles.applied_force", np.tile([0.0, -0.25], (count, 1)))
+    view = view_of(model, 400, 2400, all_diagrams=True)
+    picture = compose(model, view, LIGHT)
+    middle = view.camera.to_pixels((0.0, 0.0))[0]
+    forces = [mark for mark in marks_of(picture, Text, LIGHT.force) if mark.text == "0.25"]
+    assert len(forces) == count
+    inside = [mark for mark in forces[1:] if abs(mark.x - middle) < 10.0]
+    assert len(inside) <= 1  # below the lowest particle there is no rod
+    assert {written(float(force)) for force in range(1, count)} <= set(picture.texts)

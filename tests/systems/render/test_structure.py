@@ -1,0 +1,177 @@
+"""Particles, rods, supports and grids in a picture."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from components.camera import Camera
+from components.grid import Grid
+from components.model import Model
+from components.particle import Particle
+from components.tags import Hovered, Selected
+from components.view import View
+from components.world import Derivation
+from systems.render.marks import Discs, Rectangles, Stamps, Strokes
+from systems.render.picture import compose, drawn_positions
+from systems.render.supports import DOWN, LEFT, NO_SUPPORT, RIGHT, UP, freest_sides
+from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
+
+
+def test_composing_needs_no_pygame() -> None:
+    code = "import sys, systems.render.picture; print('pygame' in sys.modules, 'numba' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["False", "False"]
+
+
+def test_drawn_positions_scale_displacements() -> None:
+    model = triangle()
+    model.writable("particles.displacement")[1] = (0.01, -0.02)
+    model.settings.displacement_scale = 10.0
+    np.testing.assert_allclose(drawn_positions(model), [(0, 0), (1.1, 0.8), (2, 0)], rtol=1e-15)
+
+
+def test_rods_are_drawn_between_drawn_positions() -> None:
+    model = triangle()
+    model.writable("particles.displacement")[1] = (0.01, -0.02)
+    model.settings.displacement_scale = 10.0
+    view = view_of(model)
+    (rods,) = marks_of(compose(model, view, LIGHT), Strokes, LIGHT.ink)
+    pixels = view.camera.to_pixels(drawn_positions(model))
+    np.testing.assert_allclose(rods.start, pixels[[0, 1, 2]], rtol=1e-12)
+    np.testing.assert_allclose(rods.end, pixels[[1, 2, 0]], rtol=1e-12)
+
+
+def test_ghost_appears_only_when_displacements_are_seen() -> None:
+    model = triangle()
+    model.writable("particles.displacement")[1] = (0.001, 0.0)
+    assert not marks_of(picture_of(model), Strokes, LIGHT.ghost)
+    model.settings.displacement_scale = 100.0
+    assert marks_of(picture_of(model), Strokes, LIGHT.ghost)
+
+
+def test_particle_radius_is_to_scale_and_never_too_small_to_hit() -> None:
+    model = Model()
+    model.create(Particle, 2, position=[(0, 0), (1, 0)], radius=[0.05, 0.01])
+    view = View(camera=Camera(centre=(0.5, 0.0), scale=200.0))
+    (discs,) = marks_of(compose(model, view, LIGHT), Discs)
+    radii = dict(zip(discs.at[:, 0].round().tolist(), discs.radius.tolist(), strict=True))
+    assert radii == {200: 10.0, 400: 5.0}
+
+
+def test_selection_hovering_and_yielding_show() -> None:
+    model = triangle()
+    model.rods["BC"].compressive_strength = 198.0
+    model.rods["CA"].compressive_strength = 198.0
+    fill(model, "rods.yielding", [False, True, True])
+    model.tag(model.rods["BC"], Selected)
+    model.tag(model.particles["A"], Selected)
+    model.tag(model.rods["AB"], Hovered)
+    picture = picture_of(model)
+    view = view_of(model)
+    a, _, c = view.camera.to_pixels(model.particles.position)
+    strokes = reversed(marks_of(picture, Strokes))  # the first of each colour, since the legend comes later
+    opaque = {s.colour: s for s in strokes if s.colour[3] == 255}
+    np.testing.assert_allclose(opaque[LIGHT.selected].end[0], c)  # selected wins over yielding
+    np.testing.assert_allclose(opaque[LIGHT.yielding].start[0], c)
+    (halo,) = marks_of(picture, Strokes, LIGHT.hover)
+    assert halo.colour[3] < 128
+    np.testing.assert_allclose(halo.start[0], a)
+    (ring,) = [discs for discs in marks_of(picture, Discs) if discs.rim and discs.ink == LIGHT.selected]
+    np.testing.assert_allclose(ring.at, [a])
+
+
+def test_cables_are_thin_and_slack_ones_dashed() -> None:
+    model = triangle()
+    model.rods["BC"].tension_only = model.rods["CA"].tension_only = True
+    fill(model, "rods.axial_force", [-1.0, 2.0, 0.0])
+    view = view_of(model)
+    a, b, c = view.camera.to_pixels(model.particles.position)
+    dashes, bars, cables = [s for s in marks_of(picture_of(model), Strokes) if s.colour == LIGHT.ink][:3]
+    np.testing.assert_allclose([bars.start[0], bars.end[0]], [a, b])
+    np.testing.assert_allclose([cables.start[0], cables.end[0]], [b, c])
+    assert cables.width < bars.width
+    np.testing.assert_allclose([dashes.start[0], dashes.end[-1]], [c, a])
+    gaps = np.hypot(*(dashes.start[1:] - dashes.end[:-1]).T)
+    assert len(gaps) > 3
+    assert (gaps > 2.0).all()
+    assert "slack cable" in picture_of(model).texts
+
+
+def test_derived_columns_are_read_only_when_needed() -> None:
+    model = triangle()
+
+    def refuse(world: object) -> None:
+        raise AssertionError("computed although nothing shows it")
+
+    columns = ("rods.axial_force", "rods.yielding", "particles.applied_force", "particles.reaction")
+    model.derive(Derivation(columns, ("particles.position",), refuse))
+    picture_of(model)
+    with pytest.raises(AssertionError, match="nothing shows it"):
+        picture_of(model, all_diagrams=True)
+
+
+@pytest.mark.parametrize(
+    ("fixed", "crowd", "side"),
+    [
+        ((False, False), (0, 0, 0, 0), NO_SUPPORT),
+        ((False, True), (0, 0, 0, 0), DOWN),
+        ((False, True), (0, 1, 0, 0), UP),
+        ((True, False), (0, 0, 0, 0), LEFT),
+        ((True, False), (0, 0, 1, 0), RIGHT),
+        ((True, True), (1, 0, 0, 1), DOWN),
+        ((True, True), (1, 1, 0, 0), LEFT),
+        ((True, True), (0, 1, 1, 0), RIGHT),
+    ],
+)
+def test_supports_stand_where_no_rod_is(fixed: tuple, crowd: tuple, side: int) -> None:
+    assert freest_sides(np.array([fixed]), np.array([crowd], dtype=float)).tolist() == [side]
+
+
+def test_supports_touch_the_rim_from_outside() -> None:
+    model = triangle()
+    view = view_of(model)
+    stamps = {s.symbol: s for s in marks_of(compose(model, view, LIGHT), Stamps)}
+    pixels = view.camera.to_pixels(model.particles.position)
+    radius = 0.05 * view.camera.scale
+    for symbol, row in (("roller", 0), ("pinned", 2)):
+        assert stamps[symbol].turns == DOWN
+        np.testing.assert_allclose(stamps[symbol].at, [pixels[row] + [0, radius - 1]])
+
+
+def test_positions_that_are_no_numbers_are_left_out() -> None:
+    model = triangle()
+    model.writable("particles.displacement")[1] = (np.nan, np.inf)
+    picture = picture_of(model, all_diagrams=True)
+    assert "20.07 kN" in picture.texts
+    assert "−28.34 kN" not in picture.texts
+    for mark in picture.marks:
+        for name in ("start", "end", "at", "corners"):
+            assert np.isfinite(getattr(mark, name, 0.0)).all()
+
+
+@pytest.mark.parametrize("scale", [1e-3, 0.37, 3.0, 100.0, 5000.0])
+def test_grid_lines_keep_a_distance_and_lie_on_multiples(scale: float) -> None:
+    model = Model()
+    model.create(Grid, 1, name=["grid 1"], spacing=[(0.5, 0.25)])
+    view = View(camera=Camera(centre=(0.3, 0.1), scale=scale))
+    (lines,) = marks_of(compose(model, view, LIGHT), Rectangles, LIGHT.grid)
+    for axis, spacing, centre, flip in ((0, 0.5, 0.3, 1), (1, 0.25, 0.1, -1)):
+        at = np.sort(lines.boxes[lines.boxes[:, 2 + axis] == 1, axis])
+        assert (np.diff(at) >= 7).all()
+        multiples = ((at - 300.0) / (flip * scale) + centre) / spacing
+        assert np.abs(multiples - np.round(multiples)).max(initial=0.0) <= 0.51 / (scale * spacing) + 1e-9
+
+
+def test_selected_grid_is_red_and_hidden_grids_are_not_drawn() -> None:
+    model = Model()
+    first, second = model.create(Grid, 2, name=["grid 1", "grid 2"], shown=[True, False])
+    assert LIGHT.grid[:3] == (200, 200, 200)
+    assert len(marks_of(picture_of(model), Rectangles, LIGHT.grid)) == 1
+    model.tag(first, Selected)
+    assert len(marks_of(picture_of(model), Rectangles, LIGHT.selected)) == 1
+    model.tag(second, Selected)
+    assert len(marks_of(picture_of(model), Rectangles, LIGHT.selected)) == 1
