@@ -12,14 +12,12 @@ from systems.render.theme import load_theme
 ZOOM_STEP = 1.2
 THEMES = ("light", "dark", "colour-blind", "colour-blind-dark")  # in the order in which one follows another
 
-
+# Actions of the scene; pan is given how far the pointer was dragged, in place of where it is.
 _SCENE: dict[str, Action] = {
     "fit": lambda context, pixel: context.scenes.active.fit(context),
     "zoom in": lambda context, pixel: context.scenes.active.zoom(context, ZOOM_STEP, pixel),
     "zoom out": lambda context, pixel: context.scenes.active.zoom(context, 1.0 / ZOOM_STEP, pixel),
-    "pan": lambda context, pixel: context.scenes.active.pan(
-        context, pixel
-    ),  # by how far the pointer was dragged
+    "pan": lambda context, dragged: context.scenes.active.pan(context, dragged),
 }
 for _name, _act in _SCENE.items():
     action(_name, while_drawing=True)(_act)
