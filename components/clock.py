@@ -29,36 +29,25 @@ class Clock(Handle):
     __slots__ = ()
     table, noun, single = "clock", "clock", True
 
-    time: Field[float] = Field("s", role=Role.STATE, minimum=0.0, title="time", doc="Simulated time.")
-    step_size: Field[float] = Field(
-        "s", role=Role.STATE, title="step size", doc="Present fixed step; 0: not yet chosen."
-    )
+    time: Field[float] = Field("s", role=Role.STATE, minimum=0.0, doc="Simulated time.")
+    step_size: Field[float] = Field("s", role=Role.STATE, doc="Present fixed step; 0: not yet chosen.")
     step_error: Field[float] = Field(
-        role=Role.STATE, title="step error", doc="Estimated error of the last step; 1 is the tolerance."
+        role=Role.STATE, doc="Estimated error of the last step; 1 is the tolerance."
     )
     largest_displacement: Field[float] = Field(
-        "m",
-        role=Role.STATE,
-        title="largest displacement",
-        doc="Largest Euclidean norm of all displacements, the scale of their error.",
+        "m", role=Role.STATE, doc="Largest Euclidean norm of all displacements, the scale of their error."
     )
     largest_speed: Field[float] = Field(
-        "m/s",
-        role=Role.STATE,
-        title="largest speed",
-        doc="Largest Euclidean norm of all velocities, the scale of their error.",
+        "m/s", role=Role.STATE, doc="Largest Euclidean norm of all velocities, the scale of their error."
     )
     origin: Field[float] = Field(
         "s", role=Role.STATE, title="time origin", doc="Time at which the present step size began."
     )
     step_limit: Field[float] = Field(
-        "s", role=Role.STATE, title="step limit", doc="Largest step when the steps were last reviewed."
+        "s", role=Role.STATE, doc="Largest step when the steps were last reviewed."
     )
     work: Field[float] = Field(
-        "J",
-        role=Role.STATE,
-        title="work",
-        doc="Of varying loads, edits and constant forces up to the last edit.",
+        "J", role=Role.STATE, doc="Of varying loads, edits and constant forces up to the last edit."
     )
     dissipated_damping: Field[float] = Field(
         "J", role=Role.STATE, title="dissipated by damping", doc="By axial dampers and drag."
@@ -70,42 +59,30 @@ class Clock(Handle):
         "J", role=Role.STATE, title="dissipated by impacts", doc="Kinetic energy lost in impacts."
     )
     initial_energy: Field[float] = Field(
-        "J",
-        role=Role.STATE,
-        title="initial energy",
-        doc="Kinetic and elastic energy at the start of the run.",
+        "J", role=Role.STATE, doc="Kinetic and elastic energy at the start of the run."
     )
     potential_reference: Field[float] = Field(
-        "J",
-        role=Role.STATE,
-        title="potential reference",
-        doc="Σ constant force · displacement at the last edit.",
+        "J", role=Role.STATE, doc="Σ constant force · displacement at the last edit."
     )
     force_scale: Field[float] = Field(
-        "kN", role=Role.STATE, title="force scale", doc="Largest force of the run, the scale for being at rest."
+        "kN", role=Role.STATE, doc="Largest force of the run, the scale for being at rest."
     )
     energy_scale: Field[float] = Field(
-        "J", role=Role.STATE, title="energy scale", doc="Largest energy of the run, the scale for divergence."
+        "J", role=Role.STATE, doc="Largest energy of the run, the scale for divergence."
     )
     guard_energy: Field[float] = Field(
         "J",
         role=Role.STATE,
-        title="guard energy",
         doc="What the integrator conserves, less the work, when the present step size began.",
     )
-    steps: Field[int] = Field(dtype=int, default=0, role=Role.STATE, title="steps", doc="Fixed steps taken.")
-    origin_steps: Field[int] = Field(
-        dtype=int, default=0, role=Role.STATE, title="origin steps", doc="Steps at the time origin."
-    )
-    collisions: Field[int] = Field(
-        dtype=int, default=0, role=Role.STATE, title="collisions", doc="Impacts so far."
-    )
+    steps: Field[int] = Field(dtype=int, default=0, role=Role.STATE, doc="Fixed steps taken.")
+    origin_steps: Field[int] = Field(dtype=int, default=0, role=Role.STATE, doc="Steps at the time origin.")
+    collisions: Field[int] = Field(dtype=int, default=0, role=Role.STATE, doc="Impacts so far.")
     events: Field[Mapping[str, tuple[str, ...]] | None] = Field(
         dtype=object,
         default=None,
         nullable=True,
         role=Role.STATE,
-        title="events",
         doc="The elements whose quantity is negative, by the name of the event.",
         checker=check_events,
     )
@@ -114,7 +91,6 @@ class Clock(Handle):
         default=None,
         nullable=True,
         role=Role.STATE,
-        title="collision state",
         doc="Paths of free particles, or persistent contacts of driven ones, so that the run goes on bit for bit.",
         checker=check_collision_state,
     )

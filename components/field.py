@@ -67,6 +67,7 @@ class Field(Generic[T]):
     Reading gives a plain Python value (a vector is an immutable tuple). Assigning is a command: it is
     checked, undoable, and marks the column as changed.
 
+    title: what a person calls it; without one, its name with spaces.
     dtype: float, bool, int, str, "reference" (row of another table, stored as uint32) or object.
     shape: () or (2,).
     unit: unit inside the program and in files; `shown` is (unit, factor) on screen.
@@ -88,8 +89,8 @@ class Field(Generic[T]):
         self,
         unit: str = "",
         *,
-        title: str,
         doc: str,
+        title: str = "",
         default: Any = 0.0,
         dtype: Any = float,
         shape: tuple[int, ...] = (),
@@ -137,6 +138,7 @@ class Field(Generic[T]):
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
+        self.title = self.title or name.replace("_", " ")
 
     @property
     def key(self) -> str:

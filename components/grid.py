@@ -19,17 +19,16 @@ class Grid(Handle):
     __slots__ = ()
     table, noun = "grids", "grid"
 
-    name: Field[str] = Field(title="name", doc="Unique among the grids.", default="", dtype=str)
+    name: Field[str] = Field(doc="Unique among the grids.", default="", dtype=str)
     spacing: Field[Vector] = Field(
         "m",
         shape=(2,),
         default=0.5,
         above=0.0,
-        title="spacing",
         doc="Distance between lines along x, along y.",
         shown=("cm", 100.0),
     )
-    shown: Field[bool] = Field(dtype=bool, default=True, title="shown", doc="Drawn now; at most one is.")
+    shown: Field[bool] = Field(dtype=bool, default=True, doc="Drawn now; at most one is.")
 
     @classmethod
     def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:

@@ -115,7 +115,7 @@ class Load(Handle):
     __slots__ = ()
     table, noun = "loads", "load"
 
-    name: Field[str] = Field(title="name", doc="Unique among the loads.", default="", dtype=str)
+    name: Field[str] = Field(doc="Unique among the loads.", default="", dtype=str)
     on: Field[int] = Field(
         dtype="reference",
         default=0,
@@ -123,13 +123,9 @@ class Load(Handle):
         title="particle",
         doc="The particle that it acts on: in files its name, in Python its row.",
     )
-    force: Field[Vector] = Field("kN", shape=(2,), title="force", doc="Force at factor 1.")
+    force: Field[Vector] = Field("kN", shape=(2,), doc="Force at factor 1.")
     history: Field[History] = Field(
-        dtype=object,
-        default=CONSTANT,
-        title="history",
-        doc="How its factor changes in time.",
-        checker=check_history,
+        dtype=object, default=CONSTANT, doc="How its factor changes in time.", checker=check_history
     )
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, cast
+from typing import Any
 
 from components.clock import Clock
 from components.derived import DERIVATIONS
@@ -29,38 +29,14 @@ class Model(World):
 
     def __init__(self) -> None:
         super().__init__((*KINDS, *ADDED.values()), DERIVATIONS)
-        self._environment = cast(Environment, self.tables["environment"][0])
-        self._settings = cast(Settings, self.tables["settings"][0])
-        self._clock = cast(Clock, self.tables["clock"][0])
+        self.particles: Table[Particle] = self.tables["particles"]
+        self.rods: Table[Rod] = self.tables["rods"]
+        self.loads: Table[Load] = self.tables["loads"]
+        self.grids: Table[Grid] = self.tables["grids"]
+        self.environment: Environment = self.tables["environment"][0]
+        self.settings: Settings = self.tables["settings"][0]
+        self.clock: Clock = self.tables["clock"][0]
         self.title = ""
         self.description = ""
         self.foreign: dict[int, dict[str, Any]] = {}
         self.foreign_kinds: dict[str, Any] = {}
-
-    @property
-    def particles(self) -> Table[Particle]:
-        return self.tables["particles"]
-
-    @property
-    def rods(self) -> Table[Rod]:
-        return self.tables["rods"]
-
-    @property
-    def loads(self) -> Table[Load]:
-        return self.tables["loads"]
-
-    @property
-    def grids(self) -> Table[Grid]:
-        return self.tables["grids"]
-
-    @property
-    def environment(self) -> Environment:
-        return self._environment
-
-    @property
-    def settings(self) -> Settings:
-        return self._settings
-
-    @property
-    def clock(self) -> Clock:
-        return self._clock

@@ -21,26 +21,18 @@ class Particle(Handle):
     __slots__ = ()
     table, noun = "particles", "particle"
 
-    name: Field[str] = Field(title="name", doc="Unique among the particles.", default="", dtype=str)
+    name: Field[str] = Field(doc="Unique among the particles.", default="", dtype=str)
     position: Field[Vector] = Field(
         "m", shape=(2,), title="original position", doc="Where it is undisplaced.", shown=("cm", 100.0)
     )
     displacement: Field[Vector] = Field(
-        "m",
-        shape=(2,),
-        role=Role.STATE,
-        title="displacement",
-        doc="Present minus original position.",
-        shown=("cm", 100.0),
+        "m", shape=(2,), role=Role.STATE, doc="Present minus original position.", shown=("cm", 100.0)
     )
-    velocity: Field[Vector] = Field(
-        "m/s", shape=(2,), role=Role.STATE, title="velocity", doc="Zero in a constrained direction."
-    )
+    velocity: Field[Vector] = Field("m/s", shape=(2,), role=Role.STATE, doc="Zero in a constrained direction.")
     asleep: Field[bool] = Field(
         dtype=bool,
         default=False,
         role=Role.STATE,
-        title="asleep",
         doc="At rest with its island, which time passes by until something reaches it.",
     )
     fixed: Field[tuple[bool, bool]] = Field(
@@ -51,7 +43,7 @@ class Particle(Handle):
         "m/s²", shape=(2,), title="applied acceleration", doc="Adds mass × acceleration to its force."
     )
     radius: Field[float] = Field(
-        "m", default=0.05, above=0.0, title="radius", doc="Of the disc that collides.", shown=("cm", 100.0)
+        "m", default=0.05, above=0.0, doc="Of the disc that collides.", shown=("cm", 100.0)
     )
     prescribed_mass: Field[float | None] = Field(
         "kg",
@@ -67,7 +59,6 @@ class Particle(Handle):
         "kg",
         default=DEFAULT_MASS,
         role=Role.DERIVED,
-        title="mass",
         doc="Prescribed, or half the mass of every attached rod, or 1 kg without rods.",
         overridden_by="prescribed_mass",
     )
@@ -75,14 +66,12 @@ class Particle(Handle):
         "m/s²/kN",
         shape=(2,),
         role=Role.DERIVED,
-        title="mobility",
         doc="Acceleration per force in each direction: 1000/mass, 0 where constrained.",
     )
     constant_force: Field[Vector] = Field(
         "kN",
         shape=(2,),
         role=Role.DERIVED,
-        title="constant force",
         doc="All external force that time does not change: own, environment's, mass × accelerations, loads.",
     )
     applied_force: Field[Vector] = Field(
@@ -96,7 +85,6 @@ class Particle(Handle):
         "kN",
         shape=(2,),
         role=Role.DERIVED,
-        title="reaction",
         doc="The support's force on it in constrained directions, 0 elsewhere.",
     )
 

@@ -21,7 +21,7 @@ class Rod(Handle):
     __slots__ = ()
     table, noun = "rods", "rod"
 
-    name: Field[str] = Field(title="name", doc="Unique among the rods.", default="", dtype=str)
+    name: Field[str] = Field(doc="Unique among the rods.", default="", dtype=str)
     between: Field[tuple[int, int]] = Field(
         dtype="reference",
         shape=(2,),
@@ -30,9 +30,7 @@ class Rod(Handle):
         title="ends",
         doc="The particles at its two ends: in files names, in Python rows.",
     )
-    stiffness: Field[float] = Field(
-        "kN", default=164640.0, above=0.0, title="stiffness", doc="EA: force per unit of strain."
-    )
+    stiffness: Field[float] = Field("kN", default=164640.0, above=0.0, doc="EA: force per unit of strain.")
     prescribed_rest_length: Field[float | None] = Field(
         "m",
         default=None,
@@ -45,13 +43,7 @@ class Rod(Handle):
         overrides="rest_length",
     )
     tensile_strength: Field[float | None] = Field(
-        "kN",
-        default=None,
-        nullable=True,
-        absent="unlimited",
-        minimum=0.0,
-        title="tensile strength",
-        doc="Largest tension; 0: unlimited.",
+        "kN", default=None, nullable=True, absent="unlimited", minimum=0.0, doc="Largest tension; 0: unlimited."
     )
     compressive_strength: Field[float | None] = Field(
         "kN",
@@ -59,7 +51,6 @@ class Rod(Handle):
         nullable=True,
         absent="unlimited",
         minimum=0.0,
-        title="compressive strength",
         doc="Largest compression; 0: unlimited.",
     )
     damping: Field[float] = Field(
@@ -70,32 +61,27 @@ class Rod(Handle):
         doc="Axial force per elongation rate.",
     )
     density: Field[float] = Field(
-        "kg/m", default=6.15, minimum=0.0, title="density", doc="Mass per length.", shown=("kg/cm", 0.01)
+        "kg/m", default=6.15, minimum=0.0, doc="Mass per length.", shown=("kg/cm", 0.01)
     )
     temperature_change: Field[float] = Field(
-        "K", title="temperature change", doc="Warming since it had its rest length; it expands as it warms."
+        "K", doc="Warming since it had its rest length; it expands as it warms."
     )
     thermal_expansion: Field[float] = Field(
         "1/K",
         default=1.2e-5,
         minimum=0.0,
-        title="thermal expansion",
         doc="Strain per change of temperature; steel: 12·10⁻⁶/K.",
         shown=("10⁻⁶/K", 1e6),
     )
     tension_only: Field[bool] = Field(
         dtype=bool,
         default=False,
-        title="tension only",
         doc="A cable: slack, without force, where its ends are nearer than its length without force.",
     )
-    plastic_strain: Field[float] = Field(
-        role=Role.STATE, title="plastic strain", doc="Permanent part of the strain."
-    )
+    plastic_strain: Field[float] = Field(role=Role.STATE, doc="Permanent part of the strain.")
     rest_length: Field[float] = Field(
         "m",
         role=Role.DERIVED,
-        title="rest length",
         doc="Prescribed, or the distance between the original positions.",
         shown=("cm", 100.0),
         overridden_by="prescribed_rest_length",
@@ -107,32 +93,23 @@ class Rod(Handle):
         title="original difference",
         doc="Original position of the second end minus that of the first.",
     )
-    original_length: Field[float] = Field(
-        "m", role=Role.DERIVED, title="original length", doc="Length of the original difference."
-    )
+    original_length: Field[float] = Field("m", role=Role.DERIVED, doc="Length of the original difference.")
     misfit: Field[float] = Field(
         "m",
         role=Role.DERIVED,
-        title="misfit",
         doc="Original length − rest length × (1 + thermal strain): its elongation where it was drawn.",
     )
-    tension_limit: Field[float] = Field(
-        "kN", role=Role.DERIVED, title="tension limit", doc="Tensile strength; infinite if unlimited."
-    )
+    tension_limit: Field[float] = Field("kN", role=Role.DERIVED, doc="Tensile strength; infinite if unlimited.")
     compression_limit: Field[float] = Field(
-        "kN", role=Role.DERIVED, title="compression limit", doc="Compressive strength; infinite if unlimited."
+        "kN", role=Role.DERIVED, doc="Compressive strength; infinite if unlimited."
     )
-    axial_force: Field[float] = Field(
-        "kN", role=Role.DERIVED, title="axial force", doc="Without the damper's; tension positive."
-    )
+    axial_force: Field[float] = Field("kN", role=Role.DERIVED, doc="Without the damper's; tension positive.")
     length: Field[float] = Field(
-        "m", role=Role.DERIVED, title="length", doc="Present distance between the ends.", shown=("cm", 100.0)
+        "m", role=Role.DERIVED, doc="Present distance between the ends.", shown=("cm", 100.0)
     )
-    strain: Field[float] = Field(
-        role=Role.DERIVED, title="strain", doc="Elongation / rest length, without thermal expansion."
-    )
+    strain: Field[float] = Field(role=Role.DERIVED, doc="Elongation / rest length, without thermal expansion.")
     yielding: Field[bool] = Field(
-        dtype=bool, default=False, role=Role.DERIVED, title="yielding", doc="Axial force is at a strength."
+        dtype=bool, default=False, role=Role.DERIVED, doc="Axial force is at a strength."
     )
 
     @property

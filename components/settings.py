@@ -27,31 +27,24 @@ class Settings(Handle):
         default=None,
         nullable=True,
         above=0.0,
-        title="time step",
         doc="Fixed; automatic: as small as stability and accuracy ask for.",
     )
     tolerance: Field[float] = Field(
         default=1e-9,
         minimum=1e-13,
         maximum=0.1,
-        title="tolerance",
         doc="Error of one step, relative to the largest displacement and speed; for integrators that control it.",
     )
-    integrator: Field[str] = Field(
-        default=AUTOMATIC, dtype=str, title="integrator", doc="How time advances.", choices=INTEGRATORS
-    )
-    collisions: Field[bool] = Field(dtype=bool, default=True, title="collisions", doc="Particles collide.")
-    plasticity: Field[bool] = Field(
-        dtype=bool, default=True, title="plasticity", doc="Rods with a strength yield."
-    )
+    integrator: Field[str] = Field(default=AUTOMATIC, dtype=str, doc="How time advances.", choices=INTEGRATORS)
+    collisions: Field[bool] = Field(dtype=bool, default=True, doc="Particles collide.")
+    plasticity: Field[bool] = Field(dtype=bool, default=True, doc="Rods with a strength yield.")
     sleeping: Field[bool] = Field(
         dtype=bool,
         default=True,
-        title="sleeping",
         doc="Islands of rods at rest are left out of the steps until something reaches them.",
     )
     displacement_scale: Field[float] = Field(
-        default=1.0, minimum=0.0, title="displacement scale", doc="Displacements are drawn this much larger."
+        default=1.0, minimum=0.0, doc="Displacements are drawn this much larger."
     )
     diagram_scale: Field[float] = Field(
         "px/kN", default=1.0, minimum=0.0, title="force diagram scale", doc="Size of the force diagrams."

@@ -3,18 +3,6 @@
 from __future__ import annotations
 
 
-class Selected:
-    """A person has selected it."""
-
-    __slots__ = ()
-
-
-class DiagramShown:
-    """Its force diagram is drawn."""
-
-    __slots__ = ()
-
-
 class Rare:
     """A tag that few elements carry at a time: esper holds it, and its queries find them."""
 
@@ -23,5 +11,17 @@ class Rare:
 
 class Hovered(Rare):
     """A click would hit it."""
+
+    __slots__ = ()
+
+
+class Selected:
+    """A person has selected it."""
+
+    __slots__ = ()
+
+
+class DiagramShown:
+    """Its force diagram is drawn."""
 
     __slots__ = ()

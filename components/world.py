@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any, NoReturn, TypeVar
 
 import esper
@@ -18,7 +19,7 @@ from components.commands import Assign, Command, Create, Custom, Delete, Group, 
 from components.field import Column, Field, FieldError, Role, same
 from components.handle import Handle, set_entity
 from components.suggestions import missing
-from components.table import Table, grown
+from components.table import Table
 from components.tags import Rare
 
 H = TypeVar("H", bound=Handle)
@@ -59,8 +60,8 @@ class World:
         self.row_of_entity: NDArray[np.int64] = np.full(64, -1, dtype=np.int64)
         self.tables: dict[str, Table[Any]] = {}
         self.tags_revision = 0
-        self._marked: dict[type, NDArray[np.bool_]] = {}  # by tag, for each esper id whether it has it
-        self._tagged: tuple[Any, dict[Any, NDArray[np.intp]]] = (None, {})  # rows, found at these revisions
+        self._tagged: dict[type, NDArray[np.int64]] = {}  # by tag that is not Rare: esper ids, ascending
+        self._tagged_rows: tuple[Any, dict[type, dict[str, NDArray[np.intp]]]] = (None, {})  # at these revisions
         self.changing = False
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}
@@ -468,94 +469,69 @@ class World:
 
     # --- tags ------------------------------------------------------------------------------------------
     #
-    # A tag that one or a few elements carry at a time (Rare) is a component that esper holds and finds; one that
-    # all of a large model may carry is a column, since esper takes a microsecond for each component.
+    # esper holds a tag that few elements carry at a time (Rare), and finds them. It takes a microsecond for each
+    # component, so that a tag which all elements of a large model may carry is an array of esper ids instead.
 
     def tag(self, handle: Handle, tag: type) -> None:
-        """Mark an entity, such as with Selected."""
+        """Let an existing entity carry a tag, such as Selected."""
         if handle.exists:
-            self._mark(self._ids([handle]), tag, True)
+            self._carry(tag, np.union1d(self._carriers(tag), self._ids([handle])))
 
     def untag(self, handle: Handle, tag: type) -> None:
-        """Take a mark off an entity, if it has it."""
-        self._mark(self._ids([handle]), tag, False)
+        """Take a tag off an entity, if it carries it."""
+        self._carry(tag, np.setdiff1d(self._carriers(tag), self._ids([handle])))
 
     def tag_only(self, handles: Iterable[Handle], tag: type) -> None:
-        """Let exactly these entities carry a mark."""
-        wanted = np.zeros(len(self.row_of_entity), dtype=bool)
-        wanted[self._ids(list(handles))] = True
-        self._mark(slice(None), tag, wanted & (self.row_of_entity >= 0))
+        """Let exactly these entities, those of them that exist, carry a tag."""
+        ids = np.unique(np.array(self._ids(list(handles)), dtype=np.int64))
+        self._carry(tag, ids[self.row_of_entity[ids] >= 0])
 
-    def _mark(self, entities: list[int] | slice, tag: type, marked: bool | NDArray[np.bool_]) -> None:
-        if issubclass(tag, Rare):
-            self._mark_in_esper(entities, tag, marked)
-            return
-        marks = self._marks(tag)
-        if (marks[entities] != marked).any():
-            marks[entities] = marked
-            self.tags_revision = self.next_revision()
-
-    def _mark_in_esper(self, entities: list[int] | slice, tag: type, marked: bool | NDArray[np.bool_]) -> None:
-        before = wanted = set(self._having(tag).tolist())
-        if isinstance(entities, slice):
-            wanted = set(np.flatnonzero(marked).tolist())
-        elif marked:
-            wanted = before.union(entities)
-        else:
-            wanted = before.difference(entities)
-        for entity in before - wanted:
-            esper.remove_component(entity, tag)
-        for entity in wanted - before:
-            esper.add_component(entity, tag())
-        if before != wanted:
-            self.tags_revision = self.next_revision()
-
-    def _having(self, tag: type) -> NDArray[np.int64]:
-        """The esper ids of the entities that carry a rare tag, deleted ones included, ascending."""
+    def _carriers(self, tag: type) -> NDArray[np.int64]:
+        """The esper ids of the entities that carry a tag, deleted ones included, ascending."""
+        if not issubclass(tag, Rare):
+            return self._tagged.get(tag, np.zeros(0, dtype=np.int64))
         self.activate()
         return np.array(sorted(entity for entity, _ in esper.get_component(tag)), dtype=np.int64)
 
-    def _marks(self, tag: type) -> NDArray[np.bool_]:
-        """For each esper id, whether it has a mark."""
-        marks, count = self._marked.get(tag, np.zeros(0, dtype=bool)), len(self.row_of_entity)
-        if len(marks) < count:
-            self._marked[tag] = marks = grown(marks, np.zeros(count, dtype=bool), len(marks))
-        return marks
+    def _carry(self, tag: type, wanted: NDArray[np.int64]) -> None:
+        """Let exactly the entities of these esper ids, ascending, carry a tag."""
+        before = self._carriers(tag)
+        if np.array_equal(before, wanted):
+            return
+        if issubclass(tag, Rare):
+            for entity in np.setdiff1d(before, wanted).tolist():
+                esper.remove_component(entity, tag)
+            for entity in np.setdiff1d(wanted, before).tolist():
+                esper.add_component(entity, tag())
+        else:
+            self._tagged[tag] = wanted
+        self.tags_revision = self.next_revision()
 
     def tagged(self, tag: type) -> list[Handle]:
-        """Handles of the existing entities with a mark, in order of creation."""
-        marked = [(self.tables[name], rows) for name, rows in self.rows_tagged(tag).items()]
-        found = [table.handles[row] for table, rows in marked for row in rows.tolist()]
-        order = np.argsort(np.concatenate([table.entities[rows] for table, rows in marked]))
-        return [found[place] for place in order.tolist()]
+        """Handles of the existing entities with a tag, in order of creation."""
+        rows = self.rows_tagged(tag)
+        found: list[Handle] = [self.tables[name].handles[row] for name in rows for row in rows[name].tolist()]
+        return sorted(found, key=attrgetter("entity"))
 
     def rows_tagged(self, tag: type) -> dict[str, NDArray[np.intp]]:
-        """The same as rows, ascending, by table."""
-        return {table: self.tagged_rows(tag, table) for table in self.tables}
+        """Rows, ascending, of the existing entities with a tag, by table; found once until tags or rows change."""
+        now = (self.tags_revision, self.structure)
+        if self._tagged_rows[0] != now:
+            self._tagged_rows = now, {}
+        known = self._tagged_rows[1]
+        if tag not in known:
+            known[tag] = self._rows_by_table(self._carriers(tag))
+        return known[tag]
 
     def any_tagged(self, tag: type) -> bool:
-        """True if any existing entity has a mark; quicker than to ask for all that have it."""
+        """True if any existing entity carries a tag."""
         return any(map(len, self.rows_tagged(tag).values()))
-
-    def tagged_rows(self, tag: type, table: str) -> NDArray[np.intp]:
-        """Rows of the entities of one table with a mark, ascending."""
-        now = (self.tags_revision, self.structure)
-        if self._tagged[0] != now:
-            self._tagged = now, {}
-        known = self._tagged[1]
-        if (tag, table) not in known:
-            if issubclass(tag, Rare):
-                rows = np.flatnonzero(np.isin(self.tables[table].entities, self._having(tag)))
-            else:
-                rows = np.flatnonzero(self._marks(tag)[self.tables[table].entities])
-            known[tag, table] = rows
-        return known[tag, table]
 
     def rows_of(self, handles: Iterable[Handle]) -> dict[str, NDArray[np.intp]]:
         """Rows, ascending, of those elements that exist, by table. Raises LookupError for those of another model."""
         return self._rows_by_table(self._ids(list(handles)))
 
-    def _rows_by_table(self, entities: list[int]) -> dict[str, NDArray[np.intp]]:
+    def _rows_by_table(self, entities: list[int] | NDArray[np.int64]) -> dict[str, NDArray[np.intp]]:
         marked = np.zeros(len(self.row_of_entity), dtype=bool)
         marked[entities] = True
         return {table.name: np.flatnonzero(marked[table.entities]) for table in self.tables.values()}

@@ -44,10 +44,4 @@ class Hover(System):
         hit = None
         if pointer is not None and view.camera.viewport.contains(pointer):
             hit = pick(model, view, pointer)
-        before = model.tagged(Hovered)
-        if before == [hit] or (hit is None and not before):
-            return
-        for handle in before:
-            model.untag(handle, Hovered)
-        if hit is not None:
-            model.tag(hit, Hovered)
+        model.tag_only([] if hit is None else [hit], Hovered)

@@ -75,7 +75,7 @@ class Sheet:
 
     def tagged(self, tag: type, table: str) -> Rows:
         """Rows of the entities of one table that carry a tag."""
-        return self.model.tagged_rows(tag, table)
+        return self.model.rows_tagged(tag)[table]
 
     def chosen(self, wanted: Rows, rows: Rows) -> NDArray[np.bool_]:
         """For each of `rows`, whether it is among `wanted`."""
