@@ -41,9 +41,8 @@ def add_component(mod: str, component: type[Component]) -> list[str]:
             )
         field.check_default(component.__name__)
     for field, name in zip(fields, names, strict=True):
-        key = field.key
         field.name, field.component = name, f"{mod}.{component.__name__}"
-        field._key = key.removeprefix(f"{mod}_")
+        field.key = field.key.removeprefix(f"{mod}_")
         setattr(kind, name, field)
     return names
 

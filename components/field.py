@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping, Set
+from dataclasses import KW_ONLY, dataclass, field
 from enum import Enum
 from typing import Any, Generic, Protocol, TypeVar, overload
 
@@ -61,89 +62,70 @@ class Element(Protocol):
     def world(self) -> Values: ...
 
 
+@dataclass(eq=False, repr=False)
 class Field(Generic[T]):
     """One column of a table, and the attribute of a handle that reads and writes one row of it.
 
     Reading gives a plain Python value (a vector is an immutable tuple). Assigning is a command: it is
     checked, undoable, and marks the column as changed.
 
-    title: what a person calls it; without one, its name with spaces.
+    unit: unit inside the program and in files; `shown` is (unit, factor) on screen, by default the same.
+    title: what a person calls it; by default its name with spaces.
     dtype: float, bool, int, str, "reference" (row of another table, stored as uint32) or object.
     shape: () or (2,).
-    unit: unit inside the program and in files; `shown` is (unit, factor) on screen.
     minimum, maximum: inclusive limits; `above`: exclusive lower limit.
     nullable: None is allowed and stored as NaN; `absent` is what a person calls it.
     references: the table that a reference points into.
     overrides: the derived Field of the same handle that this one replaces when it is not None.
     overridden_by: on a derived Field, the one that assigning to it sets instead.
     choices: the values that a text may take (None: any); a register may grow later.
-    key: the name in model files, where it differs from the attribute's.
+    key: the name in model files, by default the attribute's.
     component: the mod's component that it is part of, such as "wind.Sail"; "": of Pinjoint's own.
     checker: replaces the built-in check for values of dtype object.
+    storage: the numpy type of the column. plain: it is one number in every row, and never None.
     """
 
-    name: str = ""
-    component: str = ""
+    unit: str = ""
+    _: KW_ONLY
+    doc: str
+    title: str = ""
+    default: Any = 0.0
+    dtype: Any = float
+    shape: tuple[int, ...] = ()
+    role: Role = Role.DOCUMENT
+    shown: tuple[str, float] = ("", 0.0)
+    minimum: float | None = None
+    maximum: float | None = None
+    above: float | None = None
+    nullable: bool = False
+    absent: str = "automatic"
+    references: str | None = None
+    overrides: str | None = None
+    overridden_by: str | None = None
+    choices: Collection[str] | None = None
+    key: str = ""
+    checker: Callable[[Any, str], Any] | None = None
+    name: str = field(default="", init=False)
+    component: str = field(default="", init=False)
 
-    def __init__(
-        self,
-        unit: str = "",
-        *,
-        doc: str,
-        title: str = "",
-        default: Any = 0.0,
-        dtype: Any = float,
-        shape: tuple[int, ...] = (),
-        role: Role = Role.DOCUMENT,
-        shown: tuple[str, float] | None = None,
-        minimum: float | None = None,
-        maximum: float | None = None,
-        above: float | None = None,
-        nullable: bool = False,
-        absent: str = "automatic",
-        references: str | None = None,
-        overrides: str | None = None,
-        overridden_by: str | None = None,
-        choices: Collection[str] | None = None,
-        key: str | None = None,
-        checker: Callable[[Any, str], Any] | None = None,
-    ) -> None:
-        if nullable and (shape or dtype in (int, bool, "reference")):
-            raise ValueError(f"A Field that can be None must be one float, text or object ('{title}' is not).")
-        if dtype == "reference":
-            minimum, maximum = 0, _LARGEST_REFERENCE
-        self.unit = unit
-        self.title = title
-        self.doc = doc
-        self.default = default
-        self.dtype = dtype
-        self.shape = shape
-        self.role = role
-        self.derived = role is Role.DERIVED  # asked so often that comparing roles would be felt
-        self.shown = shown if shown is not None else (unit, 1.0)
-        self.minimum = minimum
-        self.maximum = maximum
-        self.above = above
-        self.nullable = nullable
-        self.absent = absent
-        self.references = references
-        self.overrides = overrides
-        self.overridden_by = overridden_by
-        self.choices = choices
-        self.checker = checker
-        self.storage: np.dtype[Any] = np.dtype(_STORAGE[dtype])  # the numpy type of the column
+    def __post_init__(self) -> None:
+        if self.nullable and (self.shape or self.dtype in (int, bool, "reference")):
+            raise ValueError(
+                f"A Field that can be None must be one float, text or object ('{self.title or self.doc}' is not)."
+            )
+        if self.dtype == "reference":
+            self.minimum, self.maximum = 0, _LARGEST_REFERENCE
+        if not self.shown[1]:
+            self.shown = self.unit, 1.0
+        self.derived = self.role is Role.DERIVED  # asked so often that comparing roles would be felt
+        self.storage: np.dtype[Any] = np.dtype(_STORAGE[self.dtype])
         self._has_objects = self.storage.hasobject
-        self.plain = not (shape or nullable or self._has_objects)  # one number, and always one
-        self._key = key
+        self.plain = not (self.shape or self.nullable or self._has_objects)
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
+        self.key = self.key or name
         self.title = self.title or name.replace("_", " ")
-
-    @property
-    def key(self) -> str:
-        """The name of this fact in model files."""
-        return self._key or self.name
 
     @overload
     def __get__(self, handle: None, owner: type) -> Field[T]: ...
@@ -188,16 +170,14 @@ class Field(Generic[T]):
         """Raise FieldError if an element that is given no value could not be saved and read again."""
         where = f"{owner}.{self.name}, its default"
         try:
-            self.check_column(self._column_of_default(where), 1, lambda row: where)
+            try:
+                column = self.allocate(1)
+            except (TypeError, ValueError):  # numpy's errors do not name the place
+                self.check(self.default, where)
+                raise
+            self.check_column(column, 1, lambda row: where)
         except FieldError as error:
             raise FieldError(f"{error} With nullable=True, None can be its default.") from None
-
-    def _column_of_default(self, where: str) -> Column:
-        try:
-            return self.allocate(1)
-        except (TypeError, ValueError):  # numpy's errors do not name the place
-            self.check(self.default, where)
-            raise
 
     def check(self, value: Any, where: str) -> Any:
         """Return `value` normalised, or raise FieldError naming `where` (such as "rod AB")."""
@@ -235,7 +215,8 @@ class Field(Generic[T]):
             raise FieldError(f"{where}: {title} is {value}; it must be a whole number below 2^63.")
         problem = self.limit_broken_by(number)
         if problem:
-            raise FieldError(f"{where}: {title} is {number:.15g}{self._in_unit}; it must be {problem}.")
+            unit = f" {self.unit}" if self.unit else ""
+            raise FieldError(f"{where}: {title} is {number:.15g}{unit}; it must be {problem}.")
         return number
 
     def limit_broken_by(self, number: float, *, shown: bool = False) -> str | None:
@@ -272,10 +253,6 @@ class Field(Generic[T]):
             raise FieldError(f"{where}: {self.title} has {len(values)} entries; it must have two, [x, y].")
         return values
 
-    @property
-    def _in_unit(self) -> str:
-        return f" {self.unit}" if self.unit else ""
-
     # --- checking a whole column at once ------------------------------------------------------------
 
     def check_column(self, values: Any, rows: int, where: Callable[[int], str]) -> Column:
@@ -298,16 +275,13 @@ class Field(Generic[T]):
             raise FieldError(
                 f"{self.title}: {len(items)} values for {rows} elements; give each one, or all the same."
             )
-        if self._is_any_text and set(map(type, items)) == {str}:
+        any_text = self.dtype is str and self.choices is None and self.checker is None
+        if any_text and set(map(type, items)) == {str}:
             column[:] = items
             return column
         for row, item in enumerate(items):
             column[row] = self.stored(self.check(item, where(row)))
         return column
-
-    @property
-    def _is_any_text(self) -> bool:
-        return self.dtype is str and self.choices is None and self.checker is None
 
     def _plain(self, values: Any) -> Column | None:
         """`values` as an array, if they are of the right type already; NaN is None."""

@@ -61,7 +61,10 @@ class World:
         self.tables: dict[str, Table[Any]] = {}
         self.tags_revision = 0
         self._tagged: dict[type, NDArray[np.int64]] = {}  # by tag that is not Rare: esper ids, ascending
-        self._tagged_rows: tuple[Any, dict[type, dict[str, NDArray[np.intp]]]] = (None, {})  # at these revisions
+        self._tagged_rows: tuple[Any, dict[type, dict[str, NDArray[np.intp]]]] = (
+            None,
+            {},
+        )  # at these revisions
         self.changing = False
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}
