@@ -42,13 +42,10 @@ def derive_masses(world: World) -> None:
 
 def derive_limits(world: World) -> None:
     """Strengths with "unlimited" (None or 0) as infinity; a cable goes slack before any compression."""
-    for limit, strength in [
-        ("tension_limit", "tensile_strength"),
-        ("compression_limit", "compressive_strength"),
-    ]:
-        values = world.tables["rods"].column(strength)
+    for direction, name in (("tension", "tensile"), ("compression", "compressive")):
+        values = world.tables["rods"].column(f"{name}_strength")
         unlimited = np.isnan(values) | (values == 0.0)
-        world.writable(f"rods.{limit}")[...] = np.where(unlimited, np.inf, values)
+        world.writable(f"rods.{direction}_limit")[...] = np.where(unlimited, np.inf, values)
     world.writable("rods.compression_limit")[world.tables["rods"].tension_only] = np.inf
 
 
@@ -78,13 +75,7 @@ DERIVATIONS = (
     ),
     Derivation(
         ("particles.mass", "particles.mobility"),
-        (
-            "particles.prescribed_mass",
-            "particles.fixed",
-            "rods.between",
-            "rods.density",
-            "rods.rest_length",
-        ),
+        ("particles.prescribed_mass", "particles.fixed", "rods.between", "rods.density", "rods.rest_length"),
         derive_masses,
     ),
     Derivation(

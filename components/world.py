@@ -19,7 +19,7 @@ from components.commands import Assign, Command, Create, Custom, Delete, Group, 
 from components.field import Column, Field, FieldError, Role, same
 from components.handle import Handle, set_entity
 from components.suggestions import missing
-from components.table import Table
+from components.table import Table, grown
 from components.tags import Rare
 
 H = TypeVar("H", bound=Handle)
@@ -541,12 +541,6 @@ class World:
 
     # --- references between tables -----------------------------------------------------------------
 
-    def _referring(self, name: str) -> Iterator[tuple[Table[Any], Field[Any]]]:
-        for table in self.tables.values():
-            for field in table.fields.values():
-                if field.references == name:
-                    yield table, field
-
     def _with_dependents(self, entities: NDArray[np.int64]) -> dict[str, NDArray[np.intp]]:
         """Rows to delete by table: the entities themselves and all that refer to them."""
         wanted = np.zeros(len(self.row_of_entity), dtype=bool)
@@ -576,18 +570,18 @@ class World:
         kept = np.ones(table.count + (0 if inserted else len(rows)), dtype=bool)
         kept[rows] = False
         new_row = np.flatnonzero(kept) if inserted else np.cumsum(kept) - 1
-        for other, field in self._referring(table.name):
-            if other.count:
-                column = other.writable(field.name)
-                column[...] = new_row[column]
+        for other in self.tables.values():
+            for field in other.fields.values():
+                if field.references == table.name and other.count:
+                    column = other.writable(field.name)
+                    column[...] = new_row[column]
 
     def place(self, table: Table[Any], first: int) -> None:
         """Note in which rows the entities of a table are, from row `first` on."""
         entities = table.entities[first:]
-        if len(entities) and entities.max() >= len(self.row_of_entity):
-            grown = np.full(2 * int(entities.max()), -1, dtype=np.int64)
-            grown[: len(self.row_of_entity)] = self.row_of_entity
-            self.row_of_entity = grown
+        known = len(self.row_of_entity)
+        if len(entities) and entities.max() >= known:
+            self.row_of_entity = grown(self.row_of_entity, np.full(2 * entities.max(), -1), known)
         self.row_of_entity[entities] = np.arange(first, table.count)
 
 

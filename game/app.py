@@ -23,13 +23,7 @@ from components.view import MAGNIFICATIONS, MARGIN, Plot, View, drawn_places, ma
 from game.documents import library, models
 from game.documents.autosave import Autosave, unkept
 from game.documents.open_documents import ModelFile, OpenDocument
-from game.documents.preferences import (
-    DEFAULT_THEME,
-    preferred_magnification,
-    preferred_theme,
-    remember_magnification,
-    remember_theme,
-)
+from game.documents.preferences import DEFAULT_THEME, preferred_magnification, preferred_theme, remember
 from game.editor.frame import Frame
 from game.editor.scenes.load import Load
 from game.preparation import Preparation
@@ -271,7 +265,7 @@ class App:
         """Keep what the person chooses for the next time."""
         if self.session.view.theme != self._theme:
             self._theme = self.session.view.theme
-            remember_theme(self._theme)
+            remember("theme", self._theme)
 
     def point(self, pixel: Vector) -> None:
         """Take the pointer to a pixel."""
@@ -292,7 +286,7 @@ class App:
         at = MAGNIFICATIONS.index(self._magnification) + by
         chosen = MAGNIFICATIONS[min(max(at, 0), len(MAGNIFICATIONS) - 1)] if by else 1.0
         self._magnification = chosen
-        remember_magnification(chosen)
+        remember("magnification", chosen)
         return f"{100.0 * chosen:.0f} %"
 
     def toggle_full_screen(self) -> None:

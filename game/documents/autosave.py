@@ -61,9 +61,8 @@ class Autosave(System):
         self._count = 0
         self._written: dict[OpenDocument, int] = {}  # revision of what the recovery file of a document holds
         self._due = 0.0
-        self._trouble = self._said = (
-            ""  # why the last recovery file could not be written; the reason that was said last
-        )
+        self._trouble = ""  # why the last recovery file could not be written
+        self._said = ""  # the trouble that was told last
         self._thread: threading.Thread | None = None
         self._folder.mkdir(parents=True, exist_ok=True)
         lock = lock_file(self._folder / f"{self._id}.lock")

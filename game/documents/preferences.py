@@ -11,6 +11,7 @@ from typing import Any
 from platformdirs import user_config_path
 
 from components.view import MAGNIFICATIONS
+from game.documents import models
 from systems.render.theme import theme_names
 
 CONFIG_VARIABLE = "PINJOINT_CONFIG"  # names another folder than the system's own
@@ -50,26 +51,12 @@ def preferred_magnification() -> float:
     return float(factor) if factor in MAGNIFICATIONS else 1.0
 
 
-def remember_theme(name: str) -> None:
-    """Keep the choice of a theme; all other entries stay. Where nothing can be written, it is not kept."""
-    _remember("theme", name)
-
-
-def remember_magnification(factor: float) -> None:
-    """Keep the choice of a magnification in the same way."""
-    _remember("magnification", factor)
-
-
-def _remember(entry: str, value: Any) -> None:
+def remember(entry: str, choice: str | float) -> None:
+    """Keep a choice, the "theme" or the "magnification"; where nothing can be written, it is not kept."""
     path = settings_path()
-    unfinished = path.with_suffix(".tmp")
-    try:
+    with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        unfinished.write_text(json.dumps({**_read(), entry: value}, indent=1) + "\n", encoding="utf-8")
-        os.replace(unfinished, path)
-    except OSError:
-        with suppress(OSError):
-            unfinished.unlink()
+        models.replace(path, json.dumps({**_read(), entry: choice}, indent=1).encode() + b"\n")
 
 
 def _read() -> dict[str, Any]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 from components.field import FieldError
-from components.load import History, HistoryKind
+from components.load import HistoryKind
 from components.model import Model
 from components.snapshot import Snapshot
 from game.editor.context import Scene
@@ -83,29 +83,22 @@ def _watched(change: Callable[[], None], model: Model) -> None:
 def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
     """The history of a mod, whose Python functions switch the mod off if they fail."""
 
-    def check(history: History, where: str) -> None:
-        try:
-            kind.check(history, where)
-        except FieldError:
-            raise
-        except Exception as error:  # any error of code that is not ours
-            mod.fail(f"the check of the history '{kind.name}'", error)
-
-    def ends(history: History) -> float:
-        return float(mod.call(f"the end of the history '{kind.name}'", kind.ends, history, otherwise=-math.inf))
-
-    def breaks(history: History) -> Iterable[float]:
-        what = f"the breaks of the history '{kind.name}'"
-        return tuple(mod.call(what, kind.breaks, history, otherwise=()))
+    def guarded(what: str, function: Callable[..., Any], otherwise: Any, *mistakes: type[Exception]) -> Any:
+        what = f"the {what} of the history '{kind.name}'"
+        return lambda *given: mod.call(what, function, *given, otherwise=otherwise, mistakes=mistakes)
 
     static = kind.static
     if callable(static):
-        own, what = static, f"the static factor of the history '{kind.name}'"
-
-        def static(history: History) -> float:
-            return float(mod.call(what, own, history, otherwise=0.0))
-
-    return replace(kind, check=check, ends=ends, breaks=breaks, static=static, mod=mod)
+        own = static
+        static = guarded("static factor", lambda history: float(own(history)), 0.0)
+    return replace(
+        kind,
+        check=guarded("check", kind.check, None, FieldError),
+        ends=guarded("end", lambda history: float(kind.ends(history)), -math.inf),
+        breaks=guarded("breaks", lambda history: tuple(kind.breaks(history)), ()),
+        static=static,
+        mod=mod,
+    )
 
 
 def guarded_integrator(mod: Mod, integrator: Integrator) -> Integrator:

@@ -33,11 +33,11 @@ def test_t_goes_through_all_themes_and_back() -> None:
 
 def test_a_theme_is_remembered_and_other_entries_stay(folder: Path) -> None:
     assert preferences.preferred_theme() == "light"
-    preferences.remember_theme("dark")
+    preferences.remember("theme", "dark")
     assert preferences.preferred_theme() == "dark"
     path = folder / "settings.json"
     path.write_text('{"theme": "dark", "other": 1}', encoding="utf-8")
-    preferences.remember_theme("colour-blind")
+    preferences.remember("theme", "colour-blind")
     assert json.loads(path.read_text(encoding="utf-8")) == {"theme": "colour-blind", "other": 1}
     assert [entry.name for entry in folder.iterdir()] == ["settings.json"]
 
@@ -47,13 +47,13 @@ def test_a_damaged_file_is_no_choice_and_can_be_written_again(folder: Path, text
     folder.mkdir()
     (folder / "settings.json").write_bytes(text.encode("latin-1"))
     assert preferences.preferred_theme() == "light"
-    preferences.remember_theme("dark")
+    preferences.remember("theme", "dark")
     assert preferences.preferred_theme() == "dark"
 
 
 def test_where_nothing_can_be_written_nothing_is_kept(folder: Path) -> None:
     folder.write_text("a file where the folder should be", encoding="utf-8")
-    preferences.remember_theme("dark")
+    preferences.remember("theme", "dark")
     assert preferences.preferred_theme() == "light"
 
 
@@ -63,8 +63,8 @@ def test_a_session_without_a_window_writes_no_settings(folder: Path) -> None:
 
 
 def test_the_magnification_is_kept_beside_the_theme(folder: Path) -> None:
-    preferences.remember_theme("dark")
-    preferences.remember_magnification(1.5)
+    preferences.remember("theme", "dark")
+    preferences.remember("magnification", 1.5)
     assert preferences.preferred_magnification() == 1.5
     assert preferences.preferred_theme() == "dark"
 
