@@ -75,12 +75,11 @@ class Clock(Handle):
         role=Role.STATE,
         doc="What the integrator conserves, less the work, when the present step size began.",
     )
-    steps: Field[int] = Field(dtype=int, default=0, role=Role.STATE, doc="Fixed steps taken.")
-    origin_steps: Field[int] = Field(dtype=int, default=0, role=Role.STATE, doc="Steps at the time origin.")
-    collisions: Field[int] = Field(dtype=int, default=0, role=Role.STATE, doc="Impacts so far.")
+    steps: Field[int] = Field(dtype=int, role=Role.STATE, doc="Fixed steps taken.")
+    origin_steps: Field[int] = Field(dtype=int, role=Role.STATE, doc="Steps at the time origin.")
+    collisions: Field[int] = Field(dtype=int, role=Role.STATE, doc="Impacts so far.")
     events: Field[Mapping[str, tuple[str, ...]] | None] = Field(
         dtype=object,
-        default=None,
         nullable=True,
         role=Role.STATE,
         doc="The elements whose quantity is negative, by the name of the event.",
@@ -88,7 +87,6 @@ class Clock(Handle):
     )
     collision_state: Field[CollisionState | None] = Field(
         dtype=object,
-        default=None,
         nullable=True,
         role=Role.STATE,
         doc="Paths of free particles, or persistent contacts of driven ones, so that the run goes on bit for bit.",

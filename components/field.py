@@ -17,13 +17,14 @@ Column = NDArray[Any]
 
 _FEW = 8  # rows up to which checking values one by one is faster than as an array
 _LARGEST_REFERENCE = 2**32 - 1
-_STORAGE: dict[Any, Any] = {
-    float: np.float64,
-    bool: np.bool_,
-    int: np.int64,
-    str: object,
-    object: object,
-    "reference": np.uint32,
+# By a Field's dtype: the numpy type of its column, and its default.
+_STORAGE: dict[Any, tuple[Any, Any]] = {
+    float: (np.float64, 0.0),
+    bool: (np.bool_, False),
+    int: (np.int64, 0),
+    str: (object, ""),
+    object: (object, None),
+    "reference": (np.uint32, 0),
 }
 # What numbers and flags given for a whole column may be: numpy's kinds, or the types in a list.
 _PLAIN: dict[Any, tuple[str, set[type]]] = {
@@ -73,6 +74,7 @@ class Field(Generic[T]):
     title: what a person calls it; by default its name with spaces.
     dtype: float, bool, int, str, "reference" (row of another table, stored as uint32) or object.
     shape: () or (2,).
+    default: what an element has that is given none; left out, 0, False, "" or None, as suits the dtype.
     minimum, maximum: inclusive limits; `above`: exclusive lower limit.
     nullable: None is allowed and stored as NaN; `absent` is what a person calls it.
     references: the table that a reference points into.
@@ -89,7 +91,7 @@ class Field(Generic[T]):
     _: KW_ONLY
     doc: str
     title: str = ""
-    default: Any = 0.0
+    default: Any = ...
     dtype: Any = float
     shape: tuple[int, ...] = ()
     role: Role = Role.DOCUMENT
@@ -118,7 +120,10 @@ class Field(Generic[T]):
         if not self.shown[1]:
             self.shown = self.unit, 1.0
         self.derived = self.role is Role.DERIVED  # asked so often that comparing roles would be felt
-        self.storage: np.dtype[Any] = np.dtype(_STORAGE[self.dtype])
+        storage, default = _STORAGE[self.dtype]
+        if self.default is ...:
+            self.default = default
+        self.storage: np.dtype[Any] = np.dtype(storage)
         self._has_objects = self.storage.hasobject
         self.plain = not (self.shape or self.nullable or self._has_objects)
 

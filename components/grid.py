@@ -19,7 +19,7 @@ class Grid(Handle):
     __slots__ = ()
     table, noun = "grids", "grid"
 
-    name: Field[str] = Field(doc="Unique among the grids.", default="", dtype=str)
+    name: Field[str] = Field(doc="Unique among the grids.", dtype=str)
     spacing: Field[Vector] = Field(
         "m",
         shape=(2,),

@@ -115,10 +115,9 @@ class Load(Handle):
     __slots__ = ()
     table, noun = "loads", "load"
 
-    name: Field[str] = Field(doc="Unique among the loads.", default="", dtype=str)
+    name: Field[str] = Field(doc="Unique among the loads.", dtype=str)
     on: Field[int] = Field(
         dtype="reference",
-        default=0,
         references="particles",
         title="particle",
         doc="The particle that it acts on: in files its name, in Python its row.",

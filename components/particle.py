@@ -21,7 +21,7 @@ class Particle(Handle):
     __slots__ = ()
     table, noun = "particles", "particle"
 
-    name: Field[str] = Field(doc="Unique among the particles.", default="", dtype=str)
+    name: Field[str] = Field(doc="Unique among the particles.", dtype=str)
     position: Field[Vector] = Field(
         "m", shape=(2,), title="original position", doc="Where it is undisplaced.", shown=("cm", 100.0)
     )
@@ -31,12 +31,11 @@ class Particle(Handle):
     velocity: Field[Vector] = Field("m/s", shape=(2,), role=Role.STATE, doc="Zero in a constrained direction.")
     asleep: Field[bool] = Field(
         dtype=bool,
-        default=False,
         role=Role.STATE,
         doc="At rest with its island, which time passes by until something reaches it.",
     )
     fixed: Field[tuple[bool, bool]] = Field(
-        dtype=bool, shape=(2,), default=False, title="constrained", doc="Held by a support in x, in y."
+        dtype=bool, shape=(2,), title="constrained", doc="Held by a support in x, in y."
     )
     force: Field[Vector] = Field("kN", shape=(2,), title="applied force", doc="Constant force on it.")
     acceleration: Field[Vector] = Field(

@@ -21,11 +21,10 @@ class Rod(Handle):
     __slots__ = ()
     table, noun = "rods", "rod"
 
-    name: Field[str] = Field(doc="Unique among the rods.", default="", dtype=str)
+    name: Field[str] = Field(doc="Unique among the rods.", dtype=str)
     between: Field[tuple[int, int]] = Field(
         dtype="reference",
         shape=(2,),
-        default=0,
         references="particles",
         title="ends",
         doc="The particles at its two ends: in files names, in Python rows.",
@@ -75,7 +74,6 @@ class Rod(Handle):
     )
     tension_only: Field[bool] = Field(
         dtype=bool,
-        default=False,
         doc="A cable: slack, without force, where its ends are nearer than its length without force.",
     )
     plastic_strain: Field[float] = Field(role=Role.STATE, doc="Permanent part of the strain.")
@@ -108,9 +106,7 @@ class Rod(Handle):
         "m", role=Role.DERIVED, doc="Present distance between the ends.", shown=("cm", 100.0)
     )
     strain: Field[float] = Field(role=Role.DERIVED, doc="Elongation / rest length, without thermal expansion.")
-    yielding: Field[bool] = Field(
-        dtype=bool, default=False, role=Role.DERIVED, doc="Axial force is at a strength."
-    )
+    yielding: Field[bool] = Field(dtype=bool, role=Role.DERIVED, doc="Axial force is at a strength.")
 
     @property
     def ends(self) -> tuple[Particle, Particle]:

@@ -32,15 +32,14 @@ class Wall(Handle):
     table, noun = "walls", "wall"
     points = ("start", "end")
 
-    name: Field[str] = Field(title="name", doc="Unique among the walls.", default="", dtype=str)
-    start: Field[Vector] = Field("m", shape=(2,), title="start", doc="Where it begins.", shown=("cm", 100.0))
-    end: Field[Vector] = Field("m", shape=(2,), title="end", doc="Where it ends.", shown=("cm", 100.0))
+    name: Field[str] = Field(doc="Unique among the walls.", dtype=str)
+    start: Field[Vector] = Field("m", shape=(2,), doc="Where it begins.", shown=("cm", 100.0))
+    end: Field[Vector] = Field("m", shape=(2,), doc="Where it ends.", shown=("cm", 100.0))
     restitution: Field[float | None] = Field(
         default=None,
         nullable=True,
         minimum=0.0,
         maximum=1.0,
-        title="restitution",
         doc="Of impacts with it, whatever that of particles is; automatic: that of the settings.",
     )
 
