@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from components.field import Field, FieldError, Role, Vector
 from components.handle import Handle
-from components.table import Store, Table
+from components.table import Store, Table, flags
 
 DEFAULT_MASS = 1.0  # kg, of a particle without rods
 
@@ -114,8 +114,7 @@ def check_velocities(where: str, fixed: tuple[bool, bool], velocity: Vector) -> 
 def _check_rods(table: Table[Any], rows: NDArray[np.intp]) -> None:
     """Raise FieldError if a rod at one of these particles has lost its length."""
     world = table.world
-    moved = np.zeros(table.count, dtype=bool)
-    moved[rows] = True
+    moved = flags(rows, table.count)
     ends = world.column("rods.between")
     at_them = np.flatnonzero(moved[ends[:, 0]] | moved[ends[:, 1]])
     for row in rods_without_length(world, at_them)[:1].tolist():

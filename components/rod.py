@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from components.field import Field, FieldError, Role
 from components.handle import Handle
 from components.particle import Particle, rods_without_length
-from components.table import Table
+from components.table import Table, flags
 from components.world import World
 
 
@@ -174,9 +174,7 @@ def is_warm(world: World) -> bool:
 
 def nodes(world: World) -> NDArray[np.bool_]:
     """Which particles rods join, shape (particles,)."""
-    joined = np.zeros(world.tables["particles"].count, dtype=bool)
-    joined[world.tables["rods"].between] = True
-    return joined
+    return flags(world.tables["rods"].between, world.tables["particles"].count)
 
 
 def has_cables(world: World) -> bool:

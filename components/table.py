@@ -275,8 +275,7 @@ class Table(Generic[H]):
         """Take rows (ascending) out, keeping the order of the others; return what they held."""
         taken = {name: column[rows] for name, column in self._columns.items()}
         gone = [self.handles[row] for row in rows.tolist()]
-        kept = np.ones(self.count, dtype=bool)
-        kept[rows] = False
+        kept = ~flags(rows, self.count)
         self._rearrange(lambda column: column[: self.count][kept])
         self.handles = list(itertools.compress(self.handles, kept.tolist()))
         self.count = len(self.handles)
@@ -294,8 +293,7 @@ class Table(Generic[H]):
     ) -> None:
         """Put rows (ascending, as they are to be afterwards) back where `remove` found them."""
         total = self.count + len(rows)
-        old = np.ones(total, dtype=bool)
-        old[rows] = False
+        old = ~flags(rows, total)
         self._rearrange(lambda column: _spread(column[: self.count], old))
         self.entity[rows] = entities
         for name, field in self.fields.items():
@@ -345,6 +343,13 @@ def grown(old: Column, new: Column, count: int) -> Column:
     """A new column that begins with the first `count` entries of an old one."""
     new[:count] = old[:count]
     return new
+
+
+def flags(rows: Any, count: int) -> NDArray[np.bool_]:
+    """For each of `count` rows, whether it is among these rows; shape (count,)."""
+    found = np.zeros(count, dtype=bool)
+    found[rows] = True
+    return found
 
 
 def _spread(column: Column, where: NDArray[np.bool_]) -> Column:

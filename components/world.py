@@ -19,7 +19,7 @@ from components.commands import Assign, Command, Create, Custom, Delete, Group, 
 from components.field import Column, Field, FieldError, Role, same
 from components.handle import Handle, set_entity
 from components.suggestions import missing
-from components.table import Table, grown
+from components.table import Table, flags, grown
 from components.tags import Rare
 
 H = TypeVar("H", bound=Handle)
@@ -535,23 +535,20 @@ class World:
         return self._rows_by_table(self._ids(list(handles)))
 
     def _rows_by_table(self, entities: list[int] | NDArray[np.int64]) -> dict[str, NDArray[np.intp]]:
-        marked = np.zeros(len(self.row_of_entity), dtype=bool)
-        marked[entities] = True
+        marked = flags(entities, len(self.row_of_entity))
         return {table.name: np.flatnonzero(marked[table.entities]) for table in self.tables.values()}
 
     # --- references between tables -----------------------------------------------------------------
 
     def _with_dependents(self, entities: NDArray[np.int64]) -> dict[str, NDArray[np.intp]]:
         """Rows to delete by table: the entities themselves and all that refer to them."""
-        wanted = np.zeros(len(self.row_of_entity), dtype=bool)
-        wanted[entities] = True
+        wanted = flags(entities, len(self.row_of_entity))
         doomed: dict[str, NDArray[np.intp]] = {}
         for table in self.tables.values():  # a table only refers to those declared before it
             marked = wanted[table.entities]
             for field in table.fields.values():
                 if field.references in doomed:
-                    gone = np.zeros(self.tables[field.references].count, dtype=bool)
-                    gone[doomed[field.references]] = True
+                    gone = flags(doomed[field.references], self.tables[field.references].count)
                     hit = gone[table.column(field.name)]
                     marked |= hit.any(axis=1) if field.shape else hit
             if marked.any():
@@ -567,8 +564,7 @@ class World:
 
     def _remap_references(self, table: Table[Any], rows: NDArray[np.intp], *, inserted: bool) -> None:
         """After rows of a table went or came, let those that refer to it follow."""
-        kept = np.ones(table.count + (0 if inserted else len(rows)), dtype=bool)
-        kept[rows] = False
+        kept = ~flags(rows, table.count + (0 if inserted else len(rows)))
         new_row = np.flatnonzero(kept) if inserted else np.cumsum(kept) - 1
         for other in self.tables.values():
             for field in other.fields.values():

@@ -1,16 +1,18 @@
 """COMPOSITION: the program. `Session` drives it from scripts, without a window.
 
-session.py                what scripts and tests drive: an open document in the editor
-editor/                   scenes, actions, gestures, toolbar: what keys and buttons do, and what the window says
-documents/                models as plain data and in files, undo and stepping back, autosave, preferences
-commands/                 the command line and its reports
-paths.py                  what particles.B.force and the like mean, wherever a person writes one
-sweeps/                   many variants of a model
-scripts/                  scripted sessions and lessons
-mods/ included/ checks.py extensions by others, ours that are written like theirs, and how to test them
-force_method/             the guide through the force method
-app.py                    the window
-preparation.py prepare.py compiling ahead of need, in another process
+__main__.py                 `pinjoint` and `python -m game`; interrupts.py lets Ctrl+C end it while it loads
+commands/                   the command line and its reports
+app.py                      the window: pygame around a session
+session.py                  Session: a context that scripts and tests drive
+editor/                     Context, and what changes it: scenes, actions, gestures; what the view says of it
+documents/                  models in files, open documents, undo and stepping back, autosave, preferences
+scripts/                    scripted sessions and lessons: written, recorded, played
+force_method/               the guide through the force method
+sweeps/                     many variants of a model
+mods/ included/             extensions by others, and ours that are written like theirs
+checks.py                   check_system: a test of any system, for mods
+paths.py                    what particles.B.force and the like mean, wherever a person writes one
+preparation.py prepare.py   compiling ahead of need, in another process
 """
 
 from game.interrupts import quietly_interrupted

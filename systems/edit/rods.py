@@ -12,6 +12,7 @@ from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod, spawn_rods
+from components.table import flags
 from systems.edit import Refusal
 from systems.edit.moving import rows_of
 
@@ -56,13 +57,9 @@ def delete(model: Model, handles: Iterable[Handle]) -> None:
     """Delete elements with all that refer to them; masses of the remaining particles follow from the rods again."""
     doomed = list(handles)
     rows = model.rows_of(doomed)
-    rods = np.zeros(model.rods.count, dtype=bool)
-    rods[rows["rods"]] = True
-    particles = np.zeros(model.particles.count, dtype=bool)
-    particles[rows["particles"]] = True
-    rods |= particles[model.rods.between].any(axis=1)
-    ends = np.zeros(model.particles.count, dtype=bool)
-    ends[model.rods.between[rods]] = True
+    particles = flags(rows["particles"], model.particles.count)
+    rods = flags(rows["rods"], model.rods.count) | particles[model.rods.between].any(axis=1)
+    ends = flags(model.rods.between[rods], model.particles.count)
     remaining = [model.particles[row] for row in np.flatnonzero(ends & ~particles).tolist()]
     with model.transaction("delete"):
         masses_from_rods(model, remaining)
