@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from components.collision_state import CollisionState, check_collision_state
-from components.field import Field, FieldError, Role
+from components.field import Field, FieldError, state
 from components.handle import Handle
 
 
@@ -29,66 +29,44 @@ class Clock(Handle):
     __slots__ = ()
     table, noun, single = "clock", "clock", True
 
-    time: Field[float] = Field("s", role=Role.STATE, minimum=0.0, doc="Simulated time.")
-    step_size: Field[float] = Field("s", role=Role.STATE, doc="Present fixed step; 0: not yet chosen.")
-    step_error: Field[float] = Field(
-        role=Role.STATE, doc="Estimated error of the last step; 1 is the tolerance."
+    time: Field[float] = state("s", minimum=0.0, doc="Simulated time.")
+    step_size: Field[float] = state("s", doc="Present fixed step; 0: not yet chosen.")
+    step_error: Field[float] = state(doc="Estimated error of the last step; 1 is the tolerance.")
+    largest_displacement: Field[float] = state(
+        "m", doc="Largest Euclidean norm of all displacements, the scale of their error."
     )
-    largest_displacement: Field[float] = Field(
-        "m", role=Role.STATE, doc="Largest Euclidean norm of all displacements, the scale of their error."
+    largest_speed: Field[float] = state(
+        "m/s", doc="Largest Euclidean norm of all velocities, the scale of their error."
     )
-    largest_speed: Field[float] = Field(
-        "m/s", role=Role.STATE, doc="Largest Euclidean norm of all velocities, the scale of their error."
+    origin: Field[float] = state("s", title="time origin", doc="Time at which the present step size began.")
+    step_limit: Field[float] = state("s", doc="Largest step when the steps were last reviewed.")
+    work: Field[float] = state("J", doc="Of varying loads, edits and constant forces up to the last edit.")
+    dissipated_damping: Field[float] = state(
+        "J", title="dissipated by damping", doc="By axial dampers and drag."
     )
-    origin: Field[float] = Field(
-        "s", role=Role.STATE, title="time origin", doc="Time at which the present step size began."
+    dissipated_plastic: Field[float] = state("J", title="dissipated by yielding", doc="Σ |N| |Δε_p| L₀.")
+    dissipated_impact: Field[float] = state(
+        "J", title="dissipated by impacts", doc="Kinetic energy lost in impacts."
     )
-    step_limit: Field[float] = Field(
-        "s", role=Role.STATE, doc="Largest step when the steps were last reviewed."
+    initial_energy: Field[float] = state("J", doc="Kinetic and elastic energy at the start of the run.")
+    potential_reference: Field[float] = state("J", doc="Σ constant force · displacement at the last edit.")
+    force_scale: Field[float] = state("kN", doc="Largest force of the run, the scale for being at rest.")
+    energy_scale: Field[float] = state("J", doc="Largest energy of the run, the scale for divergence.")
+    guard_energy: Field[float] = state(
+        "J", doc="What the integrator conserves, less the work, when the present step size began."
     )
-    work: Field[float] = Field(
-        "J", role=Role.STATE, doc="Of varying loads, edits and constant forces up to the last edit."
-    )
-    dissipated_damping: Field[float] = Field(
-        "J", role=Role.STATE, title="dissipated by damping", doc="By axial dampers and drag."
-    )
-    dissipated_plastic: Field[float] = Field(
-        "J", role=Role.STATE, title="dissipated by yielding", doc="Σ |N| |Δε_p| L₀."
-    )
-    dissipated_impact: Field[float] = Field(
-        "J", role=Role.STATE, title="dissipated by impacts", doc="Kinetic energy lost in impacts."
-    )
-    initial_energy: Field[float] = Field(
-        "J", role=Role.STATE, doc="Kinetic and elastic energy at the start of the run."
-    )
-    potential_reference: Field[float] = Field(
-        "J", role=Role.STATE, doc="Σ constant force · displacement at the last edit."
-    )
-    force_scale: Field[float] = Field(
-        "kN", role=Role.STATE, doc="Largest force of the run, the scale for being at rest."
-    )
-    energy_scale: Field[float] = Field(
-        "J", role=Role.STATE, doc="Largest energy of the run, the scale for divergence."
-    )
-    guard_energy: Field[float] = Field(
-        "J",
-        role=Role.STATE,
-        doc="What the integrator conserves, less the work, when the present step size began.",
-    )
-    steps: Field[int] = Field(dtype=int, role=Role.STATE, doc="Fixed steps taken.")
-    origin_steps: Field[int] = Field(dtype=int, role=Role.STATE, doc="Steps at the time origin.")
-    collisions: Field[int] = Field(dtype=int, role=Role.STATE, doc="Impacts so far.")
-    events: Field[Mapping[str, tuple[str, ...]] | None] = Field(
+    steps: Field[int] = state(dtype=int, doc="Fixed steps taken.")
+    origin_steps: Field[int] = state(dtype=int, doc="Steps at the time origin.")
+    collisions: Field[int] = state(dtype=int, doc="Impacts so far.")
+    events: Field[Mapping[str, tuple[str, ...]] | None] = state(
         dtype=object,
         nullable=True,
-        role=Role.STATE,
         doc="The elements whose quantity is negative, by the name of the event.",
         checker=check_events,
     )
-    collision_state: Field[CollisionState | None] = Field(
+    collision_state: Field[CollisionState | None] = state(
         dtype=object,
         nullable=True,
-        role=Role.STATE,
         doc="Paths of free particles, or persistent contacts of driven ones, so that the run goes on bit for bit.",
         checker=check_collision_state,
     )

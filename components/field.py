@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Collection, Mapping, Set
 from dataclasses import KW_ONLY, dataclass, field
 from enum import Enum
+from functools import partial
 from typing import Any, Generic, Protocol, TypeVar, overload
 
 import numpy as np
@@ -15,6 +16,7 @@ T = TypeVar("T")
 Vector = tuple[float, float]
 Column = NDArray[Any]
 
+CM = ("cm", 100.0)  # as lengths are shown
 _FEW = 8  # rows up to which checking values one by one is faster than as an array
 _LARGEST_REFERENCE = 2**32 - 1
 # By a Field's dtype: the numpy type of its column, and its default.
@@ -317,6 +319,11 @@ class Field(Generic[T]):
         if self.nullable:
             ok |= np.isnan(values)
         return np.asarray(ok.all(axis=1)) if self.shape else ok
+
+
+# Fields that time makes, and Fields that are computed from others.
+state = partial(Field, role=Role.STATE)
+derived = partial(Field, role=Role.DERIVED)
 
 
 def same(first: Column, second: Column) -> bool:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Field, FieldError, Role, Vector
+from components.field import CM, Field, FieldError, Vector, derived, state
 from components.handle import Handle
 from components.table import Store, Table, flags
 
@@ -23,16 +23,12 @@ class Particle(Handle):
 
     name: Field[str] = Field(doc="Unique among the particles.", dtype=str)
     position: Field[Vector] = Field(
-        "m", shape=(2,), title="original position", doc="Where it is undisplaced.", shown=("cm", 100.0)
+        "m", shape=(2,), title="original position", doc="Where it is undisplaced.", shown=CM
     )
-    displacement: Field[Vector] = Field(
-        "m", shape=(2,), role=Role.STATE, doc="Present minus original position.", shown=("cm", 100.0)
-    )
-    velocity: Field[Vector] = Field("m/s", shape=(2,), role=Role.STATE, doc="Zero in a constrained direction.")
-    asleep: Field[bool] = Field(
-        dtype=bool,
-        role=Role.STATE,
-        doc="At rest with its island, which time passes by until something reaches it.",
+    displacement: Field[Vector] = state("m", shape=(2,), doc="Present minus original position.", shown=CM)
+    velocity: Field[Vector] = state("m/s", shape=(2,), doc="Zero in a constrained direction.")
+    asleep: Field[bool] = state(
+        dtype=bool, doc="At rest with its island, which time passes by until something reaches it."
     )
     fixed: Field[tuple[bool, bool]] = Field(
         dtype=bool, shape=(2,), title="constrained", doc="Held by a support in x, in y."
@@ -41,9 +37,7 @@ class Particle(Handle):
     acceleration: Field[Vector] = Field(
         "m/s²", shape=(2,), title="applied acceleration", doc="Adds mass × acceleration to its force."
     )
-    radius: Field[float] = Field(
-        "m", default=0.05, above=0.0, doc="Of the disc that collides.", shown=("cm", 100.0)
-    )
+    radius: Field[float] = Field("m", default=0.05, above=0.0, doc="Of the disc that collides.", shown=CM)
     prescribed_mass: Field[float | None] = Field(
         "kg",
         default=None,
@@ -54,37 +48,25 @@ class Particle(Handle):
         doc="Of its own; automatic: half the mass of each attached rod, 1 kg without rods.",
         overrides="mass",
     )
-    mass: Field[float] = Field(
+    mass: Field[float] = derived(
         "kg",
         default=DEFAULT_MASS,
-        role=Role.DERIVED,
         doc="Prescribed, or half the mass of every attached rod, or 1 kg without rods.",
         overridden_by="prescribed_mass",
     )
-    mobility: Field[Vector] = Field(
-        "m/s²/kN",
-        shape=(2,),
-        role=Role.DERIVED,
-        doc="Acceleration per force in each direction: 1000/mass, 0 where constrained.",
+    mobility: Field[Vector] = derived(
+        "m/s²/kN", shape=(2,), doc="Acceleration per force in each direction: 1000/mass, 0 where constrained."
     )
-    constant_force: Field[Vector] = Field(
+    constant_force: Field[Vector] = derived(
         "kN",
         shape=(2,),
-        role=Role.DERIVED,
         doc="All external force that time does not change: own, environment's, mass × accelerations, loads.",
     )
-    applied_force: Field[Vector] = Field(
-        "kN",
-        shape=(2,),
-        role=Role.DERIVED,
-        title="external force",
-        doc="All external force now, without reactions.",
+    applied_force: Field[Vector] = derived(
+        "kN", shape=(2,), title="external force", doc="All external force now, without reactions."
     )
-    reaction: Field[Vector] = Field(
-        "kN",
-        shape=(2,),
-        role=Role.DERIVED,
-        doc="The support's force on it in constrained directions, 0 elsewhere.",
+    reaction: Field[Vector] = derived(
+        "kN", shape=(2,), doc="The support's force on it in constrained directions, 0 elsewhere."
     )
 
     @classmethod

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from components.field import Field, FieldError, Role
+from components.field import CM, Field, FieldError, derived, state
 from components.handle import Handle
 from components.particle import Particle, rods_without_length
 from components.table import Table, flags
@@ -38,7 +38,7 @@ class Rod(Handle):
         title="rest length",
         key="rest_length",
         doc="Length without force; automatic: the distance between the original positions.",
-        shown=("cm", 100.0),
+        shown=CM,
         overrides="rest_length",
     )
     tensile_strength: Field[float | None] = Field(
@@ -76,37 +76,29 @@ class Rod(Handle):
         dtype=bool,
         doc="A cable: slack, without force, where its ends are nearer than its length without force.",
     )
-    plastic_strain: Field[float] = Field(role=Role.STATE, doc="Permanent part of the strain.")
-    rest_length: Field[float] = Field(
+    plastic_strain: Field[float] = state(doc="Permanent part of the strain.")
+    rest_length: Field[float] = derived(
         "m",
-        role=Role.DERIVED,
         doc="Prescribed, or the distance between the original positions.",
-        shown=("cm", 100.0),
+        shown=CM,
         overridden_by="prescribed_rest_length",
     )
-    difference: Field[tuple[float, float]] = Field(
+    difference: Field[tuple[float, float]] = derived(
         "m",
         shape=(2,),
-        role=Role.DERIVED,
         title="original difference",
         doc="Original position of the second end minus that of the first.",
     )
-    original_length: Field[float] = Field("m", role=Role.DERIVED, doc="Length of the original difference.")
-    misfit: Field[float] = Field(
-        "m",
-        role=Role.DERIVED,
-        doc="Original length − rest length × (1 + thermal strain): its elongation where it was drawn.",
+    original_length: Field[float] = derived("m", doc="Length of the original difference.")
+    misfit: Field[float] = derived(
+        "m", doc="Original length − rest length × (1 + thermal strain): its elongation where it was drawn."
     )
-    tension_limit: Field[float] = Field("kN", role=Role.DERIVED, doc="Tensile strength; infinite if unlimited.")
-    compression_limit: Field[float] = Field(
-        "kN", role=Role.DERIVED, doc="Compressive strength; infinite if unlimited."
-    )
-    axial_force: Field[float] = Field("kN", role=Role.DERIVED, doc="Without the damper's; tension positive.")
-    length: Field[float] = Field(
-        "m", role=Role.DERIVED, doc="Present distance between the ends.", shown=("cm", 100.0)
-    )
-    strain: Field[float] = Field(role=Role.DERIVED, doc="Elongation / rest length, without thermal expansion.")
-    yielding: Field[bool] = Field(dtype=bool, role=Role.DERIVED, doc="Axial force is at a strength.")
+    tension_limit: Field[float] = derived("kN", doc="Tensile strength; infinite if unlimited.")
+    compression_limit: Field[float] = derived("kN", doc="Compressive strength; infinite if unlimited.")
+    axial_force: Field[float] = derived("kN", doc="Without the damper's; tension positive.")
+    length: Field[float] = derived("m", doc="Present distance between the ends.", shown=CM)
+    strain: Field[float] = derived(doc="Elongation / rest length, without thermal expansion.")
+    yielding: Field[bool] = derived(dtype=bool, doc="Axial force is at a strength.")
 
     @property
     def ends(self) -> tuple[Particle, Particle]:

@@ -55,7 +55,6 @@ class Table(Generic[H]):
         "__weakref__",
         "_blocks",
         "_by_name",
-        "_by_role",
         "_columns",
         "_first_of",
         "_lowest_number",
@@ -72,7 +71,6 @@ class Table(Generic[H]):
 
     def __init__(self, world: Store, name: str, kind: type[Any]) -> None:
         self._world = weakref.ref(world)
-        self._by_role: dict[tuple[Role, ...], list[Field[Any]]] = {}
         object.__setattr__(self, "name", name)  # assigning to it names the entities
         self.kind = kind
         self.fields: dict[str, Field[Any]] = {}
@@ -117,7 +115,6 @@ class Table(Generic[H]):
         if field.references is not None and field.references not in earlier:
             raise ValueError(f"{self.name}.{field.name} must refer to a table declared before {self.name}.")
         self.fields[field.name] = field
-        self._by_role.clear()
         self.world.forget_layouts()
         self._columns[field.name] = field.allocate(len(self.entity))
         self._first_of[field.name] = field.name
@@ -198,9 +195,7 @@ class Table(Generic[H]):
 
     def fields_in(self, *roles: Role) -> list[Field[Any]]:
         """The fields with one of these roles, in order of declaration."""
-        if roles not in self._by_role:
-            self._by_role[roles] = [field for field in self.fields.values() if field.role in roles]
-        return self._by_role[roles]
+        return [field for field in self.fields.values() if field.role in roles]
 
     # --- writing (for World, and for systems through World.writable) --------------------------------
 
