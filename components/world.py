@@ -8,7 +8,6 @@ from collections import deque
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from operator import attrgetter
 from typing import Any, NoReturn, TypeVar
 
 import esper
@@ -60,7 +59,7 @@ class World:
         self.row_of_entity: NDArray[np.int64] = np.full(64, -1, dtype=np.int64)
         self.tables: dict[str, Table[Any]] = {}
         self.tags_revision = 0
-        self._tagged: dict[type, NDArray[np.int64]] = {}  # by tag that is not Rare: esper ids, ascending
+        self._tagged: dict[type, NDArray[np.intp]] = {}  # by tag that is not Rare: esper ids, ascending
         self._tagged_rows: tuple[Any, dict[type, dict[str, NDArray[np.intp]]]] = (
             None,
             {},
@@ -478,43 +477,48 @@ class World:
     def tag(self, handle: Handle, tag: type) -> None:
         """Let an existing entity carry a tag, such as Selected."""
         if handle.exists:
-            self._carry(tag, np.union1d(self._carriers(tag), self._ids([handle])))
+            self._carry(tag, self._carriers(tag) | self._flags([handle]))
 
     def untag(self, handle: Handle, tag: type) -> None:
         """Take a tag off an entity, if it carries it."""
-        self._carry(tag, np.setdiff1d(self._carriers(tag), self._ids([handle])))
+        self._carry(tag, self._carriers(tag) & ~self._flags([handle]))
 
     def tag_only(self, handles: Iterable[Handle], tag: type) -> None:
         """Let exactly these entities, those of them that exist, carry a tag."""
-        ids = np.unique(np.array(self._ids(list(handles)), dtype=np.int64))
-        self._carry(tag, ids[self.row_of_entity[ids] >= 0])
+        self._carry(tag, self._flags(handles) & (self.row_of_entity >= 0))
 
-    def _carriers(self, tag: type) -> NDArray[np.int64]:
-        """The esper ids of the entities that carry a tag, deleted ones included, ascending."""
-        if not issubclass(tag, Rare):
-            return self._tagged.get(tag, np.zeros(0, dtype=np.int64))
-        self.activate()
-        return np.array(sorted(entity for entity, _ in esper.get_component(tag)), dtype=np.int64)
+    def _flags(self, handles: Iterable[Handle]) -> NDArray[np.bool_]:
+        """For each esper id, whether it is that of one of these entities."""
+        return flags(self._ids(list(handles)), len(self.row_of_entity))
 
-    def _carry(self, tag: type, wanted: NDArray[np.int64]) -> None:
-        """Let exactly the entities of these esper ids, ascending, carry a tag."""
+    def _carriers(self, tag: type) -> NDArray[np.bool_]:
+        """For each esper id, whether that entity, which may be deleted, carries a tag."""
+        ids: Any = self._tagged.get(tag, [])
+        if issubclass(tag, Rare):
+            self.activate()
+            ids = [entity for entity, _ in esper.get_component(tag)]
+        return flags(ids, len(self.row_of_entity))
+
+    def _carry(self, tag: type, wanted: NDArray[np.bool_]) -> None:
+        """Let exactly the entities whose flags are true carry a tag."""
         before = self._carriers(tag)
-        if np.array_equal(before, wanted):
+        if (before == wanted).all():
             return
         if issubclass(tag, Rare):
-            for entity in np.setdiff1d(before, wanted).tolist():
+            for entity in np.flatnonzero(before & ~wanted).tolist():
                 esper.remove_component(entity, tag)
-            for entity in np.setdiff1d(wanted, before).tolist():
+            for entity in np.flatnonzero(wanted & ~before).tolist():
                 esper.add_component(entity, tag())
         else:
-            self._tagged[tag] = wanted
+            self._tagged[tag] = np.flatnonzero(wanted)
         self.tags_revision = self.next_revision()
 
     def tagged(self, tag: type) -> list[Handle]:
         """Handles of the existing entities with a tag, in order of creation."""
-        rows = self.rows_tagged(tag)
-        found: list[Handle] = [self.tables[name].handles[row] for name in rows for row in rows[name].tolist()]
-        return sorted(found, key=attrgetter("entity"))
+        tagged = [(self.tables[name], rows) for name, rows in self.rows_tagged(tag).items()]
+        found = [table.handles[row] for table, rows in tagged for row in rows.tolist()]
+        order = np.argsort(np.concatenate([table.entities[rows] for table, rows in tagged]))
+        return [found[place] for place in order.tolist()]
 
     def rows_tagged(self, tag: type) -> dict[str, NDArray[np.intp]]:
         """Rows, ascending, of the existing entities with a tag, by table; found once until tags or rows change."""
@@ -523,7 +527,7 @@ class World:
             self._tagged_rows = now, {}
         known = self._tagged_rows[1]
         if tag not in known:
-            known[tag] = self._rows_by_table(self._carriers(tag))
+            known[tag] = self._rows(self._carriers(tag))
         return known[tag]
 
     def any_tagged(self, tag: type) -> bool:
@@ -532,10 +536,10 @@ class World:
 
     def rows_of(self, handles: Iterable[Handle]) -> dict[str, NDArray[np.intp]]:
         """Rows, ascending, of those elements that exist, by table. Raises LookupError for those of another model."""
-        return self._rows_by_table(self._ids(list(handles)))
+        return self._rows(self._flags(handles))
 
-    def _rows_by_table(self, entities: list[int] | NDArray[np.int64]) -> dict[str, NDArray[np.intp]]:
-        marked = flags(entities, len(self.row_of_entity))
+    def _rows(self, marked: NDArray[np.bool_]) -> dict[str, NDArray[np.intp]]:
+        """Rows, ascending, of the existing entities whose flags, one for each esper id, are true, by table."""
         return {table.name: np.flatnonzero(marked[table.entities]) for table in self.tables.values()}
 
     # --- references between tables -----------------------------------------------------------------
