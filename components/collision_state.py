@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -22,13 +23,12 @@ _DIMENSIONS = {"motion": 2, "forces": 1, "pile": 1, "longest_step": 0}  # of att
 
 
 class _Saved(Mapping[str, Any]):
-    """A mapping of the attributes `saved` and the `kind`, in what JSON can hold: ∞ is None."""
+    """A mapping of the kind and all attributes, in what JSON can hold: ∞ is None."""
 
     kind: ClassVar[str]
-    saved: ClassVar[tuple[str, ...]]
 
     def _arrays(self) -> list[NDArray[Any]]:
-        return [np.asarray(getattr(self, key)) for key in self.saved]
+        return [np.asarray(value) for value in vars(self).values()]
 
     @property
     def nbytes(self) -> int:
@@ -36,16 +36,13 @@ class _Saved(Mapping[str, Any]):
         return sum(array.nbytes for array in self._arrays())
 
     def __iter__(self) -> Iterator[str]:
-        return iter(("kind", *self.saved))
+        return iter(("kind", *vars(self)))
 
     def __len__(self) -> int:
-        return 1 + len(self.saved)
+        return 1 + len(vars(self))
 
     def __getitem__(self, key: str) -> Any:
-        if key not in self.saved and key != "kind":
-            raise KeyError(key)
-        value = getattr(self, key)
-        return value if key == "kind" else _replaced(np.asarray(value).tolist(), math.inf, None)
+        return self.kind if key == "kind" else _replaced(np.asarray(vars(self)[key]).tolist(), math.inf, None)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, _Saved) or type(self) is not type(other):
@@ -58,6 +55,7 @@ class _Saved(Mapping[str, Any]):
         return f"{type(self).__name__}({dict(self)!r})"
 
 
+@dataclass(eq=False, repr=False)
 class FreeFlightState(_Saved):
     """The parabolas of all particles and the contacts that persist, of particles that fly free.
 
@@ -67,13 +65,10 @@ class FreeFlightState(_Saved):
     """
 
     kind = "free flight"
-    saved = ("motion", "contacts", "forces", "pile")
-
-    def __init__(self, motion: Floats, contacts: Pairs, forces: Floats, pile: Floats) -> None:
-        self.motion = motion
-        self.contacts = contacts
-        self.forces = forces
-        self.pile = pile
+    motion: Floats
+    contacts: Pairs
+    forces: Floats
+    pile: Floats
 
 
 class PersistentContacts(_Saved):
@@ -84,7 +79,6 @@ class PersistentContacts(_Saved):
     """
 
     kind = "persistent contacts"
-    saved = ("pairs", "forces", "longest_step")
 
     def __init__(self, pairs: NDArray[np.integer[Any]], forces: Floats, longest_step: float = math.inf) -> None:
         self.pairs: Pairs = pairs.astype(np.int64)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.suggestions import missing
-from components.table import Store, Table, living
+from components.table import Store, Table, refuse_orphans
 
 
 class Handle:
@@ -59,8 +59,7 @@ class Handle:
     @property
     def world(self) -> Store:
         """The world it belongs to. Raises LookupError if that is gone."""
-        world = self._world()
-        return world if world is not None else living(self._world, f"this {self.noun}")
+        return self._world() or refuse_orphans(f"this {self.noun}")
 
     @property
     def row(self) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import weakref
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, NoReturn, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ class Store(Protocol):
 
     tables: dict[str, Table[Any]]
     row_of_entity: NDArray[np.int64]
+    structure: int
 
     def read(self, handle: Any, field: Field[Any]) -> Any: ...
     def write(self, handle: Any, field: Field[Any], value: Any) -> None: ...
@@ -31,7 +32,6 @@ class Store(Protocol):
     def column(self, name: str) -> Column: ...
     def refresh(self, name: str) -> None: ...
     def next_revision(self, *roles: Role) -> int: ...
-    def restructured(self, roles: Iterable[Role]) -> int: ...
     def forget_layouts(self) -> None: ...
     def place(self, table: Table[Any], first: int) -> None: ...
 
@@ -104,8 +104,7 @@ class Table(Generic[H]):
     @property
     def world(self) -> Store:
         """The world it is part of. Raises LookupError if that is gone."""
-        world = self._world()
-        return world if world is not None else living(self._world, f"these {self.name}")
+        return self._world() or refuse_orphans(f"these {self.name}")
 
     def add_column(self, field: Field[Any]) -> None:
         """Add a column that holds the field's default in every row."""
@@ -314,7 +313,8 @@ class Table(Generic[H]):
         self._by_name.update(zip(names, handles, strict=False))
 
     def _structure_changed(self) -> None:
-        self.structure = self.world.restructured({field.role for field in self.fields.values()})
+        roles = {field.role for field in self.fields.values()}
+        self.structure = self.world.structure = self.world.next_revision(*roles)
 
     def _reserve(self, rows: int) -> None:
         capacity = len(self.entity)
@@ -354,12 +354,9 @@ def _spread(column: Column, where: NDArray[np.bool_]) -> Column:
     return spread
 
 
-def living(world: weakref.ref[Store], elements: str) -> Store:
-    """The world of some elements, which do not keep it alive. Raises LookupError if it is gone."""
-    found = world()
-    if found is None:
-        raise LookupError(f"The model of {elements} is gone; keep the model while you use its elements.")
-    return found
+def refuse_orphans(elements: str) -> NoReturn:
+    """Raise LookupError, since the world of some elements, which do not keep it alive, is gone."""
+    raise LookupError(f"The model of {elements} is gone; keep the model while you use its elements.")
 
 
 def fields_of(kind: type) -> list[Field[Any]]:

@@ -90,11 +90,6 @@ class World:
 
     # --- revisions -------------------------------------------------------------------------------
 
-    def restructured(self, roles: Iterable[Role]) -> int:
-        """A new revision number, at which rows of columns with these roles come or go."""
-        self.structure = self.next_revision(*roles)
-        return self.structure
-
     def next_revision(self, *roles: Role) -> int:
         """A new revision number, greater than all before, at which columns with these roles change."""
         self.revision += 1

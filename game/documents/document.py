@@ -290,7 +290,8 @@ def _rows_by_name(model: Model, section: _Section, field: Field[Any]) -> Column:
     for row, element in enumerate(section.elements):
         value = element[field.key]
         names = value if field.shape else [value]
-        if not _are_names(names, field.shape):
+        count = field.shape[0] if field.shape else 1
+        if not isinstance(names, list | tuple) or [isinstance(n, str) for n in names] != [True] * count:
             form = 'the names of two particles, ["A", "B"]' if field.shape else "the name of a particle"
             _fail(section.where(row, field.key), f"it is {value!r}; it must be {form}.")
         for name in names:
@@ -298,11 +299,6 @@ def _rows_by_name(model: Model, section: _Section, field: Field[Any]) -> Column:
                 _fail(section.where(row, field.key), missing(target.name, name, row_of))
         column[row] = [row_of[name] for name in names] if field.shape else row_of[value]
     return column
-
-
-def _are_names(names: Any, shape: tuple[int, ...]) -> bool:
-    count = shape[0] if shape else 1
-    return isinstance(names, list | tuple) and len(names) == count and all(isinstance(n, str) for n in names)
 
 
 # --- what holds between several facts ------------------------------------------------------------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -231,8 +231,8 @@ class App:
 
     def layer(self, draw: Layer, *, below: bool = False) -> None:
         """Draw marks with every picture of a model, above its elements or below them; see systems/render/marks.py."""
-        drawn: Layer = lambda sheet: self._mod.call("its drawing layer", _as_list(draw), sheet, otherwise=[])  # noqa: E731
-        self._add(BELOW if below else ABOVE, drawn)
+        drawn, layers = lambda sheet: list(draw(sheet)), BELOW if below else ABOVE
+        self._add(layers, lambda sheet: self._mod.call("its drawing layer", drawn, sheet, otherwise=[]))
 
     def panel(self, read: Panel) -> None:
         """Show small panels beside the model: `read(session)` returns a Readout, several, or None."""
@@ -280,10 +280,6 @@ def _checked_key(key: str) -> str:
     if "shift" in key.lower() and "shift" not in named:
         raise ModError(f"The key '{key}' is the same as '{named}'; take that, or 'ctrl+shift+{named}'.")
     return named
-
-
-def _as_list(draw: Layer) -> Callable[[Any], list[Any]]:
-    return lambda sheet: list(draw(sheet))
 
 
 def _readouts(read: Panel) -> Callable[[Context], Sequence[Readout]]:

@@ -67,7 +67,8 @@ class Mod:
     def describe(self, error: BaseException) -> str:
         """An error with the file and the line of this mod in which it happened."""
         place = self._place(error)
-        said = str(error) if isinstance(error, ModError) else f"{type(error).__name__}: {_message(error)}"
+        message = error.msg if isinstance(error, SyntaxError) else str(error)
+        said = message if isinstance(error, ModError) else f"{type(error).__name__}: {message}"
         return f"{said.rstrip('.')}{f' ({place})' if place else ''}."
 
     def _place(self, error: BaseException) -> str:
@@ -98,10 +99,6 @@ class Mod:
         except Exception as error:  # any error of code that is not ours
             self.fail(what, error)
             return otherwise
-
-
-def _message(error: BaseException) -> str:
-    return error.msg if isinstance(error, SyntaxError) else str(error)
 
 
 def _short(path: str) -> str:
