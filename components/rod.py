@@ -144,19 +144,11 @@ def _check_ends(table: Table[Any], rows: NDArray[np.intp]) -> None:
     ends = table.between[rows]
     for row in ends[ends[:, 0] == ends[:, 1], 0][:1].tolist():
         raise FieldError(f"A rod needs two different particles; both ends are {names[row]}.")
-    codes = np.sort(_pair_codes(table.between))
+    first, second = table.between.astype(np.uint64).T
+    codes = np.sort((np.minimum(first, second) << np.uint64(32)) | np.maximum(first, second))
     for code in codes[1:][codes[1:] == codes[:-1]][:1].tolist():
-        first, second = names[[code >> 32, code & 0xFFFFFFFF]]
-        raise FieldError(
-            f"There is a rod between {first} and {second} already; two particles share at most one."
-        )
-
-
-def _pair_codes(ends: NDArray[np.uint32]) -> NDArray[np.uint64]:
-    """One number for each pair of particle rows, the same in both directions."""
-    low, high = np.minimum(ends[:, 0], ends[:, 1]), np.maximum(ends[:, 0], ends[:, 1])
-    codes: NDArray[np.uint64] = (low.astype(np.uint64) << np.uint64(32)) | high
-    return codes
+        one, other = names[[code >> 32, code & 0xFFFFFFFF]]
+        raise FieldError(f"There is a rod between {one} and {other} already; two particles share at most one.")
 
 
 def is_warm(world: World) -> bool:

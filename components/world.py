@@ -60,10 +60,7 @@ class World:
         self.tables: dict[str, Table[Any]] = {}
         self.tags_revision = 0
         self._tagged: dict[type, NDArray[np.intp]] = {}  # by tag that is not Rare: esper ids, ascending
-        self._tagged_rows: tuple[Any, dict[type, dict[str, NDArray[np.intp]]]] = (
-            None,
-            {},
-        )  # at these revisions
+        self._tagged_rows: dict[type, tuple[Any, dict[str, NDArray[np.intp]]]] = {}  # with their revisions
         self.changing = False
         self._open: list[Command] | None = None
         self._derivations: dict[str, Derivation] = {}
@@ -277,9 +274,8 @@ class World:
             for source in derivation.sources:
                 table, field = source.split(".")
                 further = self._derivations.get(source)
-                roots |= (
-                    {self.tables[table].fields[field].role} if further is None else {*self._roots_of(further)}
-                )
+                own = (self.tables[table].fields[field].role,)
+                roots.update(own if further is None else self._roots_of(further))
             self._roots[derivation] = tuple(roots)
         return self._roots[derivation]
 
@@ -518,12 +514,10 @@ class World:
     def rows_tagged(self, tag: type) -> dict[str, NDArray[np.intp]]:
         """Rows, ascending, of the existing entities with a tag, by table; found once until tags or rows change."""
         now = (self.tags_revision, self.structure)
-        if self._tagged_rows[0] != now:
-            self._tagged_rows = now, {}
-        known = self._tagged_rows[1]
-        if tag not in known:
-            known[tag] = self._rows(self._carriers(tag))
-        return known[tag]
+        known = self._tagged_rows.get(tag)
+        if known is None or known[0] != now:
+            known = self._tagged_rows[tag] = now, self._rows(self._carriers(tag))
+        return known[1]
 
     def any_tagged(self, tag: type) -> bool:
         """True if any existing entity carries a tag."""
