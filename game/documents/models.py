@@ -10,7 +10,7 @@ import os
 import re
 import shutil
 import uuid
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
 from importlib.resources import files
@@ -34,14 +34,13 @@ FOLDERS: list[Path] = []  # of mods, with models that are opened by name
 
 def bundled() -> list[str]:
     """Names of the models that come with the program and its mods, in alphabetical order."""
-    names = (entry.name for entry in _bundled_files())
-    return sorted(name.removesuffix(".json") for name in names if name.endswith(".json"))
+    return sorted(_bundled_files())
 
 
-def _bundled_files() -> Iterable[Traversable]:
-    yield from files("assets").joinpath("models").iterdir()
-    for folder in FOLDERS:
-        yield from folder.iterdir()
+def _bundled_files() -> dict[str, Traversable]:
+    """The files of these models by name."""
+    entries = (entry for folder in (*FOLDERS, files("assets") / "models") for entry in folder.iterdir())
+    return {entry.name.removesuffix(".json"): entry for entry in entries if entry.name.endswith(".json")}
 
 
 # --- reading ---------------------------------------------------------------------------------------
@@ -96,11 +95,8 @@ def _nothing_collected() -> Iterator[None]:
 
 def _found(source: str | Path) -> Path | Traversable:
     """A bundled model's name wins over a file, so that it means the same in every folder."""
-    if isinstance(source, str):
-        for entry in _bundled_files():
-            if entry.name == f"{source}.json":
-                return entry
-    return Path(source)
+    found = _bundled_files().get(source) if isinstance(source, str) else None
+    return found or Path(source)
 
 
 def _missing(source: str | Path) -> ModelError:
