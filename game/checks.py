@@ -104,8 +104,7 @@ def check_system(system: Callable[[], System], models: Iterable[Source] = MODELS
 
 
 def _model(source: Source) -> Model:
-    made: Model = source() if callable(source) else models.load(source)
-    return made
+    return source() if callable(source) else models.load(source)
 
 
 def _is_needed(system: Callable[[], System], source: Source) -> bool:

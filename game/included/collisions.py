@@ -36,8 +36,7 @@ def free_speeds(model: Model) -> NDArray[np.float64]:
 
 def rayleigh(speed: NDArray[np.float64], mean_square: float) -> NDArray[np.float64]:
     """Density (s/m) of the speeds of a two-dimensional gas: 2v/⟨v²⟩ exp(−v²/⟨v²⟩)."""
-    density: NDArray[np.float64] = 2 * speed / mean_square * np.exp(-(speed**2) / mean_square)
-    return density
+    return 2 * speed / mean_square * np.exp(-(speed**2) / mean_square)
 
 
 def histogram(

@@ -98,8 +98,7 @@ class Discs:
 
     def keys(self, pairs: Rows) -> Rows:
         """A number (k,) for each of some pairs (k, 2), the lower row first."""
-        keys: Rows = pairs[:, 0] * len(self.radius) + pairs[:, 1]
-        return keys
+        return pairs[:, 0] * len(self.radius) + pairs[:, 1]
 
     # --- distances -----------------------------------------------------------------------------------
 
@@ -111,8 +110,7 @@ class Discs:
     def _span(self, rows: Rows) -> Array:
         """The way from the first end to the other (k, 2), 0 of discs."""
         spans = np.concatenate([np.zeros((self._count, 2)), self.obstacles.span])
-        span: Array = spans[rows]
-        return span
+        return spans[rows]
 
     def lines(self, displacement: Array, pairs: Rows) -> Array:
         """Vectors (k, 2) from the centres of the first of some pairs to the nearest points of the second."""
@@ -148,8 +146,7 @@ class Discs:
         reach = (self.radius + moves)[:count]
         pairs = near_pairs(self._place(displacement)[:count], reach, self.obstacles).astype(np.intp)
         may_touch = self.movable[pairs].any(axis=(1, 2)) & ~np.isin(self.keys(pairs), self.apart)
-        near: Rows = pairs[may_touch]
-        return near
+        return pairs[may_touch]
 
     # --- contacts as rods ----------------------------------------------------------------------------
 
@@ -269,8 +266,7 @@ class Sinking:
         )
 
     def _pressed(self) -> Flags:
-        pressed: Flags = self.point.response.axial_force[self.rods.stop :] < 0.0
-        return pressed
+        return self.point.response.axial_force[self.rods.stop :] < 0.0
 
     def _gap(self) -> float:
         """The largest gap or overlap of pressed contacts, as a share of their length."""

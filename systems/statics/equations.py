@@ -156,8 +156,7 @@ class Structure:
         links = _compatibility(self.ends, np.ones((len(self.ends), 2)), len(self.position))[:, index]
         pattern = csc_matrix(abs(links).T @ abs(links) + identity(len(index)))
         order = splu(pattern, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC).perm_c
-        ordered: Rows = index[np.argsort(order)]
-        return ordered
+        return index[np.argsort(order)]
 
     @property
     def size(self) -> int:
@@ -166,8 +165,7 @@ class Structure:
 
     def gather(self, field: Array) -> Array:
         """The unknowns' part of a field."""
-        part: Array = field.ravel()[self.index]
-        return part
+        return field.ravel()[self.index]
 
     def spread(self, vector: Array) -> Array:
         """A vector of unknowns as a field, zero elsewhere."""
@@ -177,8 +175,7 @@ class Structure:
 
     def relative(self, field: Array) -> Array:
         """Second end minus first end of every rod, (rods, 2)."""
-        difference: Array = field[self.ends[:, 1]] - field[self.ends[:, 0]]
-        return difference
+        return field[self.ends[:, 1]] - field[self.ends[:, 0]]
 
     def move(self, vector: Array, reach: Array) -> float:
         """The largest change of a rod, in length or direction, relative to its reach."""

@@ -62,8 +62,7 @@ class Factor:
 
     def solve(self, right: Array) -> Array:
         """The solution for one or several right-hand sides, (N,) or (N, k)."""
-        solution: Array = self._solve(right)
-        return solution
+        return self._solve(right)
 
 
 def regular(matrix: Matrix, weight: Array, share: float = NO_STIFFNESS) -> Factor:

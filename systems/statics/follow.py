@@ -178,8 +178,7 @@ class Path:
     def _growth(self, response: Response, branches: Branches, tangent: Tangent) -> Array:
         """How fast rods at the end of a piece elongate outward along the path."""
         rate = self.structure.elongation_rate(tangent.sense * tangent.rate, response)
-        growth: Array = rate * branches.outward
-        return growth
+        return rate * branches.outward
 
     def _agrees(self, response: Response, branches: Branches, tangent: Tangent) -> bool:
         """True if of the rods at the end of a piece just those that give way go on outward."""

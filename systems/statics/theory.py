@@ -181,8 +181,7 @@ def _localised(basis: Array) -> Array:
     if basis.shape[1] == 0:
         return basis
     pivots = qr(basis.T, mode="r", pivoting=True)[1][: basis.shape[1]]
-    turned: Array = np.linalg.solve(basis[pivots].T, basis.T).T
-    return turned
+    return np.linalg.solve(basis[pivots].T, basis.T).T
 
 
 # --- influence -------------------------------------------------------------------------------------------

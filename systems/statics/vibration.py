@@ -34,8 +34,7 @@ class Vibrations:
     @property
     def hertz(self) -> Array:
         """Frequencies (Hz), 0 for mechanisms and for motions that are not stable."""
-        frequencies: Array = np.sqrt(np.maximum(self.angular_squared, 0.0)) / (2.0 * np.pi)
-        return frequencies
+        return np.sqrt(np.maximum(self.angular_squared, 0.0)) / (2.0 * np.pi)
 
 
 def rests_under_load(model: Model) -> bool:
