@@ -1,4 +1,4 @@
-"""Bodies that nothing holds: connected particles of which none is constrained along an axis."""
+"""Loose bodies: connected particles of which none is constrained along an axis."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from systems.statics.equations import Array, Rows, Structure
 from systems.statics.events import Event
 from systems.statics.explain import listed
 
-NO_NET_FORCE = 1e-12  # of the sum of a body's forces: what is left of them is round-off
+NO_NET_FORCE = 1e-12  # of the sum of a body's forces: a smaller net force is round-off
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class LooseBody:
 
 
 def loose_bodies(structure: Structure, load: Array) -> list[LooseBody]:
-    """The bodies that nothing holds along x, then along y, under a load (n, 2); lone particles if pulled."""
+    """The bodies without a constraint along x, then along y, under a load (n, 2); lone particles only if pulled."""
     count = int(structure.body.max(initial=-1)) + 1
     members = np.bincount(structure.body, minlength=count)
     found = []
@@ -40,7 +40,7 @@ def loose_bodies(structure: Structure, load: Array) -> list[LooseBody]:
 
 
 def loose_event(model: Model, body: LooseBody, factor: float) -> Event:
-    """What to tell about a loose body."""
+    """The event of a loose body at a load factor."""
     names = model.particles.column("name")
     who, along = listed([str(names[row]) for row in body.particles]), "xy"[body.axis]
     if body.pull:

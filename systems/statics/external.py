@@ -1,4 +1,4 @@
-"""External forces of statics: what load factors multiply, and what acts in full from the first one on."""
+"""External forces of statics: those that load factors multiply, and those of accelerations."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from systems.statics.equations import Array
 
 @dataclass(frozen=True)
 class External:
-    """scaled: forces and loads at factor 1; steady: mass × accelerations (kN, (n, 2)); notes: sentences."""
+    """Forces (n, 2) in kN. scaled: forces and loads at factor 1; steady: mass × acceleration; notes: sentences."""
 
     scaled: Array
     steady: Array
     notes: tuple[str, ...]
 
     def at(self, factor: float) -> Array:
-        """All external force at a load factor."""
+        """The whole external force at a load factor."""
         return factor * self.scaled + self.steady
 
 
 def external_forces(model: Model) -> External:
-    """The forces on a model; a load that varies in time counts with the factor its history has in statics."""
+    """The external forces on a model; a varying load counts with the factor of its history in statics."""
     particles, environment = model.particles, model.environment
     scaled = particles.force + np.array(environment.force)
     notes = []

@@ -1,5 +1,5 @@
-"""What theory says about a structure: linear answers, indeterminacy, mechanisms, self-stress, influence
-lines, all about the original positions, and vibrations about the present ones. Lengths in m, forces in kN."""
+"""First-order theory about the original positions: linear answers, indeterminacy, mechanisms, self-stress,
+influence lines. Lengths in m, forces in kN."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scipy.linalg import qr, svd
 
 from components.model import Model
 from systems.statics.bodies import loose_bodies, loose_event
-from systems.statics.equations import ROUND_OFF, Array, Matrix, Response, Structure
+from systems.statics.equations import ROUND_OFF, Array, Matrix, Response, Structure, normalised
 from systems.statics.events import NoEquilibrium
 from systems.statics.explain import cables_named, describe_motion
 from systems.statics.external import external_forces
@@ -26,20 +26,20 @@ MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 
 
 @dataclass(frozen=True)
-class LinearState:
-    """First-order answer: displacement (n, 2), axial_force (rods,), reaction (n, 2), 0 in free directions."""
+class Answer:
+    """displacement (n, 2) in m, axial_force (rods,) in kN and reaction (n, 2) in kN, 0 in free directions."""
 
     displacement: Array
     axial_force: Array
     reaction: Array
 
 
-def linear(model: Model, start: Start | None = None) -> LinearState:
+def linear(model: Model, start: Start | None = None) -> Answer:
     """The direct stiffness method: K u = f about the original positions, all rods elastic.
 
-    Of the state that it starts from (None: the present one), plastic strain acts as initial forces like lack
-    of fit, and displacements of constrained directions as moved supports. Raises NoEquilibrium, naming who
-    moves, for a mechanism or a free body that the load moves.
+    start: a state (None: the present one) of which plastic strain acts as initial forces, like lack of fit, and
+    displacements of constrained directions as moved supports. Raises NoEquilibrium, naming the particles, for a
+    mechanism or a free body that the load moves.
     """
     structure, start = Structure.of(model, "linear"), start or Start.present(model)
     load = external_forces(model).at(1.0)
@@ -51,11 +51,11 @@ def linear(model: Model, start: Start | None = None) -> LinearState:
     displacement = supports + _deflection(model, structure, load - _internal(structure, initial))
     final = structure.respond(displacement, start.plastic_strain)
     reaction = np.where(structure.fixed, _internal(structure, final) - load, 0.0)
-    return LinearState(displacement, final.elastic_force, reaction)
+    return Answer(displacement, final.elastic_force, reaction)
 
 
 def _internal(structure: Structure, response: Response) -> Array:
-    """Forces (n, 2) that hold the particles against the rods, which do not yield in linear theory."""
+    """Forces (n, 2) that hold the particles against the rods, none of which yields in linear theory."""
     return structure.scatter(response.elastic_force[:, None] * response.axis)
 
 
@@ -84,12 +84,12 @@ def _deflection(model: Model, structure: Structure, load: Array) -> Array:
 
 
 def _stiffness(structure: Structure) -> Matrix:
-    """Of the elastic rods without force."""
+    """Tangent of the elastic rods without force, all taut."""
     return structure.tangent(_unmoved(structure), np.zeros(len(structure.ends), dtype=bool), geometric=False)
 
 
 def _unmoved(structure: Structure) -> Response:
-    """The rods where the particles originally are."""
+    """The rods at the original positions."""
     return structure.respond(np.zeros(structure.unknown.shape), np.zeros(len(structure.ends)))
 
 
@@ -98,10 +98,10 @@ def _unmoved(structure: Structure) -> Response:
 
 @dataclass(frozen=True)
 class Indeterminacy:
-    """Degrees of static indeterminacy: in all, of the rods among themselves, and of the supports.
+    """Degrees of static indeterminacy: in all, internal (of the rods) and external (of the supports).
 
-    mechanisms: number of independent motions without elongation, of what nothing holds included
-    (kinematic indeterminacy).
+    mechanisms: number of independent motions without elongation, those of free bodies included (kinematic
+    indeterminacy).
     """
 
     static: int
@@ -111,7 +111,7 @@ class Indeterminacy:
 
 
 def indeterminacy(model: Model) -> Indeterminacy:
-    """Counted from the rank r of the compatibility matrix, with supports and without; cables as if taut.
+    """Degrees by the rank r of the compatibility matrix, with supports and without; cables count as taut.
 
     m rods between particles with f free directions have m − r states of self-stress and f − r mechanisms.
     """
@@ -130,9 +130,8 @@ def mechanisms(model: Model) -> Array:
     else:
         matrix = _stiffness(structure)
         modes = soft_modes(matrix, structure.weight, most=min(MOST_MODES, soft_count(matrix, structure.weight)))
-    fields = [structure.spread(mode) for mode in _localised(modes).T]
-    scaled = [field / np.hypot(*field.T).max() for field in fields]
-    return np.array(scaled).reshape(len(fields), *structure.unknown.shape)
+    fields = structure.fields(_localised(modes))
+    return np.array([normalised(field) for field in fields]).reshape(fields.shape)
 
 
 def self_stress(model: Model) -> Array:
@@ -141,7 +140,7 @@ def self_stress(model: Model) -> Array:
     compatibility = structure.compatibility(_unmoved(structure))
     if structure.size <= FULL:
         states = _null_space(compatibility.toarray().T)
-    else:  # any forces, less those with which the rods answer to what is unbalanced
+    else:  # any forces, less those that balance their unbalanced part
         count = min(MOST_MODES, len(structure.ends) - _rank(structure))
         states = pseudo_random(len(structure.ends), count)
         unit = replace(structure, stiffness=structure.rest_length)
@@ -163,12 +162,12 @@ def _rank(structure: Structure) -> int:
 
 
 def _count(singular: Array, matrix: Array) -> int:
-    """How many singular values are more than round-off."""
+    """The number of singular values above round-off."""
     return int((singular > 8.0 * max(matrix.shape) * ROUND_OFF * singular.max(initial=0.0)).sum())
 
 
 def _null_space(matrix: Array) -> Array:
-    """Orthonormal vectors (columns, k) that the matrix maps to nothing."""
+    """Orthonormal basis (columns, k) of the null space of a matrix."""
     if 0 in matrix.shape:
         return np.eye(matrix.shape[1])
     _, singular, ways = svd(matrix)
@@ -177,7 +176,7 @@ def _null_space(matrix: Array) -> Array:
 
 
 def _localised(basis: Array) -> Array:
-    """Another basis (size, k) of the same space, in which each vector is 1 where all others are 0."""
+    """Another basis (size, k) of the same space: each vector is 1 in one place where all others are 0."""
     if basis.shape[1] == 0:
         return basis
     pivots = qr(basis.T, mode="r", pivoting=True)[1][: basis.shape[1]]
@@ -203,8 +202,7 @@ def influence_on_reaction(model: Model, particle: int, axis: int) -> Array:
     structure = Structure.of(model, "linear")
     if not structure.fixed[particle, axis]:
         raise ValueError(f"{model.particles[particle].name} is not constrained along {'xy'[axis]}.")
-    unit = np.zeros(structure.fixed.shape)
-    unit[particle, axis] = 1.0
+    unit = _unit(structure, particle, axis)
     axes = _unmoved(structure).axis
     lever = (structure.relative(unit) * axes).sum(axis=1)
     pull = (structure.stiffness / structure.rest_length * lever)[:, None] * axes
@@ -217,6 +215,11 @@ def influence_on_displacement(model: Model, particle: int, axis: int) -> Array:
     Maxwell: the deflection under a unit load there, the unit-load method's virtual state.
     """
     structure = Structure.of(model, "linear")
-    unit = np.zeros(structure.fixed.shape)
-    unit[particle, axis] = 1.0
-    return _deflection(model, structure, unit)
+    return _deflection(model, structure, _unit(structure, particle, axis))
+
+
+def _unit(structure: Structure, particle: int, axis: int) -> Array:
+    """A field (n, 2) of 1 for a particle along an axis, else 0."""
+    field = np.zeros(structure.fixed.shape)
+    field[particle, axis] = 1.0
+    return field
