@@ -84,11 +84,11 @@ class Row:
     quantity: str
     component: str
     unit: str
-    simulation: float | None
-    linear: float | None
-    exact: float | None
-    simulation_error: float | None
-    linear_error: float | None
+    simulation: float | None = None
+    linear: float | None = None
+    exact: float | None = None
+    simulation_error: float | None = None
+    linear_error: float | None = None
 
     @property
     def title(self) -> str:
@@ -115,48 +115,41 @@ class Comparison:
         """One quantity of one element: of a rod (row,), of a particle (row, axis)."""
         table, unit = QUANTITIES[quantity]
         found = {way: float(values[place]) for way, values in self._values[quantity].items()}
-        errors = {way: float(values[place]) for way, values in self._errors[quantity].items()}
-        return Row(
-            element=table.removesuffix("s"),
-            name=str(self.model.tables[table].column("name")[place[0]]),
-            quantity=quantity,
-            component="" if len(place) == 1 else "xy"[place[1]],
-            unit=unit,
-            simulation=found.get("simulation"),
-            linear=found.get("linear"),
-            exact=found.get("exact"),
-            simulation_error=errors.get("simulation"),
-            linear_error=errors.get("linear"),
+        errors = {f"{way}_error": float(values[place]) for way, values in self._errors[quantity].items()}
+        name, component = (
+            str(self.model.tables[table].column("name")[place[0]]),
+            "xy"[place[1]] if place[1:] else "",
         )
+        return Row(table.removesuffix("s"), name, quantity, component, unit, **found, **errors)
 
     def worst(self, way: str, *quantities: str) -> Row | None:
-        """The row with the largest error of the "simulation" or of "linear" theory (of some quantities, if given).
+        """The row with the largest error of the "simulation" or of "linear" theory, in all or some quantities.
 
-        None if there is nothing to compare. Raises ValueError for what is neither.
+        None if there is nothing to compare. Raises ValueError for other names.
         """
         for given, known in ((way, ("simulation", "linear")), *((name, QUANTITIES) for name in quantities)):
             if given not in known:
                 raise ValueError(missing("comparisons", given, known))
-        largest, row = -1.0, None
+        greatest, row = -1.0, None
         for quantity in quantities or QUANTITIES:
             errors, concerned = self._errors[quantity].get(way), self._concerned(quantity)
             if errors is None or not concerned.any():
                 continue
             errors = np.where(concerned, errors, -1.0)
-            if errors.max() > largest:
-                largest = float(errors.max())
+            if errors.max() > greatest:
+                greatest = float(errors.max())
                 row = self.row(quantity, tuple(int(i) for i in np.unravel_index(errors.argmax(), errors.shape)))
         return row
 
     def _concerned(self, quantity: str) -> Flags:
-        """Where a quantity says something, in the shape of its array."""
+        """Where a quantity has a meaning, in the shape of its array."""
         if quantity == "axial_force":
             return np.ones(self.model.rods.count, dtype=bool)
         fixed: Flags = self.model.particles.fixed
         return fixed if quantity == "reaction" else ~fixed
 
     def scale(self, quantity: str) -> float:
-        """The largest exact value; of the same unit where that is only rounding; 0 where that is, too."""
+        """The largest exact value of the quantity; where it is rounding, of its unit; 0 where that is rounding."""
         rods, unit = self.model.rods, QUANTITIES[quantity][1]
         of_strain_1 = float((rods.stiffness if unit == "kN" else rods.rest_length).max(initial=0.0))
         own = self._largest(quantity)
@@ -181,9 +174,8 @@ class Comparison:
             quantity: {
                 way: np.abs(array - values["exact"]) / (self.scale(quantity) or 1.0)
                 for way, array in values.items()
+                if "exact" in values and way != "exact"
             }
-            if "exact" in values
-            else {}
             for quantity, values in self._values.items()
         }
 
