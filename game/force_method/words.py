@@ -144,7 +144,7 @@ def _equations(solution: Solution) -> tuple[str, ...]:
 
 
 def table(guide: Guide) -> Sequence[tuple[str, ...]]:
-    """Set 1 = set 2 + set 3, rod by rod (part 7), in kN."""
+    """Axial forces (kN) of set 1 = set 2 + set 3 for every rod (part 7)."""
     solution = guide.solution
     return Superposition(guide.model.rods.names, solution) if solution and guide.part == PARTS else ()
 

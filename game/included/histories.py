@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 import itertools
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -70,15 +71,7 @@ TABLE = HistoryKind(
     check=check_points,
     breaks=lambda history: tuple(history["times"]),
 )
-RECORD = HistoryKind(
-    "record",
-    {"times": (0.0,), "accelerations": (0.0,)},
-    f"{KERNELS}:interpolated",
-    static=0.0,
-    ends=lambda history: float(history["times"][-1]),
-    check=check_points,
-    breaks=lambda history: tuple(history["times"]),
-)
+RECORD = replace(TABLE, name="record", parameters={"times": (0.0,), "accelerations": (0.0,)}, static=0.0)
 
 
 # --- base acceleration -------------------------------------------------------------------------------

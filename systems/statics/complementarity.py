@@ -29,7 +29,8 @@ def yielding_set(matrix: Array, growth: Array, guess: Flags) -> Flags | None:
     if len(growth) <= ENUMERATED:
         for trial in product([True, False], repeat=len(growth)):
             chosen = np.array(trial)
-            if _is_positive(matrix, chosen) and not _violations(matrix, growth, chosen).any():
+            definite = not any(trial) or np.linalg.eigvalsh(matrix[np.ix_(chosen, chosen)])[0] > 0.0
+            if definite and not _violations(matrix, growth, chosen).any():
                 return chosen
     return None
 
@@ -43,7 +44,3 @@ def _violations(matrix: Array, growth: Array, chosen: Flags) -> Flags:
             return chosen.copy()
     excess = growth - matrix @ rates
     return np.where(chosen, rates < 0.0, excess > 1e-12 * np.abs(growth).max())
-
-
-def _is_positive(matrix: Array, chosen: Flags) -> bool:
-    return not chosen.any() or bool(np.linalg.eigvalsh(matrix[np.ix_(chosen, chosen)])[0] > 0.0)
