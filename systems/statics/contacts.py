@@ -37,12 +37,14 @@ SMALLEST_PENALTY = 1e-9  # of the stiffness: hardly any damping
 class Discs:
     """The bodies that may touch: the discs of all n particles, then the straight obstacles, N in all.
 
-    start: original positions, of obstacles their first end, (N, 2). movable: free directions (N, 2). is_alone:
+    start: original positions, of obstacles their first end, (N, 2). span: from there to the other end of obstacles,
+    0 for discs, (N, 2). movable: free directions (N, 2). is_alone:
     movable and without rods (N,). apart: sorted keys of the pairs that never touch: those that a rod joins, and
     nodes of structures that overlap another node or an obstacle at the beginning.
     """
 
     start: Array
+    span: Array
     obstacles: Obstacles
     radius: Array
     movable: Flags
@@ -59,6 +61,7 @@ class Discs:
         fixed = np.concatenate([particles.fixed, np.ones((len(others), 2), dtype=bool)])
         discs = cls(
             start=np.concatenate([particles.position, others.start]),
+            span=np.concatenate([np.zeros((particles.count, 2)), others.span]),
             obstacles=others,
             radius=np.concatenate([particles.radius, others.radius]),
             movable=~fixed,
@@ -106,15 +109,10 @@ class Discs:
         place[: len(displacement)] += displacement
         return place
 
-    def _span(self, rows: Rows) -> Array:
-        """Vectors (k, 2) from the first end of obstacles to the other, 0 for discs."""
-        spans = np.concatenate([np.zeros((self._count, 2)), self.obstacles.span])
-        return spans[rows]
-
     def lines(self, displacement: Array, pairs: Rows) -> Array:
         """Vectors (k, 2) from the centre of the first of each pair to the nearest point of the second."""
         place = self._place(displacement)
-        return nearest(place[pairs[:, 1]] - place[pairs[:, 0]], self._span(pairs[:, 1]))
+        return nearest(place[pairs[:, 1]] - place[pairs[:, 0]], self.span[pairs[:, 1]])
 
     def gap(self, displacement: Array, pairs: Rows) -> Array:
         """Distances (k,) between the rims of pairs (k, 2), negative where they overlap."""
@@ -155,7 +153,7 @@ class Discs:
         A vector leads from the first centre to the second, or to the end or side of the obstacle that is nearest
         now. A flat contact, with a side, keeps its axis.
         """
-        line, span = self.lines(displacement, pairs), self._span(pairs[:, 1])
+        line, span = self.lines(displacement, pairs), self.span[pairs[:, 1]]
         way = self.start[pairs[:, 1]] - self.start[pairs[:, 0]]
         place = self._place(displacement)
         along = ((place[pairs[:, 0]] + line - self.start[pairs[:, 1]]) * span).sum(axis=1)

@@ -163,7 +163,7 @@ class Structure:
         index = np.flatnonzero(self.unknown.ravel())
         if len(index) <= DENSE:
             return index
-        links = _compatibility(self.ends, np.ones((len(self.ends), 2)), len(self.position))[:, index]
+        links = compatibility(self.ends, np.ones((len(self.ends), 2)), len(self.position))[:, index]
         pattern = csc_matrix(abs(links).T @ abs(links) + identity(len(index)))
         order = splu(pattern, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC).perm_c
         return index[np.argsort(order)]
@@ -225,6 +225,16 @@ class Structure:
         return self.gather(np.repeat(total + self.own_weight, 2).reshape(-1, 2))
 
     # --- forces --------------------------------------------------------------------------------------
+
+    @cached_property
+    def unmoved(self) -> Response:
+        """The rods at the original positions without plastic strain."""
+        return self.respond(np.zeros(self.unknown.shape), np.zeros(len(self.ends)))
+
+    @cached_property
+    def initial_tangent(self) -> Matrix:
+        """The tangent at the original positions, without axial forces and with taut cables."""
+        return self.tangent(self.unmoved, np.zeros(len(self.ends), dtype=bool), geometric=False)
 
     def respond(self, displacement: Array, plastic_strain: Array) -> Response:
         """Axial forces N = EA (ε − ε_p), ε = (L − L₀)/L₀, limited by yielding; both limits move with ε_p."""
@@ -361,11 +371,11 @@ class Structure:
 
     def compatibility(self, response: Response, rows: Rows | slice = slice(None)) -> csc_matrix:
         """Elongations of (some) rods from the unknowns, (rods, N); its transpose is the equilibrium matrix."""
-        matrix = _compatibility(self.ends[rows], response.axis[rows], len(self.position))
+        matrix = compatibility(self.ends[rows], response.axis[rows], len(self.position))
         return csc_matrix(matrix[:, self.index])
 
 
-def _compatibility(ends: Rows, axis: Array, particles: int) -> csc_matrix:
+def compatibility(ends: Rows, axis: Array, particles: int) -> csc_matrix:
     """Elongations from the displacements of all particles, (rods, 2n)."""
     columns = 2 * ends[:, [0, 0, 1, 1]] + np.array([0, 1, 0, 1])
     entries = np.concatenate([-axis, axis], axis=1)

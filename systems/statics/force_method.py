@@ -18,7 +18,7 @@ from components.numeric_range import incomputable
 from components.particle import Particle
 from components.rod import Rod, nodes
 from components.suggestions import missing
-from systems.statics.equations import Array, Structure, normalised
+from systems.statics.equations import Array, Structure, compatibility, normalised
 from systems.statics.explain import cables_named, describe_motion
 from systems.statics.external import external_forces
 from systems.statics.factor import Factor, soft_count, soft_modes
@@ -248,13 +248,10 @@ def redundants(model: Model) -> list[Unknown]:
     used = np.zeros(model.particles.count, dtype=bool)
     used[structure.ends] = True
     supports = np.argwhere(structure.fixed & used[:, None])
-    columns = np.zeros((2 * model.particles.count, model.rods.count + len(supports)))
-    for row, ((first, second), along) in enumerate(zip(structure.ends, structure.original_axis, strict=True)):
-        columns[2 * first : 2 * first + 2, row] = along
-        columns[2 * second : 2 * second + 2, row] = -along
-    for index, (row, direction) in enumerate(supports):
-        columns[2 * row + direction, model.rods.count + index] = _KEPT
-    factor, order = qr(columns, mode="r", pivoting=True)
+    of_supports = np.zeros((2 * model.particles.count, len(supports)))
+    of_supports[2 * supports[:, 0] + supports[:, 1], np.arange(len(supports))] = _KEPT
+    of_rods = compatibility(structure.ends, structure.original_axis, model.particles.count).toarray().T
+    factor, order = qr(np.hstack([of_rods, of_supports]), mode="r", pivoting=True)
     sizes = np.abs(np.diag(factor))
     rank = int((sizes > _RANK * sizes.max(initial=0.0) / _KEPT).sum())
     found = []

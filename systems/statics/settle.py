@@ -15,12 +15,11 @@ import numpy as np
 from components.field import FieldError
 from components.model import Model
 from components.numeric_range import incomputable
-from systems.statics.bodies import loose_bodies, loose_event
 from systems.statics.contacts import Discs, Sinking
 from systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, largest, normalised
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import describe_motion, describe_way, slack_named
-from systems.statics.external import external_forces
+from systems.statics.external import external_forces, loose_bodies, loose_event
 from systems.statics.factor import soft_modes, softest
 from systems.statics.follow import Path, Point
 from systems.statics.loading import Loading, first_order_mechanism

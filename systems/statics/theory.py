@@ -9,11 +9,10 @@ import numpy as np
 from scipy.linalg import qr, svd
 
 from components.model import Model
-from systems.statics.bodies import loose_bodies, loose_event
-from systems.statics.equations import ROUND_OFF, Array, Matrix, Response, Structure, normalised
+from systems.statics.equations import ROUND_OFF, Array, Response, Structure, normalised
 from systems.statics.events import NoEquilibrium
 from systems.statics.explain import cables_named, describe_motion
-from systems.statics.external import external_forces
+from systems.statics.external import external_forces, loose_bodies, loose_event
 from systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes
 from systems.statics.settle import Start
 
@@ -67,7 +66,7 @@ def _deflection(model: Model, structure: Structure, load: Array) -> Array:
             " or let slack cables go and have taut ones bear compression too."
         )
         raise NoEquilibrium("limit reached", message)
-    matrix, right = _stiffness(structure), structure.gather(load)
+    matrix, right = structure.initial_tangent, structure.gather(load)
     factor = regular(matrix, structure.weight)
     solution = factor.solve(right)
     for _ in range(REFINEMENTS):
@@ -81,16 +80,6 @@ def _deflection(model: Model, structure: Structure, load: Array) -> Array:
         raise NoEquilibrium("mechanism", message)
     modes = soft_modes(matrix, structure.weight, factor, most=soft_count(matrix, structure.weight))
     return structure.spread(solution - modes @ (modes.T @ (structure.weight * solution)))
-
-
-def _stiffness(structure: Structure) -> Matrix:
-    """Tangent of the elastic rods without force, all taut."""
-    return structure.tangent(_unmoved(structure), np.zeros(len(structure.ends), dtype=bool), geometric=False)
-
-
-def _unmoved(structure: Structure) -> Response:
-    """The rods at the original positions."""
-    return structure.respond(np.zeros(structure.unknown.shape), np.zeros(len(structure.ends)))
 
 
 # --- indeterminacy -------------------------------------------------------------------------------------
@@ -126,9 +115,9 @@ def mechanisms(model: Model) -> Array:
     """Motions (k, n, 2) that elongate no rod, the largest of each 1; of large structures at most 20."""
     structure = Structure.of(model, "linear").with_translations()
     if structure.size <= FULL:
-        modes = _null_space(structure.compatibility(_unmoved(structure)).toarray())
+        modes = _null_space(structure.compatibility(structure.unmoved).toarray())
     else:
-        matrix = _stiffness(structure)
+        matrix = structure.initial_tangent
         modes = soft_modes(matrix, structure.weight, most=min(MOST_MODES, soft_count(matrix, structure.weight)))
     fields = structure.fields(_localised(modes))
     return np.array([normalised(field) for field in fields]).reshape(fields.shape)
@@ -137,14 +126,14 @@ def mechanisms(model: Model) -> Array:
 def self_stress(model: Model) -> Array:
     """Axial forces (k, rods) in equilibrium without load, the largest of each 1; of large ones at most 20."""
     structure = Structure.of(model, "linear").with_translations()
-    compatibility = structure.compatibility(_unmoved(structure))
+    compatibility = structure.compatibility(structure.unmoved)
     if structure.size <= FULL:
         states = _null_space(compatibility.toarray().T)
     else:  # any forces, less those that balance their unbalanced part
         count = min(MOST_MODES, len(structure.ends) - _rank(structure))
         states = pseudo_random(len(structure.ends), count)
         unit = replace(structure, stiffness=structure.rest_length)
-        factor = regular(_stiffness(unit), unit.weight)
+        factor = regular(unit.initial_tangent, unit.weight)
         for _ in range(REFINEMENTS):
             states = states - compatibility @ factor.solve(compatibility.T @ states)
     states = _localised(states)
@@ -156,8 +145,8 @@ def _rank(structure: Structure) -> int:
     if structure.size == 0 or len(structure.ends) == 0:
         return 0
     if structure.size > FULL:
-        return structure.size - soft_count(_stiffness(structure), structure.weight)
-    matrix = structure.compatibility(_unmoved(structure)).toarray()
+        return structure.size - soft_count(structure.initial_tangent, structure.weight)
+    matrix = structure.compatibility(structure.unmoved).toarray()
     return _count(svd(matrix, compute_uv=False), matrix)
 
 
@@ -193,7 +182,7 @@ def influence_on_rod(model: Model, rod: int) -> Array:
     """
     structure = Structure.of(model, "linear")
     pull = np.zeros((len(structure.ends), 2))
-    pull[rod] = structure.stiffness[rod] / structure.rest_length[rod] * _unmoved(structure).axis[rod]
+    pull[rod] = structure.stiffness[rod] / structure.rest_length[rod] * structure.unmoved.axis[rod]
     return _deflection(model, structure, structure.scatter(pull))
 
 
@@ -203,7 +192,7 @@ def influence_on_reaction(model: Model, particle: int, axis: int) -> Array:
     if not structure.fixed[particle, axis]:
         raise ValueError(f"{model.particles[particle].name} is not constrained along {'xy'[axis]}.")
     unit = _unit(structure, particle, axis)
-    axes = _unmoved(structure).axis
+    axes = structure.unmoved.axis
     lever = (structure.relative(unit) * axes).sum(axis=1)
     pull = (structure.stiffness / structure.rest_length * lever)[:, None] * axes
     return _deflection(model, structure, structure.scatter(pull)) - unit

@@ -10,7 +10,7 @@ from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from components.model import Model
-from systems.statics.equations import ROUND_OFF, Array, Matrix, Structure, largest, normalised
+from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from systems.statics.external import external_forces
 from systems.statics.factor import Factor, pseudo_random
 from systems.statics.settle import Start, StaticState
@@ -55,7 +55,10 @@ def vibrations(model: Model, state: StaticState | Start | None = None, count: in
     """
     structure = Structure.of(model).with_translations()
     root = np.sqrt(structure.gather(np.repeat(model.particles.mass, 2).reshape(-1, 2)) / 1000.0)
-    stiffness = _stiffness(structure, state)
+    stiffness = structure.initial_tangent
+    if state is not None:
+        response = structure.respond(state.displacement, state.plastic_strain)
+        stiffness = structure.tangent(response, response.slack)
     if structure.size <= FULL:
         full = stiffness if isinstance(stiffness, np.ndarray) else stiffness.toarray()
         values, vectors = eigh(full / root[:, None] / root)
@@ -66,14 +69,6 @@ def vibrations(model: Model, state: StaticState | Start | None = None, count: in
         values, vectors = _lowest(scaled, count or LOWEST)
     fields = structure.fields(vectors / root[:, None])
     return Vibrations(values, np.array([normalised(field) for field in fields]).reshape(fields.shape))
-
-
-def _stiffness(structure: Structure, state: StaticState | Start | None) -> Matrix:
-    if state is not None:
-        response = structure.respond(state.displacement, state.plastic_strain)
-        return structure.tangent(response, response.slack)
-    unmoved = structure.respond(np.zeros(structure.unknown.shape), np.zeros(len(structure.ends)))
-    return structure.tangent(unmoved, np.zeros(len(structure.ends), dtype=bool), geometric=False)
 
 
 def _lowest(matrix: csc_matrix, count: int) -> tuple[Array, Array]:
