@@ -42,8 +42,8 @@ LEFT_OUT = (
 def load_as_asked(words: Sequence[str]) -> list[str]:
     """Load the mods that the options --mods DIR and --no-mods ask for; returns the other words.
 
-    What was left out is said on standard error. After a crash with mods, a window opens without those
-    that --mods did not name. Raises ModError.
+    Mods that are left out are named on standard error. After a crash with mods, a window opens without those that
+    --mods did not name. Raises ModError.
     """
     parser = Parser(prog="pinjoint", add_help=False, allow_abbrev=False)
     parser.add_argument("--mods", action="append", default=[], metavar="DIR")
@@ -165,7 +165,7 @@ def problems(mod: Mod) -> Iterator[str]:
 
 
 def crashed() -> bool:
-    """True if the program ended in a window with mods without closing it; asking forgets it."""
+    """True if a window with mods ended without being closed; asking deletes its lock file."""
     found = False
     for path in (data_folder() / "running").glob("*.lock"):
         lock = lock_file(path)

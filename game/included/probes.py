@@ -35,7 +35,7 @@ OF_PARTICLE = (
 
 @dataclass
 class Probe:
-    """Quantities sampled against another one; each sample is the time, `against` and all of `read`, one after the other."""
+    """Quantities sampled against another one; samples: the time, `against` and all of `read`, one after the other."""
 
     against: Quantity
     read: tuple[Quantity, ...]
@@ -85,25 +85,20 @@ def _short(read: Quantity) -> str:
 
 
 class Probes:
-    """The probes of one session. span: the share of the time that plots show."""
+    """The probes of one session, newest last; span: the share of the time that plots show."""
 
     def __init__(self) -> None:
         self.all: list[Probe] = []
         self.span = 1.0
-        self._model: weakref.ref[Model] | None = None
+        self.model: weakref.ref[Model] | None = None
 
     def add(self, session: Context, paths: Iterable[str], against: str = TIME) -> Probe:
-        """Sample these quantities from now on. Raises PathError. Of more than FEW probes the oldest is dropped."""
+        """Sample these quantities from now on; the oldest of more than FEW probes is dropped. Raises PathError."""
         model = session.model
         probe = Probe(quantity(model, against), tuple(quantity(model, path) for path in paths))
-        self._model = weakref.ref(model)
+        self.model = weakref.ref(model)
         self.all = [*self.all, probe][-FEW:]
         return probe
-
-    def keep_to(self, model: Model) -> None:
-        """Forget the probes of any other model."""
-        if self._model is None or self._model() is not model:
-            self.all = []
 
     def sample(self, session: Context) -> None:
         """Take a sample of every probe for which time has passed."""
@@ -120,7 +115,8 @@ _probes: weakref.WeakKeyDictionary[Context, Probes] = weakref.WeakKeyDictionary(
 def probes_of(session: Context) -> Probes:
     """The probes of a session, all of them of the model that is open."""
     probes = _probes.setdefault(session, Probes())
-    probes.keep_to(session.model)
+    if probes.model is None or probes.model() is not session.model:
+        probes.all = []
     return probes
 
 

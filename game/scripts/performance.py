@@ -17,21 +17,21 @@ from game.scripts.script import Script
 from game.session import Session
 from systems.program.writer import REVIEW_INTERVAL
 
-FOOTER = 112.0  # points, height of the strip below the picture in which the words of a script stand
-LARGER = 1.25  # its type, relative to all other
+FOOTER = 112.0  # points, height of the strip for the words of a script below the picture
+LARGER = 1.25  # size of its type, relative to all other
 RATE = 60.0  # pictures a second of a run
 BEAT = 0.7  # s between what is done, so that each can be seen
 REACH = 0.4  # s that the pointer takes to where something is done
 READING = 1.2, 0.055  # s that a sentence stays: at least, and more for each character
-PATIENCE = 6.0  # s of a run that are shown at its natural pace; then it goes faster and faster
+PATIENCE = 6.0  # s of a run at its natural pace, after which it goes faster and faster
 HURRY = ("space", "return", "right", "click")
 DONE = "That was it. Go on from here as you like; Ctrl+Z goes back through all of it."
 
-_UNSEEN = {"expect", "resize", "window"}  # what takes no time to watch
+_UNSEEN = {"expect", "resize", "window"}  # keys of lines that need no time to watch
 
 
 class Screen(Protocol):
-    """A window, as a performance knows it: size in points of the display."""
+    """The part of a window that a performance uses; size: in points of the display."""
 
     session: Session
     size: tuple[int, int]
@@ -45,9 +45,9 @@ class Screen(Protocol):
 
 
 class Performance:
-    """Plays a script in a window; keys go on at once (Space) or end it (Esc), and else do nothing.
+    """A script played in a window; Space goes on at once, Esc ends it, other keys do nothing.
 
-    pace: 1 for people; 0 waits for nobody.
+    pace: 1 for people; 0 does not wait.
     """
 
     def __init__(self, screen: Screen, script: Script, pace: float = 1.0) -> None:
@@ -59,9 +59,9 @@ class Performance:
         self._natural = 0.0  # simulated seconds per second shown of what runs
 
     def play(self) -> list[Failure]:
-        """Play all lines, or until the person ends it; returns what was expected in vain. Raises ScriptError.
+        """Play all lines, or until the person ends it; returns the failed expectations. Raises ScriptError.
 
-        What the script saves, it saves in a folder of its own; the person goes on with unsaved work.
+        The script saves in a folder of its own, so that the person goes on with unsaved documents.
         """
         if self._script.has_data:
             return self._play()
@@ -85,7 +85,7 @@ class Performance:
                 if self._ended:
                     break
                 failures += self._perform(number, entry)
-                self._watch_what_came(entry)
+                self._watch(entry)
         finally:
             session.performing, session.footer = False, None
             self._grow(-grown)
@@ -102,19 +102,18 @@ class Performance:
         simulation = session.simulation
         simulation.watchers.append(self._watch_time)
         try:
-            if set(entry) == {"type"}:  # letter by letter
-                return [f for letter in entry["type"] for f in self._typed(number, letter)]
-            return play_line(self._script, number, entry, session)
+            if set(entry) != {"type"}:
+                return play_line(self._script, number, entry, session)
+            failures = []
+            for letter in entry["type"]:
+                failures += play_line(self._script, number, {"type": letter}, session)
+                self._wait(0.12)
+            return failures
         finally:
             simulation.watchers.remove(self._watch_time)
 
-    def _typed(self, number: int, letter: str) -> list[Failure]:
-        failures = play_line(self._script, number, {"type": letter}, self._screen.session)
-        self._wait(0.12)
-        return failures
-
     def _lead_to(self, entry: Mapping[str, Any]) -> None:
-        """Take the pointer to where the next thing is done."""
+        """Move the pointer to the target of the next line."""
         target = self._target(entry)
         if target is None:
             return
@@ -130,7 +129,7 @@ class Performance:
             self._frame()
 
     def _target(self, entry: Mapping[str, Any]) -> Vector | None:
-        """The pixel where a line does something, if it does it anywhere."""
+        """The pixel at which a line acts; None if it acts at none."""
         if isinstance(pixel := entry.get("pixel"), list):
             return float(pixel[0]), float(pixel[1])
         at = entry.get("over") or entry.get("click") or (entry.get("drag") or [None])[0]
@@ -139,7 +138,8 @@ class Performance:
         x, y = self._screen.session.focus[1].camera.to_pixels((float(at[0]), float(at[1]))).tolist()
         return x, y
 
-    def _watch_what_came(self, entry: Mapping[str, Any]) -> None:
+    def _watch(self, entry: Mapping[str, Any]) -> None:
+        """Leave time to see what a line has done."""
         if "resize" in entry:
             width, height, ratio = (*entry["resize"], 1.0)[:3]
             self._screen.size = round(width / ratio), round(height / ratio + FOOTER)
@@ -163,20 +163,20 @@ class Performance:
         return self._hurried or self._ended or self._pace == 0.0
 
     def _wait(self, seconds: float) -> None:
-        """Frames for so long; one at least."""
+        """Show frames for so many seconds at this pace, at least one."""
         began = time.monotonic()
         self._frame()
         while not self._skipping and time.monotonic() - began < seconds * self._pace:
             self._frame()
 
     def _wait_for_program(self) -> None:
-        """Let the picture go on while what the model needs is compiled."""
+        """Show frames while the program of the model is compiled."""
         session = self._screen.session
         while not self._ended and not session.has_program(session.simulation):
             self._frame()
 
     def _watch_time(self) -> int:
-        """Show what a run has come to; returns the steps that it may take until the next picture."""
+        """Show a run; returns the number of steps until the next picture."""
         simulation = self._screen.session.simulation
         if self._running_since is None:
             self._running_since, self._natural = time.monotonic(), self._screen.session.pace
@@ -192,15 +192,15 @@ class Performance:
         return math.ceil(min(steps, REVIEW_INTERVAL))
 
     def _frame(self) -> None:
-        """A picture, and a look at what the person wants."""
+        """Show one frame and read the keys."""
         screen = self._screen
         pointer = screen.session.view.pointer
         pressed = [key for key, _ in screen.next_frame(wait=self._pace > 0.0).pressed]
-        screen.session.view.pointer = pointer  # the mouse leads nobody astray
+        screen.session.view.pointer = pointer  # the script moves the pointer, not the mouse
         self._hurried |= any(key in HURRY for key in pressed)
         self._ended |= "escape" in pressed or screen.closed
 
     def _grow(self, points: int) -> None:
-        """Make room for the footer below the picture, or take it away; where there is none, the picture has less."""
+        """Add points to the height of the window, for the footer; where there is no room, the picture shrinks."""
         width, height = self._screen.size
         self._screen.size = width, height + points

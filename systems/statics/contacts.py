@@ -93,11 +93,6 @@ class Discs:
             own_weight=np.concatenate([structure.own_weight, still[:, 0]]),
         )
 
-    def pulled(self, load: Array) -> Flags:
-        """Which of the first k discs are without rods and pulled by a load (k, 2)."""
-        pulled: Flags = self.is_alone[: len(load)] & (self.movable[: len(load)] & (load != 0.0)).any(axis=1)
-        return pulled
-
     def keys(self, pairs: Rows) -> Rows:
         """One number (k,) for each pair (k, 2), the lower row of which is first."""
         return pairs[:, 0] * len(self.radius) + pairs[:, 1]
@@ -276,7 +271,8 @@ class Sinking:
         """Go to the equilibrium nearby, if there is one: "equilibrium" or "unstable", else ""."""
         borne = np.zeros(len(self.discs.radius), dtype=bool)
         borne[self.pairs[self._pressed()]] = True
-        if (self.discs.pulled(self.load) & ~borne).any():
+        pulled = self.discs.is_alone & (self.discs.movable & (self.load != 0.0)).any(axis=1)
+        if (pulled & ~borne).any():
             return ""
         if largest(self._residual()) > NEAR_REST * self.path.scale:
             return ""
