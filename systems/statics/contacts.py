@@ -121,7 +121,7 @@ class Discs:
         return overlapping
 
     def moves(self, displacement: Array) -> Array:
-        """How far each body may move (N,), in m, before the next search for contacts."""
+        """The distance (m) that each body may move, (N,), before the next search for contacts."""
         moves, total = SHORTEST_MOVE * self.radius, len(self.radius)
         free = np.flatnonzero(self.movable.any(axis=1))
         free = free if len(free) * total <= MOST_PAIRS else np.flatnonzero(self.is_alone)
@@ -153,9 +153,9 @@ class Discs:
         place = self._place(displacement)
         along = ((place[pairs[:, 0]] + line - self.start[pairs[:, 1]]) * span).sum(axis=1)
         squared = (span * span).sum(axis=1)
-        beyond, side = along >= squared * (1.0 - AT_END), (along > AT_END * squared) & (squared > 0.0)
-        way = way + np.where(beyond & (squared > 0.0), 1.0, 0.0)[:, None] * span
-        flat = side & ~beyond
+        beyond = along >= squared * (1.0 - AT_END)
+        flat = (along > AT_END * squared) & (squared > 0.0) & ~beyond
+        way = way + beyond[:, None] * span
         length = np.hypot(*line.T)
         turned = np.column_stack([-span[:, 1], span[:, 0]])
         line = np.where((length > 0.0)[:, None], line, turned)
