@@ -172,7 +172,7 @@ class Guide:
 
     @property
     def can_release_another(self) -> bool:
-        """True if the base structure is hyperstatic still, and all is known of the unknowns so far."""
+        """True if the base structure is still hyperstatic and the unknowns so far are solved."""
         return self.part == PARTS and len(self.released) < self.degree
 
     def release_another(self) -> None:

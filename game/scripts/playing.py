@@ -98,7 +98,7 @@ def _is_like(value: Any, example: Any) -> bool:
 
 
 def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Do what one line says; yields (expected, got) if it expects something that is not so. Raises ValueError."""
+    """Do what one line says; yields (expected, got) of a failed expectation. Raises ValueError."""
     _check_line(entry)
     rest = dict(entry)
     if "window" in rest:
