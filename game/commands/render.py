@@ -8,7 +8,7 @@ from pathlib import Path
 
 from game.commands.arguments import Parser, UsageError, positive
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
-from game.commands.output import writable
+from game.commands.output import writable, writing
 from game.commands.reports.report import FOUND
 from game.documents.shapes import numbered
 from game.session import DEFAULT_LIMIT, Session
@@ -45,12 +45,8 @@ def command(words: Sequence[str]) -> int:
     session = session_of(options)
     session.view.all_diagrams = options.diagrams
     draw = _animate if options.output.lower().endswith(".gif") else _draw
-    try:
+    with writing(options.output, "--output"):
         status = draw(session, options, (width, height))
-    except OSError as error:
-        raise UsageError(
-            f"{options.output} cannot be written: {error.strerror or error}. Choose another --output."
-        ) from None
     return ANSWERED if status in FOUND else NOT_ANSWERED
 
 

@@ -23,6 +23,7 @@ from game.force_method import PARTS
 from systems.run.real_time import RealTimeRunner
 from systems.run.simulation import Simulation
 from systems.schedule import Schedule
+from systems.statics.equations import largest
 from systems.statics.force_method import (
     ForceMethodError,
     SetState,
@@ -62,8 +63,7 @@ class Set:
 
     def scale_to(self, state: SetState) -> None:
         """Choose drawing scales for the displacements and forces of a final state."""
-        moved = float(np.abs(state.displacement).max(initial=0.0))
-        pulled = float(np.abs(state.axial_force).max(initial=0.0))
+        moved, pulled = largest(state.displacement), largest(state.axial_force)
         share = DRAWN_SHARE * extent(self.model)
         self.model.settings.displacement_scale = _round(share / moved) if moved > 0.0 else 1.0
         self.model.settings.diagram_scale = _round(DIAGRAM_HEIGHT / pulled) if pulled > 0.0 else 1.0

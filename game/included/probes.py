@@ -84,13 +84,13 @@ def _short(read: Quantity) -> str:
     return read.path.partition(".")[2].replace("dissipated_", "").replace(".", " ").replace("_", " ")
 
 
+@dataclass(eq=False)
 class Probes:
     """The probes of one session, newest last; span: the share of the time that plots show."""
 
-    def __init__(self) -> None:
-        self.all: list[Probe] = []
-        self.span = 1.0
-        self.model: weakref.ref[Model] | None = None
+    all: list[Probe] = field(default_factory=list)
+    span: float = 1.0
+    model: weakref.ref[Model] | None = None
 
     def add(self, session: Context, paths: Iterable[str], against: str = TIME) -> Probe:
         """Sample these quantities from now on; the oldest of more than FEW probes is dropped. Raises PathError."""
@@ -217,7 +217,7 @@ def run(words: list[str]) -> int:
     """`pinjoint plot MODEL --of QUANTITY --until T --output FILE`."""
     from game.commands.arguments import Parser, UsageError, count, positive
     from game.commands.options import add_model, session_of
-    from game.commands.output import writable
+    from game.commands.output import writable, writing
 
     parser = Parser(
         prog="pinjoint plot", description="Run a model and write quantities against time or another."
@@ -237,10 +237,8 @@ def run(words: list[str]) -> int:
     if output.suffix not in (".csv", ".png"):
         raise UsageError(f"--output {output}: write a file that ends with .csv or .png.")
     record(session, probe, options.until, options.samples)
-    try:
+    with writing(output, "--output"):
         (write_png if output.suffix == ".png" else write_csv)(probe, output)
-    except OSError as error:
-        raise UsageError(f"{output} cannot be written: {error.strerror}. Choose another --output.") from None
     return 0
 
 

@@ -228,19 +228,16 @@ class Loading:
     def _note_jump(self, beyond: Tangent, critical: Point, mode: Array) -> None:
         push = self.path.push
         share = abs(float(mode @ push)) / (np.linalg.norm(mode) * np.linalg.norm(push))
-        kind, what, after = (
-            "snap-through",
-            "Snap-through: the structure passed through its unstable position",
-            "",
-        )
+        kind, what, after = "snap-through", "the structure passed through its unstable position", ""
         if beyond.sense > 0.0 and share < UNEXCITED:
-            kind, what = "bifurcation", "Bifurcation: the equilibrium became unstable"
+            kind, what = "bifurcation", "the equilibrium became unstable"
             after = " It gave way to one side, and might as well have gone to the other."
         where = moved(self.model, critical.displacement, self.point.displacement)
         yielded = self.point.plastic_strain != critical.plastic_strain
         rows = np.flatnonzero(yielded)
         rods = f" {capitalised(rod_names(self.model, rows))} yielded on the way." if len(rows) else ""
-        message = f"{what} {self._at(critical.t)} and went on to the next stable one, {where}.{after}{rods}"
+        how = f"{kind.capitalize()}: {what} {self._at(critical.t)}"
+        message = f"{how} and went on to the next stable one, {where}.{after}{rods}"
         self._tell(kind, critical.t, message, yielded, self.path.structure.spread(mode))
 
     def _collapse(self, flowing: Flags, motion: Array) -> NoEquilibrium:

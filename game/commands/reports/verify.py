@@ -109,9 +109,7 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
         "mechanisms": [
             {
                 "description": describe_motion(model, motion[None]),
-                "motion": {
-                    names[row]: motion[row].tolist() for row in np.flatnonzero(motion.any(axis=1)).tolist()
-                },
+                "motion": {name: m for name, m in zip(names, motion.tolist(), strict=True) if any(m)},
             }
             for motion in mechanisms(model)
         ],
