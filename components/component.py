@@ -23,7 +23,7 @@ class Component:
 
 
 def add_component(mod: str, component: type[Component]) -> list[str]:
-    """Let all worlds made from now on have a mod's component; returns its columns' names in the table.
+    """Let all worlds made from now on have a mod's component, as attributes of its kind; returns their names.
 
     Raises ValueError if a column of that name is there, or a Field is none that a mod can add.
     """
@@ -45,9 +45,3 @@ def add_component(mod: str, component: type[Component]) -> list[str]:
         field.key = field.key.removeprefix(f"{mod}_")
         setattr(kind, name, field)
     return names
-
-
-def remove_component(component: type[Component], names: list[str]) -> None:
-    """Take back what `add_component` did."""
-    for name in names:
-        delattr(component.of, name)

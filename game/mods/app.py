@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 
-from components.component import Component, add_component, remove_component
+from components.component import Component, add_component
 from components.field import FieldError, Vector
 from components.handle import Handle
 from components.kind import add_kind
@@ -72,7 +73,7 @@ class App:
             names = add_component(self.name, component)
         except ValueError as error:
             raise ModError(str(error)) from None
-        self._undo.append(lambda: remove_component(component, names))
+        self._undo += [partial(delattr, component.of, name) for name in names]
 
     def kind(self, kind: type[Handle]) -> None:
         """Add a kind of elements: a class with Fields, whose table every model has; see components.Handle.
