@@ -34,10 +34,6 @@ class Button(Rectangle):
     """A tool and the rectangle of its button in pixels."""
 
     tool: Tool
-    left: float
-    top: float
-    width: float
-    height: float
 
 
 @dataclass(frozen=True)
@@ -69,7 +65,7 @@ class Toolbar:
                 row, column = divmod(index, columns)
                 place = EDGE + column * width, top + row * height, width, height
                 left, upper, wide, high = (round(points * unit) for points in place)
-                buttons.append(Button(tool, window.left + left, window.top + upper, wide, high))
+                buttons.append(Button(window.left + left, window.top + upper, wide, high, tool))
             top += _rows(group, columns) * height + GAP
         return buttons
 

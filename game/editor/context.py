@@ -45,7 +45,7 @@ Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 
 # --- actions ---------------------------------------------------------------------------------------------
 
-Action = Callable[["Context", Vector], None]
+Action = Callable[["Context", Vector], object]
 
 ACTIONS: dict[str, Action] = {}
 WHILE_DRAWING: set[str] = set()  # names of actions during which a gesture goes on

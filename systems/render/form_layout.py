@@ -10,7 +10,7 @@ from components.box import Box
 from components.camera import Rectangle, Viewport
 from components.field import Vector
 from components.form import Form, Tile
-from systems.render.typography import wrapped
+from systems.render.typography import font_size, wrapped
 
 SIDE = 400.0  # points, width of the properties beside the model
 LEAST_MODEL = 240.0  # points that the model keeps beside them, or they cover it
@@ -35,10 +35,6 @@ class Place(Rectangle):
     """The rectangle of a box (without its title), tile or section heading."""
 
     item: Box | Tile | str
-    left: float
-    top: float
-    width: float
-    height: float
 
 
 @dataclass(frozen=True)
@@ -102,7 +98,7 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         beside_heading = HEADING * u if low else 0.0
         top = v.top + 6.0 * u if low else top + TITLE * u
         room = min(width - beside_heading, 420.0 * u)
-        fixed = [Place(box, left + beside_heading, top, room, BOX * u) for box in form.boxes]
+        fixed = [Place(left + beside_heading, top, room, BOX * u, box) for box in form.boxes]
         top += (BOX + 22.0) * u
     shares_line = low and bool(fixed)
     heading_width = (HEADING - 8.0) * u if shares_line else width
@@ -114,7 +110,7 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
 
 def message_lines(form: Form, width: float, u: float) -> list[str]:
     """The message of a form, in lines."""
-    return wrapped(form.heading.message, width, max(round(MESSAGE * u), 7)) if form.heading.message else []
+    return wrapped(form.heading.message, width, font_size(MESSAGE, u)) if form.heading.message else []
 
 
 def _has_files(form: Form) -> bool:
@@ -226,13 +222,13 @@ def _tile_width(width: float, u: float) -> float:
 
 def _placed(row: Row, left: float, top: float, width: float, height: float, u: float) -> Iterator[Place]:
     if isinstance(row, str):
-        yield Place(row, left, top, width, height)
+        yield Place(left, top, width, height, row)
     elif isinstance(row[0], Box):
         gap = COLUMN_GAP * u
         each = (width - gap) / 2 if (width - gap) / 2 >= NARROW * u else width
         for column, box in enumerate(row):
-            yield Place(box, left + column * (each + gap), top + TITLE * u, each, BOX * u)
+            yield Place(left + column * (each + gap), top + TITLE * u, each, BOX * u, box)
     else:
         each = _tile_width(width, u)
         for column, tile in enumerate(row):
-            yield Place(tile, left + column * (each + TILE_GAP * u), top, each, height - TILE_GAP * u)
+            yield Place(left + column * (each + TILE_GAP * u), top, each, height - TILE_GAP * u, tile)

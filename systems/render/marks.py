@@ -88,6 +88,11 @@ class Rectangles:
     colour: Colour
 
 
+def boxes(colour: Colour, *places: tuple[float, float, float, float]) -> Rectangles:
+    """Some rectangles of one colour: left, top, width, height of each, in whole pixels."""
+    return Rectangles(np.array(places, dtype=np.int64), colour)
+
+
 class Panel(NamedTuple):
     """An upright box with rounded corners and, perhaps, a hairline around it."""
 

@@ -11,7 +11,7 @@ from components.field import Vector
 from components.view import Plot
 from systems.render.marks import Mark, Panel, Points, Stamps, Strokes, Text
 from systems.render.theme import Colour, Theme
-from systems.render.typography import text_width
+from systems.render.typography import font_size, text_width
 
 _TEXT = 10.0  # points
 _REACH = 30.0  # points from a curve, within which the pointer reads it
@@ -32,7 +32,7 @@ class _Drawing:
 
     def __init__(self, plot: Plot, box: Box, theme: Theme, unit: float) -> None:
         self.plot, self.theme, self.unit = plot, theme, unit
-        self.size = max(round(_TEXT * unit), 7)
+        self.size = font_size(_TEXT, unit)
         self.x_range = _range([x for _, x, _ in plot.curves])
         self.y_range = _padded(_range([y for _, _, y in plot.curves]))
         self.x_ticks, self.y_ticks = round_ticks(self.x_range), round_ticks(self.y_range)

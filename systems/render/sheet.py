@@ -15,6 +15,7 @@ from systems.render.clip import bounds, clip_rods
 from systems.render.labels import Label, Occupancy, Placed
 from systems.render.marks import Mark, Points
 from systems.render.theme import Colour, Theme
+from systems.render.typography import font_size
 
 Rows = NDArray[np.intp]
 
@@ -63,7 +64,7 @@ class Sheet:
 
     def font(self, points: float) -> int:
         """A font size in whole pixels."""
-        return max(round(points * self.unit), 7)
+        return font_size(points, self.unit)
 
     def sees(self, points: Points) -> NDArray[np.bool_]:
         """For each of `points` (n, 2), whether it lies in the viewport."""

@@ -36,6 +36,11 @@ def _character_width(character: str, size: int, weight: str) -> int:
     return math.floor(advance * size / em + 0.5)
 
 
+def font_size(points: float, unit: float) -> int:
+    """A font size in whole pixels, of which each point takes `unit`."""
+    return max(round(points * unit), 7)
+
+
 def capital_height(size: int) -> float:
     """Height in pixels of capitals and figures."""
     metrics = _metrics()["regular"]
