@@ -10,7 +10,7 @@ from components.box import Box
 from components.camera import Rectangle, Viewport
 from components.field import Vector
 from components.form import Form, Tile
-from systems.render.typography import font_size, wrapped
+from systems.render.typography import font_size, in_rows, wrapped
 
 SIDE = 400.0  # points, width of the properties beside the model
 LEAST_MODEL = 240.0  # points that the model keeps beside them, or they cover it
@@ -158,21 +158,12 @@ def row_of(form: Form, item: Box | Tile, layout: FormLayout) -> tuple[int, int]:
 
 def _box_rows(form: Form, width: float) -> Iterator[Row]:
     """Sections and boxes: the two components of a vector share a row, and so do single boxes."""
-    several = (width - COLUMN_GAP) / 2 >= NARROW
+    together = 2 if (width - COLUMN_GAP) / 2 >= NARROW else 1
     for section, boxes in groupby(form.boxes, lambda box: box.section):
         if section != form.heading.text:
             yield section
-        waiting: list[Box] = []
-        for box in boxes:
-            if waiting and (not several or _partner(waiting[0]) != _partner(box)):
-                yield waiting
-                waiting = []
-            waiting.append(box)
-            if len(waiting) == 2:
-                yield waiting
-                waiting = []
-        if waiting:
-            yield waiting
+        for _, partners in groupby(boxes, _partner):
+            yield from in_rows(list(partners), together)
 
 
 def _partner(box: Box) -> str:
@@ -187,9 +178,7 @@ def _tile_rows(form: Form, width: float) -> Iterator[Row]:
     for section, group in groupby(shown, lambda tile: tile.section):
         if section:
             yield section
-        tiles = list(group)
-        for start in range(0, len(tiles), columns):
-            yield tiles[start : start + columns]
+        yield from in_rows(list(group), columns)
 
 
 def tile_columns(width: float) -> int:

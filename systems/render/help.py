@@ -10,7 +10,7 @@ from components.camera import Viewport
 from components.view import View
 from systems.render.marks import Fills, Mark, Panel, Text
 from systems.render.theme import Theme, faded
-from systems.render.typography import font_size, line_height, text_width
+from systems.render.typography import font_size, in_rows, line_height, text_width
 
 _PAD, _GAP = 22.0, 26.0  # points: inside the card, between columns
 _HEAD = 160.0  # points, least width of the heading
@@ -21,8 +21,7 @@ def help_pages(keys: list[tuple[str, str]], viewport: Viewport, unit: float) -> 
     """(key, meaning) in lines, on as many pages as a viewport needs."""
     lines = _joined(keys)
     for count in range(1, max(len(lines), 1) + 1):
-        each = math.ceil(len(lines) / count)
-        pages = [lines[first : first + each] for first in range(0, len(lines), each)]
+        pages = in_rows(lines, math.ceil(len(lines) / count))
         if all(_card(page, viewport, unit).fits for page in pages):
             break
     return pages
@@ -58,7 +57,7 @@ class _Card:
         room = v.height - 2 * self.pad - self.head - 8.0 * u
         columns = math.ceil(len(lines) / max(int(room / self.step), 1))
         self.rows = math.ceil(len(lines) / max(columns, 1))
-        self.columns = [lines[first : first + self.rows] for first in range(0, len(lines), self.rows)]
+        self.columns = in_rows(lines, self.rows)
         self.key_widths = [
             max(text_width(key, self.size, "semibold") for key, _ in column) + 12.0 * u
             for column in self.columns

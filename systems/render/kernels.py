@@ -68,10 +68,7 @@ def cover_strokes(cover, touched, clip, start, end, width):
                 part = min((minor + 1) << _ONE, high) - max(minor << _ONE, low)
                 amount = np.uint8((part * share + (1 << (2 * _ONE - 1))) >> (2 * _ONE))
                 row, column = (major, minor) if steep else (minor, major)
-                at = (
-                    np.uint64(row),
-                    np.uint64(column),
-                )  # unsigned: signed indices cost a check for negative ones
+                at = np.uint64(row), np.uint64(column)  # signed indices would cost a check for negative ones
                 cover[at] = max(cover[at], amount)
                 touched[at[0], at[1] // _BLOCK] = 1
             low += rise

@@ -12,7 +12,7 @@ from systems.render.marks import Mark, Panel, Stamps, Strokes, Text, boxes
 from systems.render.sheet import Sheet
 from systems.render.symbols import dashed
 from systems.render.theme import Colour, faded
-from systems.render.typography import font_size, line_height, shortened, text_width, wrapped
+from systems.render.typography import at_most, font_size, line_height, shortened, text_width, wrapped
 
 _EDGE = 14.0  # points between overlays and the edges of the viewport
 _HEADING = 20.0  # points, size of its type
@@ -174,6 +174,7 @@ def _caption(sheet: Sheet, top: float) -> tuple[list[Mark], float]:
     elif not shape:
         return [], top
     left, room = v.left + _EDGE * u, v.width - 2 * _EDGE * u
+    paper = faded(theme.background, 0.85)  # keeps lines of a grid out of the text
     number = 0
     for line in (*sheet.view.caption, *shape):
         weight, colour = ("semibold", theme.text) if number == 0 else ("regular", theme.muted)
@@ -183,16 +184,10 @@ def _caption(sheet: Sheet, top: float) -> tuple[list[Mark], float]:
             y = top + 8.0 * u + (number + 0.5) * line_height(size)
             width = text_width(text, size, weight)
             sheet.occupancy.block(left, y - size / 2, width, size)
-            marks.append(_backing(sheet, left, y, width, size))
+            marks.append(Panel(left - 4.0 * u, y - 0.7 * size, width + 8.0 * u, 1.4 * size, 3.0 * u, paper))
             marks.append(Text(text, left, y, size, colour, weight))
             number += 1
     return marks, top + 8.0 * u + number * line_height(size)
-
-
-def _backing(sheet: Sheet, left: float, y: float, width: float, size: int) -> Mark:
-    """Keeps lines of a grid out of a text."""
-    u, paper = sheet.unit, faded(sheet.theme.background, 0.85)
-    return Panel(left - 4.0 * u, y - 0.7 * size, width + 8.0 * u, 1.4 * size, 3.0 * u, paper)
 
 
 def _beside_panels(sheet: Sheet, said: str, size: int, around: float) -> tuple[Viewport, float, list[str]]:
@@ -218,8 +213,7 @@ def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
     bottom = min(bottom, v.bottom)
     width = around + max(text_width(line, size) for line in lines)
     most = max(int((bottom - top - 60.0 * u) / line_height(size)), 1)
-    if len(lines) > most:
-        lines = [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), room, size)]
+    lines = at_most(lines, most, room, size)
     height = len(lines) * line_height(size) + 2 * pad - 4.0 * u
     left = v.left + (v.width - width) / 2
     places = [bottom - height - 10.0 * u, top + 10.0 * u]
@@ -305,9 +299,7 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
         return [Strokes(*ends, 3.0 * u, colour)]
     if name == "slack":
         return [Strokes(*dashed(*ends, width / 5), 1.25 * u, colour)]
-    return [
-        Panel(x, y - 5.0 * u, width, 10.0 * u, 1.0 * u, faded(colour, 0.18), colour),
-    ]
+    return [Panel(x, y - 5.0 * u, width, 10.0 * u, 1.0 * u, faded(colour, 0.18), colour)]
 
 
 # --- scale -----------------------------------------------------------------------------------------

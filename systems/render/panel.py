@@ -28,7 +28,7 @@ from systems.render.sheet import BELOW, measure
 from systems.render.structure import draw_particles, draw_rods
 from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Colour, Theme, faded
-from systems.render.typography import font_size, shortened, text_width, wrapped
+from systems.render.typography import at_most, font_size, shortened, text_width, wrapped
 
 _TEXT = 13.0  # points, size of type in a box
 _PAD = 8.0  # points between a box's edge and its text
@@ -83,7 +83,7 @@ class _Writer:
         marks: list[Mark] = [Text(hint, layout.left, bottom - 13.0 * self.unit, size, self.theme.form_muted)]
         if v.height >= LOW * self.unit:
             lines = wrapped(self._explanation(), width, size)
-            for number, line in enumerate(_at_most(lines, 2, width, size)):
+            for number, line in enumerate(at_most(lines, 2, width, size)):
                 y = bottom - (50.0 - 16.0 * number) * self.unit
                 marks.append(Text(line, layout.left, y, size, self.theme.form_text))
         return marks
@@ -192,7 +192,7 @@ class _Writer:
     def _legend(self, tile: Tile, left: float, top: float, width: float) -> list[Mark]:
         """The title in at most two lines, and the caption if one is enough."""
         u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
-        lines = _at_most(wrapped(tile.title, width, size, "semibold"), 2, width, size, "semibold")
+        lines = at_most(wrapped(tile.title, width, size, "semibold"), 2, width, size, "semibold")
         marks: list[Mark] = [
             Text(line, left, top + (13.0 + 15.5 * number) * u, size, theme.form_text, "semibold")
             for number, line in enumerate(lines)
@@ -209,13 +209,6 @@ def _steps(hint: str, width: float, size: int) -> str:
     while len(steps) > 2 and text_width(BETWEEN.join(steps), size) > width:
         del steps[-2]
     return shortened(BETWEEN.join(steps), width, size)
-
-
-def _at_most(lines: list[str], most: int, width: float, size: int, weight: str = "regular") -> list[str]:
-    """The first lines, the last of them ending in an ellipsis if there are more."""
-    if len(lines) <= most:
-        return lines
-    return [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), width, size, weight)]
 
 
 def _grown(place: Rectangle, by: float, radius: float, colour: Colour) -> Panel:

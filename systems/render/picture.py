@@ -5,7 +5,7 @@ from __future__ import annotations
 from components.form import Form
 from components.model import Model
 from components.toolbar import Toolbar
-from components.view import View, drawn_positions
+from components.view import View
 from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.labels import Placed, place_labels
@@ -21,8 +21,6 @@ from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Theme
 from systems.render.toolbar import compose_toolbar
 from systems.render.tools import draw_flashes, draw_preview
-
-__all__ = ["compose", "drawn_positions"]
 
 
 def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Placed | None = None) -> Picture:

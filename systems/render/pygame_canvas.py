@@ -41,9 +41,8 @@ class Canvas:
         if not pygame.font.get_init():
             pygame.font.init()
         self._cache: dict[Any, Any] = {}
-        self._former: dict[
-            Any, Any
-        ] = {}  # the cache before; entries that are used again move to the new one, the others are dropped when that is full
+        # The cache before: entries used again move to the new one, the others are dropped when that is full.
+        self._former: dict[Any, Any] = {}
         self._files = {
             weight: (files("assets") / "fonts" / name).read_bytes() for weight, name in WEIGHTS.items()
         }

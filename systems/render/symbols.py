@@ -78,10 +78,6 @@ def _ring(radius: float, unit: float) -> Parts:
     return [("ink", circle(radius)), ("hollow", circle(max(radius - RIM * unit, 0.0)))]
 
 
-def _disc(radius: float, unit: float) -> Parts:
-    return [("ink", circle(radius))]
-
-
 def _arrow(length: float, unit: float) -> Parts:
     """An arrow of that length from the origin to the right."""
     head, half = 8.0 * unit, 4.0 * unit
@@ -120,7 +116,7 @@ def _pinned(size: float, unit: float) -> Parts:
 
 _SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
     "ring": _ring,
-    "disc": _disc,
+    "disc": lambda radius, unit: [("ink", circle(radius))],
     "arrow": _arrow,
     "roller": _roller,
     "pinned": _pinned,

@@ -8,7 +8,7 @@ from components.toolbar import Button, Toolbar
 from components.view import View
 from systems.render.help import draw_help, written_key
 from systems.render.marks import Mark, Panel, Picture, Stamps, Text, boxes
-from systems.render.theme import Colour, Theme, faded
+from systems.render.theme import Theme, faded
 from systems.render.typography import font_size, line_height, text_width
 
 _ICON = 0.85  # points for each of the 20 units of an icon's square
@@ -45,25 +45,16 @@ class _Writer:
         return marks
 
     def _button(self, button: Button) -> list[Mark]:
-        u, tool = self.unit, button.tool
+        """The icon, on a plate if it is pressed or would be by a click."""
+        u, tool, theme = self.unit, button.tool, self.theme
         middle = np.array([[button.left + button.width / 2, button.top + button.height / 2]])
-        ink = self._ink(button)
+        ink = faded(theme.muted, 0.4) if not tool.enabled else theme.hover if tool.pressed else theme.text
         icon = Stamps(tool.icon, middle, _ICON * u, u, ink, ink)
-        if tool.pressed:
-            return [self._plate(button, faded(self.theme.hover, 0.16)), icon]
-        if button is self.hovered and tool.enabled:
-            return [self._plate(button, faded(self.theme.text, 0.09)), icon]
-        return [icon]
-
-    def _ink(self, button: Button) -> Colour:
-        if not button.tool.enabled:
-            return faded(self.theme.muted, 0.4)
-        return self.theme.hover if button.tool.pressed else self.theme.text
-
-    def _plate(self, button: Button, colour: Colour) -> Panel:
-        gap = self.unit
-        width, height = button.width - 2 * gap, button.height - 2 * gap
-        return Panel(button.left + gap, button.top + gap, width, height, _RADIUS * self.unit, colour)
+        if not tool.pressed and not (button is self.hovered and tool.enabled):
+            return [icon]
+        colour = faded(theme.hover, 0.16) if tool.pressed else faded(theme.text, 0.09)
+        width, height = button.width - 2 * u, button.height - 2 * u
+        return [Panel(button.left + u, button.top + u, width, height, _RADIUS * u, colour), icon]
 
     def tip(self) -> list[Mark]:
         """The title and the key of the button under the pointer, beside the button."""

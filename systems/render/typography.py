@@ -6,7 +6,9 @@ import json
 import math
 from functools import cache, lru_cache
 from importlib.resources import files
-from typing import Any
+from typing import Any, TypeVar
+
+T = TypeVar("T")
 
 WEIGHTS = {"regular": "Inter-Regular.otf", "semibold": "Inter-SemiBold.otf"}
 
@@ -77,3 +79,15 @@ def wrapped(text: str, width: float, size: int, weight: str = "regular") -> list
                 line = longer
         lines.append(line)
     return [shortened(line, width, size, weight) for line in lines]
+
+
+def in_rows(items: list[T], each: int) -> list[list[T]]:
+    """Items in rows of so many; the last may be shorter."""
+    return [items[first : first + each] for first in range(0, len(items), each)]
+
+
+def at_most(lines: list[str], most: int, width: float, size: int, weight: str = "regular") -> list[str]:
+    """The first lines, the last of them ending in an ellipsis if there are more."""
+    if len(lines) <= most:
+        return lines
+    return [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), width, size, weight)]

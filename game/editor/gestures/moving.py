@@ -44,9 +44,7 @@ class Move(_Placing):
             context.select(hit)
         self._movable = Movable(context.model, chosen)
         self._start = self._movable.positions
-        self._leader = self._movable.index(
-            hit
-        )  # index of the element under the pointer, which keeps to the grid
+        self._leader = self._movable.index(hit)  # the row of the element under the pointer keeps to the grid
         self._grip = np.subtract(self._start[self._leader], context.view.camera.to_model(pixel))
 
     def move(self, context: Context, pixel: Vector) -> None:
