@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -204,7 +204,7 @@ class View:
         c, u = self.canvas, self.pixel_ratio
         if c.width >= LEAST_BESIDE * u:
             width = round(min(max(COLUMN * u, COLUMN_SHARE * c.width), WIDEST_COLUMN * u))
-            return Viewport(c.left + c.width - width, c.top, width, c.height)
+            return replace(c, left=c.left + c.width - width, width=width)
         if c.height >= LEAST_ABOVE * u:
             return Viewport(c.left, c.top + c.height // 2, c.width, c.height - c.height // 2)
         return c
@@ -216,8 +216,8 @@ class View:
         if not self.shares or panels == c:
             return c
         if panels.width < c.width:
-            return Viewport(c.left, c.top, c.width - panels.width, c.height)
-        return Viewport(c.left, c.top, c.width, c.height - panels.height)
+            return replace(c, width=c.width - panels.width)
+        return replace(c, height=c.height - panels.height)
 
 
 def drawn_positions(model: Model) -> NDArray[np.float64]:

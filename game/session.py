@@ -24,7 +24,7 @@ from game.documents import models
 from game.documents.open_documents import ModelFile, Source, file_of
 from game.editor.actions import ACTIONS, WHILE_DRAWING
 from game.editor.context import FAULTS, Context, Stage
-from game.editor.frame import Frame, Unseen, frame_systems
+from game.editor.frame import Actions, Frame, ShowView, Unseen
 from game.editor.scenes import all_scenes, scene_systems
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
@@ -65,7 +65,7 @@ class Session(Context):
         file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
     ) -> None:
         pull, scenes = Pull(), all_scenes()
-        ours = [*frame_systems(), Time(), *scene_systems(), *step_systems(), pull]
+        ours = [Actions(), ShowView(), Time(), *scene_systems(), *step_systems(), pull]
         schedule = Schedule(
             [*ours, *(make() for make in SYSTEMS), *systems],
             wanted={scene.name: scene.systems for scene in scenes},
@@ -78,12 +78,7 @@ class Session(Context):
         self.begin_document()
 
     @classmethod
-    def open(
-        cls,
-        source: Source,
-        systems: Iterable[System] = (),
-        mods: Iterable[str | Path] = (),
-    ) -> Session:
+    def open(cls, source: Source, systems: Iterable[System] = (), mods: Iterable[str | Path] = ()) -> Session:
         """Open a model file, a bundled model by name, or a document. Raises ModelError.
 
         systems: further ones for this session. mods: folders of mods to load first, for the whole program;

@@ -14,9 +14,16 @@ from systems.render.overlays import draw_notice, draw_overlays, draw_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
 from systems.render.readouts import draw_readouts
-from systems.render.shape import draw_shape
 from systems.render.sheet import ABOVE, BELOW, measure
-from systems.render.structure import draw_ghost, draw_grid, draw_halos, draw_particles, draw_rods, label_names
+from systems.render.structure import (
+    draw_ghost,
+    draw_grid,
+    draw_halos,
+    draw_particles,
+    draw_rods,
+    draw_shape,
+    label_names,
+)
 from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Theme
 from systems.render.toolbar import compose_toolbar

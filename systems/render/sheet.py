@@ -112,21 +112,9 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     reach, seen = radii + 40.0 * unit, np.ones(len(centres), dtype=bool)
     for axis in (0, 1):
         seen &= (centres[:, axis] > low[axis] - reach) & (centres[:, axis] < high[axis] + reach)
-    return Sheet(
-        model,
-        view,
-        theme,
-        unit,
-        centres,
-        radii,
-        ends,
-        rods,
-        start,
-        end,
-        np.flatnonzero(seen),
-        Occupancy(viewport, unit),
-        {} if placed is None else placed,
-    )
+    particles, occupancy = np.flatnonzero(seen), Occupancy(viewport, unit)
+    placed = {} if placed is None else placed
+    return Sheet(model, view, theme, unit, centres, radii, ends, rods, start, end, particles, occupancy, placed)
 
 
 def typical_length(start: Points, end: Points) -> float:

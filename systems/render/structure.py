@@ -1,4 +1,4 @@
-"""The model itself: grid, ghost of the undeformed structure, rods, particles and names."""
+"""The model itself: grid, ghost of the undeformed structure, rods, particles, names, and a shape over all."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ _CLOSEST_LINES = 8.0  # points between grid lines
 _CABLE = 0.5  # width of a cable, of that of another rod
 _DASH = 5.0  # points
 _GHOST_FROM = 4.0  # points of displacement
+_SHAPE_WIDTH, _SHAPE_RADIUS, _SHAPE_FROM = 1.5, 2.5, 0.5  # points; drawn from so large a displacement on
+_SHAPE_OPACITY = 0.75
 _LARGEST_FILLED = 10_000.0  # pixels, well within the 16 bits of filled polygons
 
 
@@ -173,6 +175,27 @@ def _draw_large_circles(
         overlap = 0.5 * (last - first) / np.hypot(*(last - first).T)[:, None]  # pixel, so that joints close
         start, end, _ = clip_segments(first - overlap, last + overlap, low - rim, high + rim)
         sheet.marks.append(Strokes(start, end, rim, ink))
+
+
+def draw_shape(sheet: Sheet) -> None:
+    """The moving part of the structure, displaced by the shape from the state that the shape is about."""
+    shape, position = sheet.view.shape, sheet.model.particles.position
+    if shape is None or shape.displacement.shape != position.shape:
+        return
+    if shape.about is not None:
+        position = position + shape.about * sheet.model.settings.displacement_scale
+    places = sheet.view.camera.to_pixels(position + shape.displacement)
+    colour = faded(sheet.theme.hover, _SHAPE_OPACITY)
+    pixels = np.hypot(*shape.displacement.T) * sheet.view.camera.scale
+    moving = pixels > _SHAPE_FROM * sheet.unit
+    ends = sheet.ends[moving[sheet.ends].any(axis=1)]
+    start, end, _ = clip_segments(places[ends[:, 0]], places[ends[:, 1]], *bounds(sheet.viewport))
+    if len(start):
+        sheet.occupancy.line(start, end, FAINT)
+        sheet.marks.append(Strokes(start, end, _SHAPE_WIDTH * sheet.unit, colour))
+    dots = places[moving & sheet.sees(places)]
+    if len(dots):
+        sheet.marks.append(Discs(dots, np.full(len(dots), _SHAPE_RADIUS * sheet.unit), colour, colour))
 
 
 def label_names(sheet: Sheet) -> None:

@@ -13,10 +13,9 @@ from components.view import Preview, drawn_positions
 from game.editor.context import Context, Gesture
 from systems.edit import Refusal
 from systems.edit.moving import Movable
-from systems.edit.picking import Grip
+from systems.edit.picking import Grip, inside
 from systems.edit.placing import check_free, snapped, snapped_to_points
 from systems.edit.pull import hand_on
-from systems.edit.selecting import inside
 
 
 class _Placing(Gesture):

@@ -11,7 +11,6 @@ from components.camera import Camera, Viewport
 from components.field import Vector
 from components.form import Form, Tile
 from components.suggestions import missing
-from components.view import View
 from game.editor.context import Context, Scene, Stage
 from systems.forms import typing
 from systems.render.form_layout import FormLayout, lay_out, row_of
@@ -81,11 +80,7 @@ class FormScene(Scene):
     # --- pictures ----------------------------------------------------------------------------------
 
     def stages(self, context: Context) -> Sequence[Stage]:
-        return [(self.form, self.form_view(context))]
-
-    def form_view(self, context: Context) -> View:
-        """How the form is shown."""
-        return replace(context.view, camera=Camera(viewport=self.viewport(context)))
+        return [(self.form, replace(context.view, camera=Camera(viewport=self.viewport(context))))]
 
     def layout(self, context: Context) -> FormLayout:
         """Where its boxes and tiles are now."""
