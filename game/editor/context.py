@@ -159,8 +159,8 @@ class Scene:
         """The window has another size."""
 
     def busy(self, context: Context) -> bool:
-        """True while frames change something without a person's doing."""
-        return False
+        """True while frames change something without a person's doing, as where time passes."""
+        return context.time_passes and not context.simulation.halted
 
     def focus(self, context: Context) -> tuple[Model, View]:
         """The model that a pointer picks from, and its view."""

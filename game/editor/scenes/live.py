@@ -34,8 +34,5 @@ class Simulation(Scene):
     name = "simulation"
     targets = ("pause",)
 
-    def busy(self, context: Context) -> bool:
-        return not context.simulation.halted
-
     def hint(self, context: Context) -> str:
         return "Space pause     + − speed     I forces     R restart     F1 keys"
