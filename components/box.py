@@ -21,7 +21,7 @@ def object_field(title: str, doc: str) -> Field[Any]:
 
 
 class Box(Handle):
-    """What a person types into."""
+    """A titled field that a person types into."""
 
     __slots__ = ()
     table, noun = "boxes", "box"

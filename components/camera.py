@@ -88,7 +88,7 @@ class Camera:
         self.centre = (self.centre[0] + before[0] - after[0], self.centre[1] + before[1] - after[1])
 
     def pan(self, pixels: Vector) -> None:
-        """Move the picture by so many pixels (right, down)."""
+        """Move the picture by pixels (right, down)."""
         self.centre = (self.centre[0] - pixels[0] / self.scale, self.centre[1] + pixels[1] / self.scale)
 
     def fit(

@@ -14,7 +14,7 @@ from components.world import World
 
 
 class Heading(Handle):
-    """What a form says besides its boxes and tiles. There is exactly one."""
+    """The heading and message of a form, and how far it is scrolled. There is exactly one."""
 
     __slots__ = ()
     table, noun, single = "heading", "heading", True

@@ -180,7 +180,7 @@ class App:
         return failures
 
     def close(self) -> None:
-        """Close the window now; when it was collected later, it would close the display of the next one."""
+        """Close the window at once; the garbage collector would do so later, together with the display of the next one."""
         self.window.destroy()
         pygame.display.quit()
 
@@ -247,7 +247,7 @@ class App:
             self.session.resize(width, height, ratio)
 
     def _follow_title(self) -> None:
-        """Let the window's title name the model, with a dot while it has unsaved work."""
+        """Let the window's title name the model, after a dot while there is unsaved work."""
         session = self.session
         name = session.file.name or ("Untitled" if session.document.unsaved else "")
         title = f"{'• ' if session.document.unsaved else ''}{name} – Pinjoint" if name else "Pinjoint"

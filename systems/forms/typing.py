@@ -89,7 +89,7 @@ def erase(form: Form, *, after: bool = False) -> None:
 
 
 def place_caret(form: Form, caret: int) -> None:
-    """Put the caret of the selected box after so many characters, and mark nothing."""
+    """Put the caret of the selected box behind a number of characters, and mark nothing."""
     box = form.selected
     if box is not None:
         box.caret = min(max(caret, 0), len(box.text))

@@ -224,8 +224,8 @@ def _places_by_rods(
 ) -> list[Points]:
     """Where the value of each rod may stand: in its diagram if it fits, else beyond, else behind the rod.
 
-    Among many rods it stands on its own rod first, since beside it, it might be read as that of another rod.
-    reach is how far a label extends from its middle along the normal, slide a step along the rod.
+    Among many rods a value stands on its own rod first: beside the rod, it could be read as that of another.
+    reach: half the extent of a label along the normal of its rod. slide: a step along the rod.
     """
     normal_x, normal_y = np.abs(normal).T
     reach, slide = normal_x * half[:, 0] + normal_y * half[:, 1], normal_y * half[:, 0] + normal_x * half[:, 1]

@@ -39,13 +39,11 @@ class Place(Rectangle):
 
 @dataclass(frozen=True)
 class FormLayout:
-    """The places of all parts of a form.
+    """The places of all parts of a form, in pixels.
 
-    unit: pixels per point. left, right: of all that is written. header, heading_width: the middle of the
-    heading's line, and the room for it.
-    message, top, bottom: the middle of the message's first line; between which the rows are; footer: the upper
-    end of what is said at the bottom. first, shown, count: rows of which the first is shown, how many
-    are, and there are.
+    unit: pixels per point. left, right: the edges of all text. header: the middle of the heading's line, whose text
+    has the room `heading_width`. message: the middle of the message's first line. top, bottom: the edges of the rows.
+    first, shown, count: the number of the first row in sight, of rows in sight, and of all rows.
     """
 
     viewport: Viewport

@@ -98,7 +98,7 @@ def _joined(keys: list[tuple[str, str]]) -> list[tuple[str, str]]:
 
 
 def written_key(key: str) -> str:
-    """A key's name as a keyboard shows it: "ctrl+shift+z" → "Ctrl+Shift+Z"; a speck of ink by its name."""
+    """The name of a key as a keyboard shows it: "ctrl+shift+z" → "Ctrl+Shift+Z"; full stop and comma by name."""
     key = {".": "period", ",": "comma"}.get(key, key)
     *modifiers, last = key[:-1].split("+")  # the last character may be a plus itself
     parts = [*modifiers, last + key[-1]]

@@ -70,7 +70,7 @@ class Stamps:
 class Discs:
     """Circles about `at` (n, 2) with `radius` (n,) in pixels.
 
-    ink: their colour. rim: if not 0, only so many pixels within the radius are ink, the rest is `hollow`.
+    ink: their colour. rim: pixels within the radius that are ink, the rest being `hollow`; 0: all is ink.
     """
 
     at: Points

@@ -148,7 +148,7 @@ def heading_height(text: str, width: float, unit: float) -> float:
 
 
 def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
-    """The mode's name, or what is expected, top left; and its right and lower end."""
+    """The heading (the mode, or the next task) top left; and its right and lower end."""
     v, u, size = sheet.viewport, sheet.unit, sheet.font(_HEADING)
     left, top = v.left + _EDGE * u, v.top + _EDGE * u
     if not sheet.view.heading:
@@ -164,7 +164,7 @@ def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
 
 
 def _caption(sheet: Sheet, top: float) -> tuple[list[Mark], float]:
-    """What this viewport shows, and facts about it, at its top between hairlines; and their lower end."""
+    """The caption of the viewport and the title of a shape, at the top between hairlines; and their lower end."""
     v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(13.0)
     shape = (sheet.view.shape.title,) if sheet.view.shape is not None else ()
     marks: list[Mark] = []
@@ -288,7 +288,7 @@ def _rows(widths: list[float], gap: float, room: float) -> list[tuple[int, int]]
 
 
 def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:
-    """The thing itself, small: a diagram, a yielding rod, a slack cable, an arrow."""
+    """A small sample of what a colour means: a diagram, a yielding rod, a slack cable, an arrow."""
     u, theme = sheet.unit, sheet.theme
     role = {"slack": "ink", "load": "force", "velocity": "ink"}.get(name, name)
     colour = getattr(theme, role)

@@ -17,7 +17,7 @@ from systems.render.typography import font_size, text_width
 _TEXT = 10.0  # points
 _REACH = 30.0  # points from a curve, within which the pointer reads it
 _STEP = 2.0  # points along a curve between drawn samples
-_TICKS = 4  # about so many on each axis
+_TICKS = 4  # on each axis, about
 
 Box = tuple[float, float, float, float]  # left, top, width, height in pixels
 Range = tuple[float, float]

@@ -93,7 +93,7 @@ class Canvas:
         return self._raster() if self._raster is not None else None
 
     def _some(self, count: int) -> slice:
-        """All of so many elements, or as many as a sketch has."""
+        """All of `count` elements, or the sample that a sketch shows."""
         if self._raster is None or count <= _MANY:
             return slice(None)
         self.sketch = True
@@ -239,7 +239,7 @@ def _stretched(length: int, short: int) -> NDArray[np.intp]:
 
 
 def _small_rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:
-    """The same drawn as a whole, finely, then reduced; the time this takes grows with its area."""
+    """A box with smooth corners, drawn finely and then reduced, in a time that grows with its area."""
     fine = 4
     large = pygame.Surface((size[0] * fine, size[1] * fine), pygame.SRCALPHA)
     edge = mark.outline or mark.fill

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from components.tags import Hovered, Selected
 from systems.render.clip import bounds, clip_segments
-from systems.render.labels import FAINT, STRONG, Key, Label, half_size
+from systems.render.labels import FAINT, STRONG, Label, half_size
 from systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
 from systems.render.sheet import FEW, MANY, Rows, Sheet, typical_length
 from systems.render.symbols import LARGEST_STAMP, RIM, circle, dashed
@@ -99,11 +99,8 @@ def draw_rods(sheet: Sheet) -> None:
     Cables are thin, and dashed while they are slack.
     """
     rods, theme = sheet.model.rods, sheet.theme
-    yielding = sheet.rods[:0]
-    if (
-        sheet.view.forces_known
-        and (np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)).any()
-    ):
+    yielding, limited = sheet.rods[:0], np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)
+    if sheet.view.forces_known and limited.any():
         yielding = np.flatnonzero(rods.yielding)
     selected = sheet.tagged(Selected, "rods")
     width = float(np.clip(0.12 * typical_length(sheet.start, sheet.end) / sheet.unit, 0.5, 2.5)) * sheet.unit
@@ -201,6 +198,7 @@ def draw_shape(sheet: Sheet) -> None:
 def label_names(sheet: Sheet) -> None:
     """Names of selected elements, of all where there are few, and of the one that a click would hit."""
     all_of_them = sheet.model.particles.count + sheet.model.rods.count <= FEW
+    backing = faded(sheet.theme.background, 0.86)
     for table, rows in (("particles", sheet.particles), ("rods", sheet.rods)):
         selected = sheet.tagged(Selected, table)
         marked = np.append(selected if len(selected) <= FEW else [], sheet.tagged(Hovered, table)).astype(int)
@@ -208,24 +206,14 @@ def label_names(sheet: Sheet) -> None:
         for index in wanted[:FEW].tolist():
             row = int(rows[index])
             name, is_marked = sheet.model.tables[table].handles[row].name, row in marked
-            half = half_size(name, *_name_font(sheet, is_marked), sheet.unit)
-            beside = (
-                _beside_particle(sheet, row, half) if table == "particles" else _beside_rod(sheet, index, half)
-            )
-            _add_name(sheet, name, beside, is_marked, (f"{table}.name", row))
-
-
-def _name_font(sheet: Sheet, marked: bool) -> tuple[int, str]:
-    return (sheet.font(12.0), "semibold") if marked else (sheet.font(11.0), "regular")
-
-
-def _add_name(sheet: Sheet, name: str, places: list[tuple[float, float]], marked: bool, key: Key) -> None:
-    size, weight = _name_font(sheet, marked)
-    if marked:
-        backing = faded(sheet.theme.background, 0.86)
-        sheet.labels.append(Label(name, places, size, sheet.theme.text, -1e12, weight, backing, key=key))
-    else:
-        sheet.labels.append(Label(name, places, size, sheet.theme.muted, 1e12, weight, lines="avoid", key=key))
+            size, weight = (sheet.font(12.0), "semibold") if is_marked else (sheet.font(11.0), "regular")
+            half, key = half_size(name, size, weight, sheet.unit), (f"{table}.name", row)
+            at = _beside_particle(sheet, row, half) if table == "particles" else _beside_rod(sheet, index, half)
+            if is_marked:
+                label = Label(name, at, size, sheet.theme.text, -1e12, weight, backing, key=key)
+            else:
+                label = Label(name, at, size, sheet.theme.muted, 1e12, weight, lines="avoid", key=key)
+            sheet.labels.append(label)
 
 
 def _beside_particle(sheet: Sheet, row: int, half: tuple[float, float]) -> list[tuple[float, float]]:

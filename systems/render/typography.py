@@ -82,7 +82,7 @@ def wrapped(text: str, width: float, size: int, weight: str = "regular") -> list
 
 
 def in_rows(items: list[T], each: int) -> list[list[T]]:
-    """Items in rows of so many; the last may be shorter."""
+    """Items in rows of `each`; the last row may be shorter."""
     return [items[first : first + each] for first in range(0, len(items), each)]
 
 

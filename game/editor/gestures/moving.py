@@ -116,7 +116,7 @@ class PullParticle(Gesture):
             context.timeline.hold(hand.at(anchor))
 
     def drop(self, context: Context, pixel: Vector) -> None:
-        context.timeline.hold(None)
+        self.cancel(context)
 
     def cancel(self, context: Context) -> None:
         context.timeline.hold(None)

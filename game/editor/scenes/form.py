@@ -27,7 +27,7 @@ class FormScene(Scene):
 
     @property
     def message(self) -> str:
-        """What its heading says, and why the text of a box is refused."""
+        """The message of the heading, and why the text of a box is refused."""
         return " ".join(filter(None, [self.form.heading.message, *(box.problem for box in self.form.boxes)]))
 
     def enter(self, context: Context) -> None:

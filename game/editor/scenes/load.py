@@ -1,4 +1,4 @@
-"""Load: opening a saved model, an example, or an empty one; also what the program starts with."""
+"""Load: opening a saved model, an example or an empty one; the program starts with it."""
 
 from __future__ import annotations
 
