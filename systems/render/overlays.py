@@ -61,12 +61,9 @@ def written_speed(speed: float) -> str:
         return ""
     if abs(speed - 1.0) < 0.005:
         return "real time"
-    return f"1 s shown = {_trimmed(written_time(speed, 3))} simulated"
-
-
-def _trimmed(text: str) -> str:
-    number, unit = text.split(" ")
-    return f"{number.rstrip('0').rstrip('.') if '.' in number else number} {unit}"
+    number, unit = written_time(speed, 3).split(" ")
+    number = number.rstrip("0").rstrip(".") if "." in number else number
+    return f"1 s shown = {number} {unit} simulated"
 
 
 # --- the status bar --------------------------------------------------------------------------------
