@@ -10,27 +10,30 @@ from components.handle import Handle
 NUMBER, WORD, TEXT, FILE_NAME = "number", "word", "text", "file name"
 
 
+def text_field(title: str, doc: str) -> Field[str]:
+    """A text of a form, empty at first."""
+    return Field(title=title, doc=doc, default="", dtype=str)
+
+
+def object_field(title: str, doc: str) -> Field[Any]:
+    """Any object, at first None."""
+    return Field(title=title, doc=doc, default=None, dtype=object)
+
+
 class Box(Handle):
-    """What a person types into."""
+    """A titled field that a person types into."""
 
     __slots__ = ()
     table, noun = "boxes", "box"
 
-    section: Field[str] = Field(title="section", doc="The heading that it stands under.", default="", dtype=str)
-    title: Field[str] = Field(title="title", doc="Shown above it.", default="", dtype=str)
-    unit: Field[str] = Field(title="unit", doc="Of the number in it.", default="", dtype=str)
-    explanation: Field[str] = Field(
-        title="explanation", doc="Shown while it is selected.", default="", dtype=str
+    section: Field[str] = text_field("section", "The heading that it stands under.")
+    title: Field[str] = text_field("title", "Shown above it.")
+    unit: Field[str] = text_field("unit", "Of the number in it.")
+    explanation: Field[str] = text_field("explanation", "Shown while it is selected.")
+    target: Field[str] = text_field(
+        "target", 'What its text is for: "rods.stiffness", "particles.force.x" or "name".'
     )
-    target: Field[str] = Field(
-        title="target",
-        doc='What its text is for: "rods.stiffness", "particles.force.x" or "name".',
-        default="",
-        dtype=str,
-    )
-    elements: Field[Any] = Field(
-        title="elements", doc="A tuple of the elements that it is for.", default=None, dtype=object
-    )
+    elements: Field[Any] = object_field("elements", "A tuple of the elements that it is for.")
     accepts: Field[str] = Field(
         title="accepts",
         doc="What may be typed.",
@@ -38,19 +41,14 @@ class Box(Handle):
         dtype=str,
         choices=(NUMBER, WORD, TEXT, FILE_NAME),
     )
-    words: Field[Any] = Field(
-        title="words",
-        doc="A tuple of words that it takes; besides numbers, or the only ones.",
-        default=None,
-        dtype=object,
+    words: Field[Any] = object_field(
+        "words", "A tuple of words that it takes; besides numbers, or the only ones."
     )
-    text: Field[str] = Field(title="text", doc="What it contains.", default="", dtype=str)
-    opened: Field[str] = Field(title="opened", doc="What it contained at first.", default="", dtype=str)
-    held: Field[str] = Field(title="held", doc="What it contained when selected.", default="", dtype=str)
-    note: Field[str] = Field(
-        title="note", doc='Shown in it while unchanged: "mixed", "automatic".', default="", dtype=str
-    )
-    problem: Field[str] = Field(title="problem", doc="Why its text is refused.", default="", dtype=str)
+    text: Field[str] = text_field("text", "What it contains.")
+    opened: Field[str] = text_field("opened", "What it contained at first.")
+    held: Field[str] = text_field("held", "What it contained when selected.")
+    note: Field[str] = text_field("note", 'Shown in it while unchanged: "mixed", "automatic".')
+    problem: Field[str] = text_field("problem", "Why its text is refused.")
     caret: Field[int] = Field(title="caret", doc="Characters before the caret.", default=0, dtype=int)
     marked: Field[bool] = Field(
         title="marked", doc="All of it is marked: typing replaces it.", default=False, dtype=bool

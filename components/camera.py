@@ -13,18 +13,27 @@ DEFAULT_SCALE = 100.0  # points per metre at the default zoom
 SMALLEST_SCALE, LARGEST_SCALE = 1e-6, 1e9
 
 
+@dataclass(frozen=True)
 class Rectangle:
-    """Something that takes a rectangle of the window, in pixels, y down."""
+    """A rectangle of the window, in pixels, y down."""
 
     left: float
     top: float
     width: float
     height: float
 
+    @property
+    def right(self) -> float:
+        return self.left + self.width
+
+    @property
+    def bottom(self) -> float:
+        return self.top + self.height
+
     def contains(self, pixel: Vector) -> bool:
         """True if the pixel lies inside."""
         x, y = pixel
-        return self.left <= x < self.left + self.width and self.top <= y < self.top + self.height
+        return self.left <= x < self.right and self.top <= y < self.bottom
 
 
 @dataclass(frozen=True)
@@ -79,7 +88,7 @@ class Camera:
         self.centre = (self.centre[0] + before[0] - after[0], self.centre[1] + before[1] - after[1])
 
     def pan(self, pixels: Vector) -> None:
-        """Move the picture by so many pixels (right, down)."""
+        """Move the picture by pixels (right, down)."""
         self.centre = (self.centre[0] - pixels[0] / self.scale, self.centre[1] + pixels[1] / self.scale)
 
     def fit(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, cast
 
-from components.box import Box
+from components.box import Box, object_field, text_field
 from components.field import Field
 from components.handle import Handle
 from components.table import Table
@@ -14,13 +14,13 @@ from components.world import World
 
 
 class Heading(Handle):
-    """What a form says besides its boxes and tiles. There is exactly one."""
+    """The heading and message of a form, and how far it is scrolled. There is exactly one."""
 
     __slots__ = ()
     table, noun, single = "heading", "heading", True
 
-    text: Field[str] = Field(title="text", doc="Such as the element's name.", default="", dtype=str)
-    message: Field[str] = Field(title="message", doc="What is wrong or asked.", default="", dtype=str)
+    text: Field[str] = text_field("text", "Such as the element's name.")
+    message: Field[str] = text_field("message", "What is wrong or asked.")
     first: Field[int] = Field(
         dtype=int, default=0, minimum=0, title="first", doc="The first row shown; the others are scrolled away."
     )
@@ -32,18 +32,14 @@ class Tile(Handle):
     __slots__ = ()
     table, noun = "tiles", "tile"
 
-    section: Field[str] = Field(title="section", doc="The heading that it stands under.", default="", dtype=str)
-    title: Field[str] = Field(title="title", doc="Shown below the picture.", default="", dtype=str)
-    caption: Field[str] = Field(title="caption", doc="Shown below the title.", default="", dtype=str)
-    file: Field[str] = Field(title="file", doc="The name that a person types.", default="", dtype=str)
-    explanation: Field[str] = Field(title="explanation", doc="Shown while chosen.", default="", dtype=str)
-    source: Field[Any] = Field(
-        title="source", doc="What it opens: a path, a name or a document.", default=None, dtype=object
-    )
-    picture: Field[Any] = Field(
-        title="picture", doc="The model to draw; None: not read yet.", default=None, dtype=object
-    )
-    symbol: Field[str] = Field(title="symbol", doc="A sign in place of a picture.", default="", dtype=str)
+    section: Field[str] = text_field("section", "The heading that it stands under.")
+    title: Field[str] = text_field("title", "Shown below the picture.")
+    caption: Field[str] = text_field("caption", "Shown below the title.")
+    file: Field[str] = text_field("file", "The name that a person types.")
+    explanation: Field[str] = text_field("explanation", "Shown while chosen.")
+    source: Field[Any] = object_field("source", "What it opens: a path, a name or a document.")
+    picture: Field[Any] = object_field("picture", "The model to draw; None: not read yet.")
+    symbol: Field[str] = text_field("symbol", "A sign in place of a picture.")
     hidden: Field[bool] = Field(title="hidden", doc="Filtered out.", default=False, dtype=bool)
 
 

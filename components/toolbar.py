@@ -15,7 +15,7 @@ MOST_COLUMNS = 3
 
 @dataclass(frozen=True)
 class Tool:
-    """What a button offers.
+    """The contents of a button.
 
     action: its name, and that of its icon. title, key: what it does, and what can be pressed instead.
     pressed: it is in use, or what it shows is on. enabled: it would do something now.
@@ -34,10 +34,6 @@ class Button(Rectangle):
     """A tool and the rectangle of its button in pixels."""
 
     tool: Tool
-    left: float
-    top: float
-    width: float
-    height: float
 
 
 @dataclass(frozen=True)
@@ -47,9 +43,9 @@ class Toolbar:
     groups: tuple[tuple[Tool, ...], ...] = ()
 
     def strip(self, window: Viewport, unit: float) -> Viewport:
-        """The part of a window that it takes, with so many pixels per point; of no width where it is hidden.
+        """The part of a window that the toolbar takes, with `unit` pixels per point; of no width where it is hidden.
 
-        It has more columns where fewer are too high, and is hidden where MOST_COLUMNS are.
+        The toolbar has as few columns as the height allows, and is hidden where MOST_COLUMNS are too high.
         """
         columns = self._columns(window, unit)
         width = round((columns * BUTTON[0] + 2 * EDGE) * unit) if columns else 0
@@ -69,7 +65,7 @@ class Toolbar:
                 row, column = divmod(index, columns)
                 place = EDGE + column * width, top + row * height, width, height
                 left, upper, wide, high = (round(points * unit) for points in place)
-                buttons.append(Button(tool, window.left + left, window.top + upper, wide, high))
+                buttons.append(Button(window.left + left, window.top + upper, wide, high, tool))
             top += _rows(group, columns) * height + GAP
         return buttons
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,9 +25,9 @@ LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height
 
 
 def magnified(height: float, display: float, chosen: float) -> float:
-    """How many times larger than usual type and symbols are in a window so many points high, on such a display.
+    """The size of type and symbols, relative to the usual one, in a window on a display (heights in points).
 
-    chosen: how much larger than by itself a person wants them.
+    chosen: the factor that a person chose, relative to the size that suits the window.
     """
     fitting = max(max(height, display) / COMFORTABLE, 1.0)
     by_itself = max(factor for factor in MAGNIFICATIONS if factor <= fitting)
@@ -37,7 +37,7 @@ def magnified(height: float, display: float, chosen: float) -> float:
 
 @dataclass(frozen=True)
 class Status:
-    """What the status line says.
+    """The contents of the status line.
 
     time: simulated seconds, if they matter. speed: simulated seconds per second shown (0: halted). state: such as
     "running", "at rest", "diverged". hint: the next possible step. problem: why it stopped, or "".
@@ -54,7 +54,7 @@ class Status:
 
 @dataclass(frozen=True)
 class Preview:
-    """What a tool is about to make or a drag is doing, drawn over the model.
+    """The element that a tool is about to make, or the state of a drag, drawn over the model.
 
     kind: "rod", "force", "velocity", "roller", "pinned", "pull" or "box". start, end: points of the picture (m); of a
     box, two opposite corners; of a support, its point and towards its ground. label: its value with its unit, or "".
@@ -123,20 +123,20 @@ class View:
     """How one model is shown in one viewport.
 
     heading: the word top left in red ("Pause"), or "". all_diagrams: force diagrams of all elements.
-    legend: show the meaning of colours. help: which page of what can be pressed is shown, from 1; 0: none. keys: its
-    lines (key, meaning); more_keys: there is another page.
+    legend: show the meaning of colours. help: the page of keys that is shown, from 1; 0: none. keys: its lines
+    (key, meaning). more_keys: there is another page.
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
-    forces_known: False while what computes forces is not there yet; then none are shown.
-    caption: lines at the top: what this is, and facts about it. page: text that is shown instead.
+    forces_known: False while the program that computes forces is being compiled; then no forces are shown.
+    caption: lines at the top: a title, and facts about the model. page: text in place of the model.
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
     flashes: points (m) where particles collided just now, shape (k, 2).
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
     theory, energy: show theory beside the run, and its energy account, among them.
-    fitted: nobody looked closer or elsewhere since the whole model was shown; so it is in a window of any size.
-    shares: the model is fitted beside the panels, which else cover it where they must. since: by title, when each
-    panel came, in turn.
+    fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
+    shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
+    panel appeared.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -204,7 +204,7 @@ class View:
         c, u = self.canvas, self.pixel_ratio
         if c.width >= LEAST_BESIDE * u:
             width = round(min(max(COLUMN * u, COLUMN_SHARE * c.width), WIDEST_COLUMN * u))
-            return Viewport(c.left + c.width - width, c.top, width, c.height)
+            return replace(c, left=c.left + c.width - width, width=width)
         if c.height >= LEAST_ABOVE * u:
             return Viewport(c.left, c.top + c.height // 2, c.width, c.height - c.height // 2)
         return c
@@ -216,8 +216,8 @@ class View:
         if not self.shares or panels == c:
             return c
         if panels.width < c.width:
-            return Viewport(c.left, c.top, c.width - panels.width, c.height)
-        return Viewport(c.left, c.top, c.width, c.height - panels.height)
+            return replace(c, width=c.width - panels.width)
+        return replace(c, height=c.height - panels.height)
 
 
 def drawn_positions(model: Model) -> NDArray[np.float64]:

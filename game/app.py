@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import io
+import itertools
 import os
 import sys
 import time
@@ -40,7 +41,7 @@ from systems.render.picture import compose
 from systems.render.plots import draw_plot
 from systems.render.pygame_canvas import Canvas
 from systems.render.pygame_render import PygameRender
-from systems.render.raster_program import load_raster
+from systems.render.raster import load_raster
 from systems.render.theme import load_theme
 
 FRAME_RATE = 60  # Hz
@@ -173,7 +174,7 @@ class App:
         return failures
 
     def close(self) -> None:
-        """Close the window now; when it was collected later, it would close the display of the next one."""
+        """Close the window at once; the garbage collector would do so later, together with the display of the next one."""
         self.window.destroy()
         pygame.display.quit()
 
@@ -240,7 +241,7 @@ class App:
             self.session.resize(width, height, ratio)
 
     def _follow_title(self) -> None:
-        """Let the window's title name the model, with a dot while it has unsaved work."""
+        """Let the window's title name the model, after a dot while there is unsaved work."""
         session = self.session
         name = session.file.name or ("Untitled" if session.document.unsaved else "")
         title = f"{'• ' if session.document.unsaved else ''}{name} – Pinjoint" if name else "Pinjoint"
@@ -312,12 +313,9 @@ def _save(surface: pygame.Surface, path: Path) -> None:
 
 
 def _unused(path: Path) -> Path:
-    number = 1
-    candidate = path
-    while candidate.exists():
-        number += 1
-        candidate = path.with_stem(f"{path.stem}-{number}")
-    return candidate
+    """The path, or the first of path-2, path-3, … that does not exist."""
+    further = (path.with_stem(f"{path.stem}-{number}") for number in itertools.count(2))
+    return next(candidate for candidate in itertools.chain([path], further) if not candidate.exists())
 
 
 def render_png(session: Session, path: str, size: tuple[int, int], theme: str = "light") -> None:

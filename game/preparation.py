@@ -25,8 +25,7 @@ from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import CompiledUnit, is_blank, load_compiler
 from systems.program.program import has_program
 from systems.program.writer import form_of, read_sources
-from systems.render.raster import Raster
-from systems.render.raster_program import RASTER, load_raster
+from systems.render.raster import RASTER, Raster, load_raster
 from systems.run.simulation import Simulation
 
 Units = tuple[CompiledUnit, ...]  # that one process compiles

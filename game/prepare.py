@@ -22,7 +22,7 @@ from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import forget_unused
 from systems.program.parallel import make_program
 from systems.program.program import has_program
-from systems.render.raster_program import RASTER
+from systems.render.raster import RASTER
 
 UNITS = {unit.name: unit for unit in (RASTER, EVENTS, HORIZONS, PILES, DRIVEN)}
 WARM = "warm"  # the program is for rods whose temperature may have changed

@@ -24,7 +24,7 @@ from game.documents import models
 from game.documents.open_documents import ModelFile, Source, file_of
 from game.editor.actions import ACTIONS, WHILE_DRAWING
 from game.editor.context import FAULTS, Context, Stage
-from game.editor.frame import Frame, Unseen, frame_systems
+from game.editor.frame import Actions, Frame, ShowView, Unseen
 from game.editor.scenes import all_scenes, scene_systems
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
@@ -65,7 +65,7 @@ class Session(Context):
         file: ModelFile = ModelFile(),  # noqa: B008 (it cannot be changed)
     ) -> None:
         pull, scenes = Pull(), all_scenes()
-        ours = [*frame_systems(), Time(), *scene_systems(), *step_systems(), pull]
+        ours = [Actions(), ShowView(), Time(), *scene_systems(), *step_systems(), pull]
         schedule = Schedule(
             [*ours, *(make() for make in SYSTEMS), *systems],
             wanted={scene.name: scene.systems for scene in scenes},
@@ -78,12 +78,7 @@ class Session(Context):
         self.begin_document()
 
     @classmethod
-    def open(
-        cls,
-        source: Source,
-        systems: Iterable[System] = (),
-        mods: Iterable[str | Path] = (),
-    ) -> Session:
+    def open(cls, source: Source, systems: Iterable[System] = (), mods: Iterable[str | Path] = ()) -> Session:
         """Open a model file, a bundled model by name, or a document. Raises ModelError.
 
         systems: further ones for this session. mods: folders of mods to load first, for the whole program;
@@ -128,12 +123,12 @@ class Session(Context):
 
     @property
     def environment(self) -> Environment:
-        """What acts on every particle."""
+        """Force, acceleration and drag on all particles."""
         return self.model.environment
 
     @property
     def message(self) -> str:
-        """What the scene asks or refuses, why the run stopped, or what to beware of; "" if there is nothing to say."""
+        """The question or refusal of the scene, the reason why the run stopped, or a warning; "" if none."""
         simulation = self.simulation
         said = (
             self.fault
@@ -280,7 +275,7 @@ class Session(Context):
             self.act(name, pixel)
 
     def _action_at(self, key: str, pixel: Vector) -> str | None:
-        """What a key or button does, with the pointer at a pixel: on the toolbar, clicks do what it offers.
+        """The action of a key or button with the pointer at a pixel; clicks on the toolbar take its tools.
 
         Where the keys are listed, Escape leaves the list and nothing else.
         """
@@ -293,7 +288,7 @@ class Session(Context):
         return next((tool.action for tool in hit if tool.enabled and key in CLICKS), None)
 
     def resize(self, width: int, height: int, pixel_ratio: float = 1.0) -> None:
-        """The window has so many pixels now, and so many for each point."""
+        """Adapt to a new size of the window, in pixels, with `pixel_ratio` pixels per point."""
         self.view.camera.viewport, self.view.pixel_ratio = Viewport(0, 0, width, height), pixel_ratio
         if self.view.fitted:
             self.view.fit(self.model)
@@ -321,7 +316,7 @@ class Session(Context):
 
     @property
     def boxes(self) -> dict[str, str]:
-        """What the boxes of this scene contain, by their titles."""
+        """Texts of the boxes of the active scene, by their titles."""
         return self.scenes.active.boxes
 
     def point(self, x: float, y: float) -> Vector:
@@ -366,7 +361,7 @@ class Session(Context):
 
     @property
     def stages(self) -> Sequence[Stage]:
-        """What the active scene shows: models, each in its view, and the toolbar if it has one."""
+        """All that is drawn: models and forms of the active scene, each in its view, toolbar and footer."""
         stages = list(self.scenes.active.stages(self))
         if self.scene not in FORMS:
             stages.append((self.view.toolbar, self.view))

@@ -45,7 +45,7 @@ Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 
 # --- actions ---------------------------------------------------------------------------------------------
 
-Action = Callable[["Context", Vector], None]
+Action = Callable[["Context", Vector], object]
 
 ACTIONS: dict[str, Action] = {}
 WHILE_DRAWING: set[str] = set()  # names of actions during which a gesture goes on
@@ -125,7 +125,7 @@ class Scene:
 
     @property
     def message(self) -> str:
-        """What the scene asks, says or refuses in a place of its own; "" if nothing."""
+        """The question, answer or refusal that the scene shows in a place of its own; "" if none."""
         return ""
 
     def enter(self, context: Context) -> None:
@@ -143,7 +143,7 @@ class Scene:
         context.view.fitted = False
 
     def pan(self, context: Context, pixels: Vector) -> None:
-        """Move the picture by so many pixels (right, down)."""
+        """Move the picture by pixels (right, down)."""
         context.view.camera.pan(pixels)
         context.view.fitted = False
 
@@ -366,7 +366,7 @@ class Context:
 
     @property
     def remarks(self) -> tuple[Event, ...]:
-        """What the run did that a slowly growing load would not have done, once it is at rest."""
+        """Events of the run, once it is at rest, that a slowly growing load would not have caused."""
         return self.document.assessment.remarks
 
     @property
@@ -407,7 +407,7 @@ class Context:
             self._go_on()
 
     def step(self, steps: int = 1) -> bool:
-        """Go by so many fixed steps, back if negative; False if one cannot go back that far (or is at rest).
+        """Go by a number of fixed steps, back if negative; False if the run does not reach that far back or is at rest.
 
         Going back stops where something was edited: undo takes that back.
         """
@@ -454,12 +454,12 @@ class Context:
             self.document.live.frame(elapsed)
 
     def has_program(self, simulation: Simulation) -> bool:
-        """False while the step program is compiled elsewhere, which is said; without a window it is compiled here."""
+        """False while another process compiles the step program (see `awaited`); without a window it is compiled here."""
         self.awaited = None if self.waited_for(simulation) is None else simulation
         return self.awaited is None
 
     def waited_for(self, simulation: Simulation) -> float | None:
-        """Seconds that a step program has been waited for, or None if it can be had at once."""
+        """Seconds since the step program of a simulation was asked for; None if the program is ready."""
         return self.preparation.waits_for(simulation) if self.preparation is not None else None
 
     # --- editing -----------------------------------------------------------------------------------
@@ -536,7 +536,7 @@ class Context:
 
     @property
     def clipboard(self) -> str:
-        """What was copied, here or, with a window, in any program."""
+        """The text that was copied last, here or, with a window, in any program."""
         return self.window.copied() if self.window is not None else self._clipboard
 
     @clipboard.setter
@@ -568,11 +568,11 @@ class Context:
         return self.view.pointer or self.view.camera.middle
 
     def panels(self) -> Iterator[Readout]:
-        """What mods show beside the model now."""
+        """The panels of mods beside the model."""
         return (readout for panel in PANELS for readout in panel(self))
 
     def make_room(self) -> None:
-        """Fit the model beside the panels if some are large enough to cover it.
+        """Fit the model beside panels that are large enough to cover it.
 
         Called after actions, never because of time or frames, so that a recording is replayed in the same picture.
         """

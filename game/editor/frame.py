@@ -77,8 +77,3 @@ class ShowView(System):
     def process(self, frame: Any) -> None:
         """Status line, panels, previews, flashes, the toolbar."""
         frame.session.update_view()
-
-
-def frame_systems() -> list[System]:
-    """The systems of every session, besides those of the engine."""
-    return [Actions(), ShowView()]

@@ -37,9 +37,7 @@ def _energy(context: Context) -> Readout:
         (name.replace("_", " "), f"{value:.5g} J".replace("-", "−"))
         for name, value in context.energy.as_dict().items()
     ]
-    error = (
-        context.document.assessment.error() if not context.busy else None
-    )  # since measuring takes a run of its own
+    error = None if context.busy else context.document.assessment.error()  # which takes a run of its own
     if error is not None:
         rows.append(("displacement error", f"{error.relative:.1e} of the largest"))
     return Readout("Energy account", tuple(rows))

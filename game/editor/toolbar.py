@@ -22,8 +22,8 @@ def toolbar_of(context: Context) -> Toolbar:
 
 def _tool(context: Context, binding: Binding) -> Tool:
     action = binding.action
-    pressed = action == _in_hand(context) or _PRESSED.get(action, _never)(context)
-    enabled = context.scene in binding.scenes and _NEEDS.get(action, _always)(context)
+    pressed = action == _in_hand(context) or (action in _PRESSED and _PRESSED[action](context))
+    enabled = context.scene in binding.scenes and (action not in _NEEDS or _NEEDS[action](context))
     icon = "pause" if action == "toggle run" and pressed else action
     return Tool(action, binding.title, binding.key, icon, pressed, enabled)
 
@@ -33,29 +33,18 @@ def _in_hand(context: Context) -> str:
     return context.gesture.tool if isinstance(context.gesture, Drawing) else context.view.tool
 
 
-def _always(context: Context) -> bool:
-    return True
-
-
-def _never(context: Context) -> bool:
-    return False
-
-
 def _shows_diagrams(context: Context) -> bool:
     return context.view.all_diagrams or context.model.any_tagged(DiagramShown)
 
 
-def _has_selected(context: Context) -> bool:
-    return context.has_selected
+def _guided(condition: Callable[[Any], bool]) -> Condition:
+    """Whether there is a guide of the force method of which a condition is true."""
 
+    def holds(context: Context) -> bool:
+        guide = getattr(context.scenes.active, "shown_guide", None)
+        return guide is not None and condition(guide)
 
-def _has_particles(context: Context) -> bool:
-    return context.model.particles.count > 0
-
-
-def _guided(context: Context, condition: Callable[[Any], bool]) -> bool:
-    guide = getattr(context.scenes.active, "shown_guide", None)
-    return guide is not None and condition(guide)
+    return holds
 
 
 # By action that switches something: whether it is on.
@@ -71,19 +60,15 @@ _PRESSED: dict[str, Condition] = {
 _NEEDS: dict[str, Condition] = {
     "undo": lambda context: context.can_undo,
     "redo": lambda context: context.can_redo,
-    "copy": _has_selected,
-    "duplicate": _has_selected,
-    "delete": _has_selected,
+    **dict.fromkeys(("copy", "duplicate", "delete"), lambda context: context.has_selected),
     "step back": lambda context: context.timeline.first < context.model.clock.steps,
     "restart": lambda context: not context.at_beginning,
-    "settle": _has_particles,
+    **dict.fromkeys(
+        ("settle", "support", "force", "velocity"), lambda context: context.model.particles.count > 0
+    ),
     "rod": lambda context: context.model.particles.count > 1,
-    "support": _has_particles,
-    "force": _has_particles,
-    "velocity": _has_particles,
     "next grid": lambda context: context.model.grids.count > 0,
     "force method": lambda context: context.model.rods.count > 0,
-    "release x": lambda context: _guided(context, lambda guide: guide.axis_wanted is not None),
-    "release y": lambda context: _guided(context, lambda guide: guide.axis_wanted is not None),
-    "release another": lambda context: _guided(context, lambda guide: guide.can_release_another),
+    **dict.fromkeys(("release x", "release y"), _guided(lambda guide: guide.axis_wanted is not None)),
+    "release another": _guided(lambda guide: guide.can_release_another),
 }

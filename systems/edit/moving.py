@@ -10,20 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 from components.field import Vector
 from components.handle import Handle
 from components.model import Model
-from components.particle import Particle
 from components.view import View
 from systems.edit.placing import resolution
 
 Points = NDArray[np.float64]
 
 
-def movable(model: Model, handles: Iterable[Handle]) -> list[Particle]:
-    """The particles that move with elements: the particles among them, and the ends of rods; in row order."""
-    return [model.particles[row] for row in moving_rows(model, model.rows_of(handles)).tolist()]
-
-
 def moving_rows(model: Model, rows: Mapping[str, NDArray[np.intp]]) -> NDArray[np.intp]:
-    """Rows of the particles that move with elements in these rows, by table, ascending."""
+    """Rows of the particles that move with elements in these rows, by table: those and the ends of rods, ascending."""
     moves = np.zeros(model.particles.count, dtype=bool)
     moves[rows["particles"]] = True
     moves[model.rods.between[rows["rods"]]] = True
@@ -36,7 +30,7 @@ class Movable:
     def __init__(self, model: Model, handles: Iterable[Handle]) -> None:
         chosen = list(handles)
         self._model = model
-        self.particles = movable(model, chosen)
+        self.particles = [model.particles[row] for row in moving_rows(model, model.rows_of(chosen)).tolist()]
         self.others = [handle for handle in chosen if handle.points]
         kinds: dict[type[Handle], None] = dict.fromkeys(type(handle) for handle in self.others)
         self._groups = [
@@ -47,11 +41,6 @@ class Movable:
 
     def __len__(self) -> int:
         return len(self.particles) + len(self.others)
-
-    @property
-    def first(self) -> Handle:
-        """The particle, else the other element, that comes first."""
-        return (self.particles or self.others)[0]
 
     @property
     def positions(self) -> Points:
@@ -73,10 +62,13 @@ class Movable:
         return 0
 
     def place(self, positions: ArrayLike) -> None:
-        """Give all of them new positions (m), in the order of `positions`. Raises FieldError, then nothing moved."""
+        """Give all of them new positions (m), in the order of `positions`.
+
+        Raises FieldError, such as for a rod that would lose its length; then nothing has moved.
+        """
         wanted = np.asarray(positions, dtype=np.float64)
         with self._model.transaction("move"):
-            move(self._model, self.particles, wanted[: len(self.particles)])
+            self._model.assign(self.particles, "position", wanted[: len(self.particles)])
             row = len(self.particles)
             for handles, point in self._groups:
                 self._model.assign(handles, point, wanted[row : row + len(handles)])
@@ -87,11 +79,6 @@ def rows_of(model: Model, handles: Sequence[Handle]) -> NDArray[np.int64]:
     """Rows of existing elements of one kind, each in its table."""
     rows: NDArray[np.int64] = model.row_of_entity[[handle.entity for handle in handles]]
     return rows
-
-
-def move(model: Model, particles: list[Particle], positions: ArrayLike) -> None:
-    """Give particles new original positions (m), shape (n, 2). Raises FieldError if a rod lost its length."""
-    model.assign(particles, "position", np.asarray(positions, dtype=np.float64))
 
 
 def nudged(model: Model, view: View, positions: ArrayLike, direction: Vector, *, far: bool) -> Points:

@@ -32,7 +32,7 @@ class Hand:
     anchor: Vector
 
     def at(self, anchor: Vector) -> Hand:
-        """The same hand at another place."""
+        """This hand with another anchor (m)."""
         return replace(self, anchor=anchor)
 
 
@@ -99,7 +99,7 @@ class Pull(Law):
         return x, y
 
     def forces(self, count: int) -> NDArray[np.float64]:
-        """The hand's force on each of so many particles (kN), shape (count, 2)."""
+        """The force of the hand on each of `count` particles (kN), shape (count, 2)."""
         forces = np.zeros((count, 2))
         if self.hand is not None:
             forces[self.hand.particle.row] = self.force

@@ -8,22 +8,20 @@ from components.field import Vector
 from components.model import Model
 from components.particle import Particle
 
-# Supports in the order in which pressing the key goes through them, with their names.
-CYCLE = ((False, False), (True, True), (False, True), (True, False))
+# Names of the supports, in the order in which pressing the key goes through them.
 NAMES = {
     (False, False): "free",
     (True, True): "pinned: held in x and y",
     (False, True): "on a roller: held in y",
     (True, False): "on a roller: held in x",
 }
-
-
 DIAGONAL = math.tan(math.pi / 8.0)  # tan 22.5°; a direction farther from an axis counts along both
 
 
 def next_support(model: Model, particles: list[Particle]) -> str:
     """Give particles the support after that of the first one; returns its name."""
-    return support(model, particles, CYCLE[(CYCLE.index(particles[0].fixed) + 1) % len(CYCLE)])
+    cycle = list(NAMES)
+    return support(model, particles, cycle[(cycle.index(particles[0].fixed) + 1) % len(cycle)])
 
 
 def support(model: Model, particles: list[Particle], fixed: tuple[bool, bool]) -> str:

@@ -15,11 +15,8 @@ MOST_CHARACTERS = 200  # in one box
 _MEANS = {"0": "no", "1": "yes"}
 _DIGITS = r"-?(\d+\.?\d*|\.\d*)?"  # a number, or the beginning of one
 _NUMBER_SO_FAR = re.compile(rf"{_DIGITS}|-?(\d+\.?\d*|\.\d+)[eE][+-]?\d*")
-_IN_NUMBERS = {
-    ",": ".",
-    "−": "-",
-    "/": "-",
-}  # other keyboards, numbers copied from the screen, the notation of the thesis
+# Other keyboards, numbers copied from the screen, the notation of the thesis.
+_IN_NUMBERS = {",": ".", "−": "-", "/": "-"}
 
 
 # --- selecting ---------------------------------------------------------------------------------------
@@ -92,7 +89,7 @@ def erase(form: Form, *, after: bool = False) -> None:
 
 
 def place_caret(form: Form, caret: int) -> None:
-    """Put the caret of the selected box after so many characters, and mark nothing."""
+    """Put the caret of the selected box behind a number of characters, and mark nothing."""
     box = form.selected
     if box is not None:
         box.caret = min(max(caret, 0), len(box.text))

@@ -35,9 +35,7 @@ def draw_loads(sheet: Sheet) -> Iterator[Mark]:
     along = _directions(force[rows])
     ahead = np.argmax(along @ DIRECTIONS.T, axis=1)
     crowd = crowding(sheet, rows)
-    pushes = (
-        crowd[rows, (ahead + 2) % 4] <= crowd[rows, ahead] + 0.1
-    )  # towards the particle, where there is room
+    pushes = crowd[rows, (ahead + 2) % 4] <= crowd[rows, ahead] + 0.1  # towards the particle, if there is room
     yield from _arrows(sheet, rows, along, sheet.theme.force, pushes)
 
 

@@ -27,10 +27,7 @@ _SHORTEST_WITH_DIAGRAM = 6.0  # points
 _SHORTEST_WITH_VALUE = 24.0  # points; the values of shorter rods would only hide the structure
 _MANY_ARROWS = 200  # up to which all are drawn, though they may lie over each other
 _TOLD = 1.5  # factor by which a new value must be larger to replace one of the last picture
-_ROD_VALUE, _ARROW_VALUE = (
-    "rods.axial_force",
-    "particles.external_force",
-)  # key by which labels keep their places
+_ROD_VALUE, _ARROW_VALUE = "rods.axial_force", "particles.external_force"  # keys by which labels keep places
 _SLIDES = np.array([0.0, 1.0, -1.0, 2.0, -2.0])  # along a rod, in sizes of a label: the middle first
 _BACKING = 0.86  # opacity behind a value
 
@@ -173,15 +170,11 @@ def _label_rods(
     numbers = values[shown].tolist()
     texts, size, half = _value_texts(sheet, map(written, numbers), few)
     places = _places_by_rods(middle[shown], normal[shown], height[shown], half, few)
-    colours = [getattr(sheet.theme, _sign_of(value)) for value in numbers]
+    signs = ("zero" if abs(n) <= SMALLEST_FORCE else "tension" if n > 0.0 else "compression" for n in numbers)
+    colours = [getattr(sheet.theme, sign) for sign in signs]
     keys = [(_ROD_VALUE, row) for row in rows[shown].tolist()]
     values_of = zip(texts, places, colours, (-worth[shown]).tolist(), keys, strict=True)
     _add_values(sheet, values_of, size, "spare" if few else "cover")
-
-
-def _sign_of(force: float) -> str:
-    """The name of the colour of an axial force."""
-    return "zero" if abs(force) <= SMALLEST_FORCE else "tension" if force > 0.0 else "compression"
 
 
 def _worth(sheet: Sheet, field: str, rows: Rows, values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -231,8 +224,8 @@ def _places_by_rods(
 ) -> list[Points]:
     """Where the value of each rod may stand: in its diagram if it fits, else beyond, else behind the rod.
 
-    Among many rods it stands on its own rod first, since beside it, it might be read as that of another rod.
-    reach is how far a label extends from its middle along the normal, slide a step along the rod.
+    Among many rods a value stands on its own rod first: beside the rod, it could be read as that of another.
+    reach: half the extent of a label along the normal of its rod. slide: a step along the rod.
     """
     normal_x, normal_y = np.abs(normal).T
     reach, slide = normal_x * half[:, 0] + normal_y * half[:, 1], normal_y * half[:, 0] + normal_x * half[:, 1]

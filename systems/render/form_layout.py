@@ -10,7 +10,7 @@ from components.box import Box
 from components.camera import Rectangle, Viewport
 from components.field import Vector
 from components.form import Form, Tile
-from systems.render.typography import wrapped
+from systems.render.typography import font_size, in_rows, wrapped
 
 SIDE = 400.0  # points, width of the properties beside the model
 LEAST_MODEL = 240.0  # points that the model keeps beside them, or they cover it
@@ -35,21 +35,15 @@ class Place(Rectangle):
     """The rectangle of a box (without its title), tile or section heading."""
 
     item: Box | Tile | str
-    left: float
-    top: float
-    width: float
-    height: float
 
 
 @dataclass(frozen=True)
 class FormLayout:
-    """The places of all parts of a form.
+    """The places of all parts of a form, in pixels.
 
-    unit: pixels per point. left, right: of all that is written. header, heading_width: the middle of the
-    heading's line, and the room for it.
-    message, top, bottom: the middle of the message's first line; between which the rows are; footer: the upper
-    end of what is said at the bottom. first, shown, count: rows of which the first is shown, how many
-    are, and there are.
+    unit: pixels per point. left, right: the edges of all text. header: the middle of the heading's line, whose text
+    has the room `heading_width`. message: the middle of the message's first line. top, bottom: the edges of the rows.
+    first, shown, count: the number of the first row in sight, of rows in sight, and of all rows.
     """
 
     viewport: Viewport
@@ -102,7 +96,7 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         beside_heading = HEADING * u if low else 0.0
         top = v.top + 6.0 * u if low else top + TITLE * u
         room = min(width - beside_heading, 420.0 * u)
-        fixed = [Place(box, left + beside_heading, top, room, BOX * u) for box in form.boxes]
+        fixed = [Place(left + beside_heading, top, room, BOX * u, box) for box in form.boxes]
         top += (BOX + 22.0) * u
     shares_line = low and bool(fixed)
     heading_width = (HEADING - 8.0) * u if shares_line else width
@@ -114,7 +108,7 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
 
 def message_lines(form: Form, width: float, u: float) -> list[str]:
     """The message of a form, in lines."""
-    return wrapped(form.heading.message, width, max(round(MESSAGE * u), 7)) if form.heading.message else []
+    return wrapped(form.heading.message, width, font_size(MESSAGE, u)) if form.heading.message else []
 
 
 def _has_files(form: Form) -> bool:
@@ -162,21 +156,12 @@ def row_of(form: Form, item: Box | Tile, layout: FormLayout) -> tuple[int, int]:
 
 def _box_rows(form: Form, width: float) -> Iterator[Row]:
     """Sections and boxes: the two components of a vector share a row, and so do single boxes."""
-    several = (width - COLUMN_GAP) / 2 >= NARROW
+    together = 2 if (width - COLUMN_GAP) / 2 >= NARROW else 1
     for section, boxes in groupby(form.boxes, lambda box: box.section):
         if section != form.heading.text:
             yield section
-        waiting: list[Box] = []
-        for box in boxes:
-            if waiting and (not several or _partner(waiting[0]) != _partner(box)):
-                yield waiting
-                waiting = []
-            waiting.append(box)
-            if len(waiting) == 2:
-                yield waiting
-                waiting = []
-        if waiting:
-            yield waiting
+        for _, partners in groupby(boxes, _partner):
+            yield from in_rows(list(partners), together)
 
 
 def _partner(box: Box) -> str:
@@ -191,9 +176,7 @@ def _tile_rows(form: Form, width: float) -> Iterator[Row]:
     for section, group in groupby(shown, lambda tile: tile.section):
         if section:
             yield section
-        tiles = list(group)
-        for start in range(0, len(tiles), columns):
-            yield tiles[start : start + columns]
+        yield from in_rows(list(group), columns)
 
 
 def tile_columns(width: float) -> int:
@@ -226,13 +209,13 @@ def _tile_width(width: float, u: float) -> float:
 
 def _placed(row: Row, left: float, top: float, width: float, height: float, u: float) -> Iterator[Place]:
     if isinstance(row, str):
-        yield Place(row, left, top, width, height)
+        yield Place(left, top, width, height, row)
     elif isinstance(row[0], Box):
         gap = COLUMN_GAP * u
         each = (width - gap) / 2 if (width - gap) / 2 >= NARROW * u else width
         for column, box in enumerate(row):
-            yield Place(box, left + column * (each + gap), top + TITLE * u, each, BOX * u)
+            yield Place(left + column * (each + gap), top + TITLE * u, each, BOX * u, box)
     else:
         each = _tile_width(width, u)
         for column, tile in enumerate(row):
-            yield Place(tile, left + column * (each + TILE_GAP * u), top, each, height - TILE_GAP * u)
+            yield Place(left + column * (each + TILE_GAP * u), top, each, height - TILE_GAP * u, tile)

@@ -68,10 +68,7 @@ def cover_strokes(cover, touched, clip, start, end, width):
                 part = min((minor + 1) << _ONE, high) - max(minor << _ONE, low)
                 amount = np.uint8((part * share + (1 << (2 * _ONE - 1))) >> (2 * _ONE))
                 row, column = (major, minor) if steep else (minor, major)
-                at = (
-                    np.uint64(row),
-                    np.uint64(column),
-                )  # unsigned: signed indices cost a check for negative ones
+                at = np.uint64(row), np.uint64(column)  # signed indices would cost a check for negative ones
                 cover[at] = max(cover[at], amount)
                 touched[at[0], at[1] // _BLOCK] = 1
             low += rise
@@ -104,7 +101,7 @@ def _overlap(middle, length):
 
 @compiled
 def _crossing(at, slope, length):
-    """Between which t the overlap of at + slope t and `length` may be more than 0."""
+    """The interval of t in which at + slope t may overlap [0, length]."""
     per = 1.0 / slope if abs(slope) > 1e-6 else 1e6
     t0, t1 = (-0.5 - at) * per, (length + 0.5 - at) * per
     return min(t0, t1), max(t0, t1)
@@ -112,10 +109,10 @@ def _crossing(at, slope, length):
 
 @compiled
 def _axis(x, y):
-    """A direction whose larger component is 1, and how long (x, y) is when measured by it.
+    """The direction of (x, y) scaled to a larger component of 1, and the length of (x, y) in that scale.
 
-    Middles of pixels that lie side by side are then 1 apart, as wide as a pixel counts: what a bar covers of a
-    column, or of a row if it is steep, is exact.
+    Middles of neighbouring pixels are then 1 apart, the width of a pixel: the cover of a bar in a column, or in a
+    row if the bar is steep, is exact.
     """
     most = max(abs(x), abs(y))
     return x / most, y / most, (x * x + y * y) / most

@@ -96,7 +96,7 @@ class Occupancy:
         return np.concatenate([low, high], axis=1)
 
     def _cells(self, left: float, top: float, width: float, height: float) -> tuple[slice, slice]:
-        """The same of a single box: its rows and columns, which may end beyond the last ones."""
+        """Rows and columns of the cells that a rectangle touches; they may end beyond the last ones."""
         x, y = left - self.viewport.left, top - self.viewport.top
         columns = slice(max(int(x / self.cell), 0), max(int((x + width) / self.cell) + 1, 0))
         return slice(max(int(y / self.cell), 0), max(int((y + height) / self.cell) + 1, 0)), columns
@@ -130,8 +130,7 @@ def half_size(text: str, size: int, weight: str, unit: float) -> tuple[float, fl
 def place_labels(labels: Iterable[Label], occupancy: Occupancy, unit: float, placed: Placed) -> list[Mark]:
     """Marks of the labels that found a free place, in order of rank; the others are left out.
 
-    placed: where labels were in the last picture; they leave that only for a place where they cover less. It is
-    updated.
+    placed: the places of labels in the last picture, updated; a label moves only where it then covers less.
     """
     ranked = sorted(labels, key=lambda label: label.rank)
     former = [placed.get(label.key, -1) if label.key else -1 for label in ranked]
@@ -173,9 +172,8 @@ def _free_places(
 ) -> NDArray[np.intp]:
     """Of each label for which any of its places is free, the first such place, which is taken.
 
-    of: which label each place is of; held: the label was there; cells (k, 4) of each. What is free of all else is
-    found for all places at once, since there are thousands of them in every frame; then, one after the other, of
-    the labels before.
+    of: the label of each place. held: whether the label was there in the last picture. cells: (k, 4) of each place.
+    Thousands of places are tested against panels and lines at once; only what labels take is tested one by one.
     """
     kinds = [label.lines for label in labels]
     strengths = sorted({strength for lines in set(kinds) for strength in _COVERED[lines]})

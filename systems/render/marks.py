@@ -70,7 +70,7 @@ class Stamps:
 class Discs:
     """Circles about `at` (n, 2) with `radius` (n,) in pixels.
 
-    ink: their colour. rim: if not 0, only so many pixels within the radius are ink, the rest is `hollow`.
+    ink: their colour. rim: pixels within the radius that are ink, the rest being `hollow`; 0: all is ink.
     """
 
     at: Points
@@ -86,6 +86,11 @@ class Rectangles:
 
     boxes: NDArray[np.int64]
     colour: Colour
+
+
+def boxes(colour: Colour, *places: tuple[float, float, float, float]) -> Rectangles:
+    """Some rectangles of one colour: left, top, width, height of each, in whole pixels."""
+    return Rectangles(np.array(places, dtype=np.int64), colour)
 
 
 class Panel(NamedTuple):

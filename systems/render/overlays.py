@@ -8,11 +8,11 @@ import numpy as np
 
 from components.camera import Viewport
 from components.view import BETWEEN
-from systems.render.marks import Mark, Panel, Rectangles, Stamps, Strokes, Text
+from systems.render.marks import Mark, Panel, Stamps, Strokes, Text, boxes
 from systems.render.sheet import Sheet
 from systems.render.symbols import dashed
 from systems.render.theme import Colour, faded
-from systems.render.typography import line_height, shortened, text_width, wrapped
+from systems.render.typography import at_most, font_size, line_height, shortened, text_width, wrapped
 
 _EDGE = 14.0  # points between overlays and the edges of the viewport
 _HEADING = 20.0  # points, size of its type
@@ -61,12 +61,9 @@ def written_speed(speed: float) -> str:
         return ""
     if abs(speed - 1.0) < 0.005:
         return "real time"
-    return f"1 s shown = {_trimmed(written_time(speed, 3))} simulated"
-
-
-def _trimmed(text: str) -> str:
-    number, unit = text.split(" ")
-    return f"{number.rstrip('0').rstrip('.') if '.' in number else number} {unit}"
+    number, unit = written_time(speed, 3).split(" ")
+    number = number.rstrip("0").rstrip(".") if "." in number else number
+    return f"1 s shown = {number} {unit} simulated"
 
 
 # --- the status bar --------------------------------------------------------------------------------
@@ -75,14 +72,13 @@ def _trimmed(text: str) -> str:
 def _status_bar(sheet: Sheet) -> tuple[list[Mark], float]:
     """The bar at the bottom, if there is anything to say, and the height that is left above it."""
     v, u, theme, status = sheet.viewport, sheet.unit, sheet.theme, sheet.view.status
-    bottom = float(v.top + v.height)
+    bottom = float(v.bottom)
     if not (status.state or (status.hint and _shows_hint(sheet))):
         return [], bottom
     top, thin = round(bottom - BAR * u), max(round(u), 1)
-    bar = np.array([[v.left, top, v.width, v.top + v.height - top]], dtype=np.int64)
-    hairline = np.array([[v.left, top, v.width, thin]], dtype=np.int64)
     sheet.occupancy.block(v.left, top, v.width, BAR * u)
-    marks: list[Mark] = [Rectangles(bar, theme.panel), Rectangles(hairline, theme.line)]
+    marks: list[Mark] = [boxes(theme.panel, (v.left, top, v.width, v.bottom - top))]
+    marks.append(boxes(theme.line, (v.left, top, v.width, thin)))
     middle = (top + thin + bottom) / 2
     x = v.left + _EDGE * u
     if status.state:
@@ -104,7 +100,7 @@ def _append(
     """Write a part of the status bar if it fits; returns where the next one begins."""
     size = sheet.font(12.0)
     width = text_width(text, size, weight)
-    if not text or x + width > sheet.viewport.left + sheet.viewport.width - _EDGE * sheet.unit:
+    if not text or x + width > sheet.viewport.right - _EDGE * sheet.unit:
         return x
     marks.append(Text(text, x, y, size, colour, weight))
     return x + width + 18.0 * sheet.unit
@@ -120,7 +116,7 @@ def _append_hint(sheet: Sheet, marks: list[Mark], x: float, y: float) -> None:
     v, u, size = sheet.viewport, sheet.unit, sheet.font(12.0)
     if not _shows_hint(sheet):
         return
-    right = v.left + v.width - _EDGE * u
+    right = v.right - _EDGE * u
     room, steps = right - x - 6.0 * u, sheet.view.status.hint.split(BETWEEN)
     while len(steps) > 1 and text_width(BETWEEN.join(steps), size) > room:
         steps.pop()
@@ -143,13 +139,13 @@ def _state_colour(sheet: Sheet) -> Colour:
 
 def heading_height(text: str, width: float, unit: float) -> float:
     """Pixels that a heading takes at the top of a viewport."""
-    size = max(round(_HEADING * unit), 7)
+    size = font_size(_HEADING, unit)
     lines = wrapped(text, width - 2 * _EDGE * unit, size, "semibold")
     return len(lines) * line_height(size) + _EDGE * unit + 4.0 * unit
 
 
 def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
-    """The mode's name, or what is expected, top left; and its right and lower end."""
+    """The heading (the mode, or the next task) top left; and its right and lower end."""
     v, u, size = sheet.viewport, sheet.unit, sheet.font(_HEADING)
     left, top = v.left + _EDGE * u, v.top + _EDGE * u
     if not sheet.view.heading:
@@ -165,17 +161,17 @@ def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
 
 
 def _caption(sheet: Sheet, top: float) -> tuple[list[Mark], float]:
-    """What this viewport shows, and facts about it, at its top between hairlines; and their lower end."""
+    """The caption of the viewport and the title of a shape, at the top between hairlines; and their lower end."""
     v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(13.0)
     shape = (sheet.view.shape.title,) if sheet.view.shape is not None else ()
     marks: list[Mark] = []
     if sheet.view.caption:
         thin = max(round(u), 1)
-        edges = np.array([[v.left, v.top, v.width, thin], [v.left, v.top, thin, v.height]], dtype=np.int64)
-        marks.append(Rectangles(edges, theme.line))
+        marks.append(boxes(theme.line, (v.left, v.top, v.width, thin), (v.left, v.top, thin, v.height)))
     elif not shape:
         return [], top
     left, room = v.left + _EDGE * u, v.width - 2 * _EDGE * u
+    paper = faded(theme.background, 0.85)  # keeps lines of a grid out of the text
     number = 0
     for line in (*sheet.view.caption, *shape):
         weight, colour = ("semibold", theme.text) if number == 0 else ("regular", theme.muted)
@@ -185,16 +181,10 @@ def _caption(sheet: Sheet, top: float) -> tuple[list[Mark], float]:
             y = top + 8.0 * u + (number + 0.5) * line_height(size)
             width = text_width(text, size, weight)
             sheet.occupancy.block(left, y - size / 2, width, size)
-            marks.append(_backing(sheet, left, y, width, size))
+            marks.append(Panel(left - 4.0 * u, y - 0.7 * size, width + 8.0 * u, 1.4 * size, 3.0 * u, paper))
             marks.append(Text(text, left, y, size, colour, weight))
             number += 1
     return marks, top + 8.0 * u + number * line_height(size)
-
-
-def _backing(sheet: Sheet, left: float, y: float, width: float, size: int) -> Mark:
-    """Keeps lines of a grid out of a text."""
-    u, paper = sheet.unit, faded(sheet.theme.background, 0.85)
-    return Panel(left - 4.0 * u, y - 0.7 * size, width + 8.0 * u, 1.4 * size, 3.0 * u, paper)
 
 
 def _beside_panels(sheet: Sheet, said: str, size: int, around: float) -> tuple[Viewport, float, list[str]]:
@@ -217,11 +207,10 @@ def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
     pad, icon = 12.0 * u, 18.0 * u
     around = 2 * pad + icon + 10.0 * u
     v, room, lines = _beside_panels(sheet, said, size, around)
-    bottom = min(bottom, v.top + v.height)
+    bottom = min(bottom, v.bottom)
     width = around + max(text_width(line, size) for line in lines)
     most = max(int((bottom - top - 60.0 * u) / line_height(size)), 1)
-    if len(lines) > most:
-        lines = [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), room, size)]
+    lines = at_most(lines, most, room, size)
     height = len(lines) * line_height(size) + 2 * pad - 4.0 * u
     left = v.left + (v.width - width) / 2
     places = [bottom - height - 10.0 * u, top + 10.0 * u]
@@ -261,7 +250,7 @@ def _legend(sheet: Sheet, heading_end: tuple[float, float]) -> tuple[list[Mark],
     """
     v, u, theme, size = sheet.viewport, sheet.unit, sheet.theme, sheet.font(11.0)
     names = [name for name in _MEANINGS if name in sheet.legend] if sheet.view.legend else []
-    right = v.left + v.width - 10.0 * u
+    right = v.right - 10.0 * u
     if not names or v.width < 240.0 * u:
         return [], heading_end[1]
     pad, swatch, gap, height = 9.0 * u, 16.0 * u, 14.0 * u, 24.0 * u
@@ -296,7 +285,7 @@ def _rows(widths: list[float], gap: float, room: float) -> list[tuple[int, int]]
 
 
 def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:
-    """The thing itself, small: a diagram, a yielding rod, a slack cable, an arrow."""
+    """A small sample of what a colour means: a diagram, a yielding rod, a slack cable, an arrow."""
     u, theme = sheet.unit, sheet.theme
     role = {"slack": "ink", "load": "force", "velocity": "ink"}.get(name, name)
     colour = getattr(theme, role)
@@ -307,9 +296,7 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
         return [Strokes(*ends, 3.0 * u, colour)]
     if name == "slack":
         return [Strokes(*dashed(*ends, width / 5), 1.25 * u, colour)]
-    return [
-        Panel(x, y - 5.0 * u, width, 10.0 * u, 1.0 * u, faded(colour, 0.18), colour),
-    ]
+    return [Panel(x, y - 5.0 * u, width, 10.0 * u, 1.0 * u, faded(colour, 0.18), colour)]
 
 
 # --- scale -----------------------------------------------------------------------------------------
@@ -324,7 +311,7 @@ def draw_scale(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     longest = min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale
     decade = 10.0 ** math.floor(math.log10(longest))
     metres = next(decade * step for step in (5.0, 2.0, 1.0) if decade * step <= longest * (1 + 1e-9))
-    notes = _notes(sheet)
+    notes = _displacements(sheet) + sheet.notes
     for length, said in ((metres * sheet.view.camera.scale, [written_length(metres), *notes]), (0.0, notes)):
         ruler = length + 8.0 * u if length else 0.0
         room_beside = v.width - ruler - 2 * _EDGE * u
@@ -338,7 +325,7 @@ def draw_scale(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     x, y = round(left + 6.0 * u), round(top + 6.0 * u)
     return [
         Panel(left, top, width, height, 4.0 * u, faded(sheet.theme.background, 0.8)),
-        *(_ruler(sheet, x, y, round(length)) if length else []),
+        *([_ruler(sheet, x, y, round(length))] if length else []),
         Text(text, x + ruler, y + 4.0 * u, size, sheet.theme.muted),
     ]
 
@@ -347,21 +334,17 @@ def _freest(sheet: Sheet, width: float, height: float, room: tuple[float, float]
     """Left and top of the place along the edges where a box hides least, and how much that is."""
     v, u, (top, bottom) = sheet.viewport, sheet.unit, room
     low, high = bottom - height - 6.0 * u, top + 6.0 * u
-    first, last = v.left + 8.0 * u, v.left + v.width - width - 8.0 * u
+    first, last = v.left + 8.0 * u, v.right - width - 8.0 * u
     places = [(first, low), ((first + last) / 2, low), (last, low), (first, high), (last, high)]
     hidden = [sheet.occupancy.crossed(x, y, width, height) for x, y in places]
     best = hidden.index(min(hidden))
     return *places[best], hidden[best]
 
 
-def _ruler(sheet: Sheet, x: int, y: int, length: int) -> list[Mark]:
+def _ruler(sheet: Sheet, x: int, y: int, length: int) -> Mark:
     thin, tick = max(round(1.5 * sheet.unit), 1), round(7.0 * sheet.unit)
-    boxes = [[x, y + tick, length, thin], [x, y, thin, tick], [x + length - thin, y, thin, tick]]
-    return [Rectangles(np.array(boxes, dtype=np.int64), sheet.theme.muted)]
-
-
-def _notes(sheet: Sheet) -> list[str]:
-    return _displacements(sheet) + sheet.notes
+    ends = (x, y, thin, tick), (x + length - thin, y, thin, tick)
+    return boxes(sheet.theme.muted, (x, y + tick, length, thin), *ends)
 
 
 def _displacements(sheet: Sheet) -> list[str]:

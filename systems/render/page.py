@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from components.view import Page
-from systems.render.marks import Mark, Rectangles, Text
+from systems.render.marks import Mark, Text, boxes
 from systems.render.overlays import BAR, draw_notice, draw_overlays
 from systems.render.sheet import Sheet
-from systems.render.typography import line_height, text_width, wrapped
+from systems.render.typography import font_size, line_height, text_width, wrapped
 
 _EDGE, _GAP, _BLOCKS = 14.0, 16.0, 34.0  # points: to the edges, between columns, between blocks of a table
 _SIZE = 12.0  # points
@@ -24,9 +22,8 @@ def draw_page(sheet: Sheet) -> list[Mark]:
     if page is None or not (page.lines or page.table):
         return overlays
     layout = _Layout(page, v.width, sheet.unit)
-    line = np.array([[v.left, v.top, v.width, max(round(sheet.unit), 1)]], dtype=np.int64)
     y = v.top + _ABOVE * sheet.unit + layout.step / 2
-    marks: list[Mark] = [Rectangles(line, sheet.theme.line)]
+    marks: list[Mark] = [boxes(sheet.theme.line, (v.left, v.top, v.width, max(round(sheet.unit), 1)))]
     for text in layout.lines:
         left = v.left + _EDGE * sheet.unit
         marks.append(Text(text, left, y, layout.size, sheet.theme.text, "semibold"))
@@ -48,7 +45,7 @@ class _Layout:
 
     def __init__(self, page: Page, width: float, unit: float) -> None:
         self.page = page
-        self.size = max(round(_SIZE * unit), 7)
+        self.size = font_size(_SIZE, unit)
         self.step = line_height(self.size)
         room = width - 2 * _EDGE * unit
         self.lines = [line for text in page.lines for line in wrapped(text, room, self.size, "semibold")]

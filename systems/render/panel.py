@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from components.box import WORD, Box
-from components.camera import Camera, Viewport
+from components.camera import Camera, Rectangle, Viewport
 from components.form import Form, Tile
 from components.model import Model
 from components.view import BETWEEN, View, drawn_places
@@ -23,12 +23,12 @@ from systems.render.form_layout import (
     message_lines,
 )
 from systems.render.help import draw_help
-from systems.render.marks import Fills, Mark, Panel, Picture, Rectangles, Text
+from systems.render.marks import Fills, Mark, Panel, Picture, Text, boxes
 from systems.render.sheet import BELOW, measure
 from systems.render.structure import draw_particles, draw_rods
 from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Colour, Theme, faded
-from systems.render.typography import shortened, text_width, wrapped
+from systems.render.typography import at_most, font_size, shortened, text_width, wrapped
 
 _TEXT = 13.0  # points, size of type in a box
 _PAD = 8.0  # points between a box's edge and its text
@@ -40,7 +40,13 @@ def compose_form(form: Form, view: View, theme: Theme) -> Picture:
     """A form as marks in the pixels of the view's viewport. Reads the form, changes nothing."""
     layout = lay_out(form, view.camera.viewport, view.pixel_ratio)
     writer = _Writer(form, view, theme, layout)
-    marks = [*writer.header(), *writer.rows(), *writer.footer(), *writer.scroll_bar(), *draw_help(writer)]
+    marks = [
+        *writer.header(),
+        *writer.rows(),
+        *writer.footer(),
+        *writer.scroll_bar(),
+        *draw_help(view, layout.viewport, theme),
+    ]
     return Picture(layout.viewport, theme.form, marks)
 
 
@@ -50,16 +56,11 @@ class _Writer:
     def __init__(self, form: Form, view: View, theme: Theme, layout: FormLayout) -> None:
         self.form, self.view, self.theme, self.layout, self.unit = form, view, theme, layout, layout.unit
         self.selected, self.chosen = form.selected, form.chosen
-        under = layout.at(view.pointer) if view.pointer is not None else None
-        self.hovered = under
-
-    @property
-    def viewport(self) -> Viewport:
-        return self.layout.viewport
+        self.hovered = layout.at(view.pointer) if view.pointer is not None else None
 
     def font(self, points: float) -> int:
         """A font size in whole pixels."""
-        return max(round(points * self.unit), 7)
+        return font_size(points, self.unit)
 
     # --- what stands in fixed places -------------------------------------------------------------
 
@@ -77,12 +78,12 @@ class _Writer:
     def footer(self) -> list[Mark]:
         """The explanation of the selected box or tile, and the next possible step."""
         layout, size, v = self.layout, self.font(12.0), self.layout.viewport
-        width, bottom = layout.right - layout.left, v.top + v.height
+        width, bottom = layout.right - layout.left, v.bottom
         hint = _steps(self.view.status.hint, width, size)
         marks: list[Mark] = [Text(hint, layout.left, bottom - 13.0 * self.unit, size, self.theme.form_muted)]
         if v.height >= LOW * self.unit:
             lines = wrapped(self._explanation(), width, size)
-            for number, line in enumerate(_at_most(lines, 2, width, size)):
+            for number, line in enumerate(at_most(lines, 2, width, size)):
                 y = bottom - (50.0 - 16.0 * number) * self.unit
                 marks.append(Text(line, layout.left, y, size, self.theme.form_text))
         return marks
@@ -103,8 +104,7 @@ class _Writer:
         length = max(track * layout.shown / layout.count, 16.0 * self.unit)
         last = layout.count - layout.shown
         top = layout.top + (track - length) * min(layout.first / last, 1.0)
-        box = [v.left + v.width - 2 * width, round(top), width, round(length)]
-        return [Rectangles(np.array([box], dtype=np.int64), self.theme.form_muted)]
+        return [boxes(self.theme.form_muted, (v.right - 2 * width, round(top), width, round(length)))]
 
     # --- rows ------------------------------------------------------------------------------------
 
@@ -123,15 +123,14 @@ class _Writer:
 
     def _box(self, place: Place, box: Box) -> list[Mark]:
         u, theme, size = self.unit, self.theme, self.font(11.5)
-        above, below = place.top - 10.0 * u, place.top + place.height + 8.0 * u
+        above, below = place.top - 10.0 * u, place.bottom + 8.0 * u
         marks: list[Mark] = []
         if above > self.layout.header:
             unit_width = text_width(box.unit, size)
             title = shortened(box.title, place.width - unit_width - 8.0 * u, size)
             marks.append(Text(title, place.left, above, size, theme.form_text))
             if box.unit:
-                end = place.left + place.width
-                marks.append(Text(box.unit, end, above, size, theme.form_muted, anchor="right"))
+                marks.append(Text(box.unit, place.right, above, size, theme.form_muted, anchor="right"))
         marks += self._frame(place, box is self.selected, box is self.hovered)
         marks += self._contents(place, box)
         if box.problem:
@@ -159,7 +158,7 @@ class _Writer:
         if box is self.selected:
             before = text_width(box.text[start : box.caret], size)
             x, w = (left, width) if box.marked and box.text else (left + before, max(1.5 * u, 1.0))
-            mark = Place(box, round(x), place.top + 5.0 * u, max(round(w), 1), place.height - 10.0 * u)
+            mark = Rectangle(round(x), place.top + 5.0 * u, max(round(w), 1), place.height - 10.0 * u)
             colour = faded(theme.selected, 0.3) if box.marked and box.text else theme.box_text
             marks.append(_grown(mark, 0.0, 1.0 * u, colour))
         marks.append(Text(visible, left, middle, size, theme.box_text))
@@ -168,14 +167,14 @@ class _Writer:
             x, anchor = (left + room, "right") if box.text else (left + 2.0 * u, "left")
             marks.append(Text(box.note, x, middle, note_size, theme.box_muted, anchor=anchor))
         if box.accepts == WORD:
-            marks.append(_turning(place.left + place.width - 14.0 * u, middle, u, theme.box_muted))
+            marks.append(_turning(place.right - 14.0 * u, middle, u, theme.box_muted))
         return marks
 
     def _tile(self, place: Place, tile: Tile) -> list[Mark]:
         """A picture of the model, its title and its caption."""
         u, theme = self.unit, self.theme
         height = place.height - CAPTION * u
-        card = Place(tile, place.left, place.top, place.width, height)
+        card = Rectangle(place.left, place.top, place.width, height)
         radius = 6.0 * u
         marks: list[Mark] = []
         if tile is self.chosen or tile is self.hovered:
@@ -188,12 +187,12 @@ class _Writer:
         elif tile.symbol:
             middle = card.left + card.width / 2, card.top + card.height / 2
             marks.append(Text(tile.symbol, *middle, self.font(44.0), theme.muted, anchor="centre"))
-        return [*marks, *self._legend(tile, place.left, card.top + height, place.width)]
+        return [*marks, *self._legend(tile, place.left, card.bottom, place.width)]
 
     def _legend(self, tile: Tile, left: float, top: float, width: float) -> list[Mark]:
         """The title in at most two lines, and the caption if one is enough."""
         u, theme, size, small = self.unit, self.theme, self.font(12.5), self.font(11.0)
-        lines = _at_most(wrapped(tile.title, width, size, "semibold"), 2, width, size, "semibold")
+        lines = at_most(wrapped(tile.title, width, size, "semibold"), 2, width, size, "semibold")
         marks: list[Mark] = [
             Text(line, left, top + (13.0 + 15.5 * number) * u, size, theme.form_text, "semibold")
             for number, line in enumerate(lines)
@@ -212,14 +211,7 @@ def _steps(hint: str, width: float, size: int) -> str:
     return shortened(BETWEEN.join(steps), width, size)
 
 
-def _at_most(lines: list[str], most: int, width: float, size: int, weight: str = "regular") -> list[str]:
-    """The first lines, the last of them ending in an ellipsis if there are more."""
-    if len(lines) <= most:
-        return lines
-    return [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), width, size, weight)]
-
-
-def _grown(place: Place, by: float, radius: float, colour: Colour) -> Panel:
+def _grown(place: Rectangle, by: float, radius: float, colour: Colour) -> Panel:
     return Panel(place.left - by, place.top - by, place.width + 2 * by, place.height + 2 * by, radius, colour)
 
 
@@ -244,7 +236,7 @@ def _window(text: str, caret: int, room: float, size: int) -> tuple[int, str]:
 
 def caret_at(place: Place, box: Box, x: float, unit: float) -> int:
     """The place of the caret nearest to the pixel column `x` in a box's text."""
-    size = max(round(_TEXT * unit), 7)
+    size = font_size(_TEXT, unit)
     start, visible = _window(box.text, box.caret, place.width - 2 * _PAD * unit, size)
     left = place.left + _PAD * unit
     ends = [left + text_width(visible[:end], size) for end in range(len(visible) + 1)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from components.form import Form
 from components.model import Model
 from components.toolbar import Toolbar
-from components.view import View, drawn_positions
+from components.view import View
 from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.labels import Placed, place_labels
@@ -14,15 +14,20 @@ from systems.render.overlays import draw_notice, draw_overlays, draw_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
 from systems.render.readouts import draw_readouts
-from systems.render.shape import draw_shape
 from systems.render.sheet import ABOVE, BELOW, measure
-from systems.render.structure import draw_ghost, draw_grid, draw_halos, draw_particles, draw_rods, label_names
+from systems.render.structure import (
+    draw_ghost,
+    draw_grid,
+    draw_halos,
+    draw_particles,
+    draw_rods,
+    draw_shape,
+    label_names,
+)
 from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Theme
 from systems.render.toolbar import compose_toolbar
 from systems.render.tools import draw_flashes, draw_preview
-
-__all__ = ["compose", "drawn_positions"]
 
 
 def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Placed | None = None) -> Picture:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -11,12 +12,12 @@ from components.field import Vector
 from components.view import Plot
 from systems.render.marks import Mark, Panel, Points, Stamps, Strokes, Text
 from systems.render.theme import Colour, Theme
-from systems.render.typography import text_width
+from systems.render.typography import font_size, text_width
 
 _TEXT = 10.0  # points
 _REACH = 30.0  # points from a curve, within which the pointer reads it
 _STEP = 2.0  # points along a curve between drawn samples
-_TICKS = 4  # about so many on each axis
+_TICKS = 4  # on each axis, about
 
 Box = tuple[float, float, float, float]  # left, top, width, height in pixels
 Range = tuple[float, float]
@@ -32,15 +33,17 @@ class _Drawing:
 
     def __init__(self, plot: Plot, box: Box, theme: Theme, unit: float) -> None:
         self.plot, self.theme, self.unit = plot, theme, unit
-        self.size = max(round(_TEXT * unit), 7)
+        self.size = font_size(_TEXT, unit)
         self.x_range = _range([x for _, x, _ in plot.curves])
-        self.y_range = _padded(_range([y for _, _, y in plot.curves]))
+        low, high = _range([y for _, _, y in plot.curves])
+        self.y_range = low - 0.06 * (high - low), high + 0.06 * (high - low)
         self.x_ticks, self.y_ticks = round_ticks(self.x_range), round_ticks(self.y_range)
         left, top, width, height = box
         labels = max((text_width(text, self.size) for _, text in self.y_ticks), default=0.0)
         self.left, self.right = left + labels + 6.0 * unit, left + width - 4.0 * unit
         self.top, self.bottom = top + 16.0 * unit, top + height - 30.0 * unit
-        self.colours = (theme.force, theme.tension, theme.running, theme.halted, theme.yielding, theme.ink)
+        colours = theme.force, theme.tension, theme.running, theme.halted, theme.yielding, theme.ink
+        self.coloured = list(zip(plot.curves, itertools.cycle(colours), strict=False))
 
     def pixels(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> Points:
         """Points of a curve in pixels, shape (n, 2)."""
@@ -52,12 +55,9 @@ class _Drawing:
     def marks(self, pointer: Vector | None) -> list[Mark]:
         """All marks of the plot, in painter's order."""
         marks = [*self._axes(), *self._titles()]
-        for (_, x, y), colour in zip(self.plot.curves, self._cycled(), strict=False):
+        for (_, x, y), colour in self.coloured:
             marks += self._curve(self.pixels(x, y), colour)
         return marks + (self._reading(pointer) if pointer is not None else [])
-
-    def _cycled(self) -> list[Colour]:
-        return [self.colours[i % len(self.colours)] for i in range(len(self.plot.curves))]
 
     def _axes(self) -> list[Mark]:
         marks: list[Mark] = []
@@ -85,10 +85,9 @@ class _Drawing:
             Text(self.plot.y_title, self.left, y, self.size, self.theme.muted),
         ]
         x = self.right
-        for (name, _, _), colour in reversed(list(zip(self.plot.curves, self._cycled(), strict=True))):
-            if len(self.plot.curves) > 1:
-                marks.append(Text(name, x, y, self.size, colour, "semibold", "right"))
-                x -= text_width(name, self.size, "semibold") + 8.0 * self.unit
+        for (name, _, _), colour in reversed(self.coloured if len(self.coloured) > 1 else []):
+            marks.append(Text(name, x, y, self.size, colour, "semibold", "right"))
+            x -= text_width(name, self.size, "semibold") + 8.0 * self.unit
         return marks
 
     def _curve(self, points: Points, colour: Colour) -> list[Mark]:
@@ -120,7 +119,7 @@ class _Drawing:
         if not (self.left <= pointer[0] <= self.right and self.top <= pointer[1] <= self.bottom):
             return None
         found, reach = None, _REACH * self.unit
-        for (_, x, y), colour in zip(self.plot.curves, self._cycled(), strict=True):
+        for (_, x, y), colour in self.coloured:
             points = self.pixels(x, y)
             distance = np.nan_to_num(np.hypot(*(points - pointer).T), nan=math.inf)
             if len(points) and distance.min() <= reach:
@@ -152,11 +151,6 @@ def _range(columns: list[NDArray[np.float64]]) -> Range:
         return low, high
     room = 0.5 * abs(high) or 0.5
     return low - room, high + room
-
-
-def _padded(values: Range) -> Range:
-    room = 0.06 * (values[1] - values[0])
-    return values[0] - room, values[1] + room
 
 
 def round_ticks(values: Range, count: int = _TICKS) -> list[tuple[float, str]]:

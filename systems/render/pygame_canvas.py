@@ -41,9 +41,8 @@ class Canvas:
         if not pygame.font.get_init():
             pygame.font.init()
         self._cache: dict[Any, Any] = {}
-        self._former: dict[
-            Any, Any
-        ] = {}  # the cache before; entries that are used again move to the new one, the others are dropped when that is full
+        # The cache before: entries used again move to the new one, the others are dropped when that is full.
+        self._former: dict[Any, Any] = {}
         self._files = {
             weight: (files("assets") / "fonts" / name).read_bytes() for weight, name in WEIGHTS.items()
         }
@@ -94,7 +93,7 @@ class Canvas:
         return self._raster() if self._raster is not None else None
 
     def _some(self, count: int) -> slice:
-        """All of so many elements, or as many as a sketch has."""
+        """All of `count` elements, or the sample that a sketch shows."""
         if self._raster is None or count <= _MANY:
             return slice(None)
         self.sketch = True
@@ -240,7 +239,7 @@ def _stretched(length: int, short: int) -> NDArray[np.intp]:
 
 
 def _small_rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:
-    """The same drawn as a whole, finely, then reduced; the time this takes grows with its area."""
+    """A box with smooth corners, drawn finely and then reduced, in a time that grows with its area."""
     fine = 4
     large = pygame.Surface((size[0] * fine, size[1] * fine), pygame.SRCALPHA)
     edge = mark.outline or mark.fill

@@ -39,7 +39,7 @@ def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
 
 
 def _heights(sheet: Sheet, readouts: Sequence[Readout], width: float, room: float) -> dict[int, float]:
-    """Pixels that the panels take for which there is room, by their places among all; the newest come first."""
+    """Heights in pixels of the panels for which there is room, by index; the newest panels come first."""
     since = [sheet.view.since.get(readout.title, 0) for readout in readouts]
     newest = sorted(range(len(readouts)), key=since.__getitem__, reverse=True)
     gap, shown = _BETWEEN * sheet.unit, dict[int, float]()
@@ -88,13 +88,13 @@ def _line(sheet: Sheet) -> float:
 
 
 def _height(sheet: Sheet, readout: Readout, plot: float) -> float:
-    """Pixels of a panel with all its rows, and a plot so many points high if it has one."""
+    """Height in pixels of a panel with all rows; plot: points of the plot, if the readout has one."""
     height = (len(readout.rows) + 1) * _line(sheet) + 2 * _PAD * sheet.unit
     return height + (plot * sheet.unit if readout.plot is not None else 0.0)
 
 
 def _width(sheet: Sheet, readout: Readout) -> float:
-    """Pixels that a panel in a corner needs."""
+    """Width in pixels of a panel in a corner."""
     u, size = sheet.unit, sheet.font(12.0)
     names = max((text_width(name, size) for name, _ in readout.rows), default=0.0)
     values = max((text_width(value, size, "semibold") for _, value in readout.rows), default=0.0)

@@ -15,6 +15,7 @@ from systems.render.clip import bounds, clip_rods
 from systems.render.labels import Label, Occupancy, Placed
 from systems.render.marks import Mark, Points
 from systems.render.theme import Colour, Theme
+from systems.render.typography import font_size
 
 Rows = NDArray[np.intp]
 
@@ -63,7 +64,7 @@ class Sheet:
 
     def font(self, points: float) -> int:
         """A font size in whole pixels."""
-        return max(round(points * self.unit), 7)
+        return font_size(points, self.unit)
 
     def sees(self, points: Points) -> NDArray[np.bool_]:
         """For each of `points` (n, 2), whether it lies in the viewport."""
@@ -111,21 +112,9 @@ def measure(model: Model, view: View, theme: Theme, placed: Placed | None = None
     reach, seen = radii + 40.0 * unit, np.ones(len(centres), dtype=bool)
     for axis in (0, 1):
         seen &= (centres[:, axis] > low[axis] - reach) & (centres[:, axis] < high[axis] + reach)
-    return Sheet(
-        model,
-        view,
-        theme,
-        unit,
-        centres,
-        radii,
-        ends,
-        rods,
-        start,
-        end,
-        np.flatnonzero(seen),
-        Occupancy(viewport, unit),
-        {} if placed is None else placed,
-    )
+    particles, occupancy = np.flatnonzero(seen), Occupancy(viewport, unit)
+    placed = {} if placed is None else placed
+    return Sheet(model, view, theme, unit, centres, radii, ends, rods, start, end, particles, occupancy, placed)
 
 
 def typical_length(start: Points, end: Points) -> float:

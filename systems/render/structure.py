@@ -1,4 +1,4 @@
-"""The model itself: grid, ghost of the undeformed structure, rods, particles and names."""
+"""The model itself: grid, ghost of the undeformed structure, rods, particles, names, and a shape over all."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from components.tags import Hovered, Selected
 from systems.render.clip import bounds, clip_segments
-from systems.render.labels import FAINT, STRONG, Key, Label, half_size
+from systems.render.labels import FAINT, STRONG, Label, half_size
 from systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
 from systems.render.sheet import FEW, MANY, Rows, Sheet, typical_length
 from systems.render.symbols import LARGEST_STAMP, RIM, circle, dashed
@@ -19,6 +19,8 @@ _CLOSEST_LINES = 8.0  # points between grid lines
 _CABLE = 0.5  # width of a cable, of that of another rod
 _DASH = 5.0  # points
 _GHOST_FROM = 4.0  # points of displacement
+_SHAPE_WIDTH, _SHAPE_RADIUS, _SHAPE_FROM = 1.5, 2.5, 0.5  # points; drawn from so large a displacement on
+_SHAPE_OPACITY = 0.75
 _LARGEST_FILLED = 10_000.0  # pixels, well within the 16 bits of filled polygons
 
 
@@ -97,11 +99,8 @@ def draw_rods(sheet: Sheet) -> None:
     Cables are thin, and dashed while they are slack.
     """
     rods, theme = sheet.model.rods, sheet.theme
-    yielding = sheet.rods[:0]
-    if (
-        sheet.view.forces_known
-        and (np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)).any()
-    ):
+    yielding, limited = sheet.rods[:0], np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)
+    if sheet.view.forces_known and limited.any():
         yielding = np.flatnonzero(rods.yielding)
     selected = sheet.tagged(Selected, "rods")
     width = float(np.clip(0.12 * typical_length(sheet.start, sheet.end) / sheet.unit, 0.5, 2.5)) * sheet.unit
@@ -175,9 +174,31 @@ def _draw_large_circles(
         sheet.marks.append(Strokes(start, end, rim, ink))
 
 
+def draw_shape(sheet: Sheet) -> None:
+    """The moving part of the structure, displaced by the shape from the state that the shape is about."""
+    shape, position = sheet.view.shape, sheet.model.particles.position
+    if shape is None or shape.displacement.shape != position.shape:
+        return
+    if shape.about is not None:
+        position = position + shape.about * sheet.model.settings.displacement_scale
+    places = sheet.view.camera.to_pixels(position + shape.displacement)
+    colour = faded(sheet.theme.hover, _SHAPE_OPACITY)
+    pixels = np.hypot(*shape.displacement.T) * sheet.view.camera.scale
+    moving = pixels > _SHAPE_FROM * sheet.unit
+    ends = sheet.ends[moving[sheet.ends].any(axis=1)]
+    start, end, _ = clip_segments(places[ends[:, 0]], places[ends[:, 1]], *bounds(sheet.viewport))
+    if len(start):
+        sheet.occupancy.line(start, end, FAINT)
+        sheet.marks.append(Strokes(start, end, _SHAPE_WIDTH * sheet.unit, colour))
+    dots = places[moving & sheet.sees(places)]
+    if len(dots):
+        sheet.marks.append(Discs(dots, np.full(len(dots), _SHAPE_RADIUS * sheet.unit), colour, colour))
+
+
 def label_names(sheet: Sheet) -> None:
     """Names of selected elements, of all where there are few, and of the one that a click would hit."""
     all_of_them = sheet.model.particles.count + sheet.model.rods.count <= FEW
+    backing = faded(sheet.theme.background, 0.86)
     for table, rows in (("particles", sheet.particles), ("rods", sheet.rods)):
         selected = sheet.tagged(Selected, table)
         marked = np.append(selected if len(selected) <= FEW else [], sheet.tagged(Hovered, table)).astype(int)
@@ -185,24 +206,14 @@ def label_names(sheet: Sheet) -> None:
         for index in wanted[:FEW].tolist():
             row = int(rows[index])
             name, is_marked = sheet.model.tables[table].handles[row].name, row in marked
-            half = half_size(name, *_name_font(sheet, is_marked), sheet.unit)
-            beside = (
-                _beside_particle(sheet, row, half) if table == "particles" else _beside_rod(sheet, index, half)
-            )
-            _add_name(sheet, name, beside, is_marked, (f"{table}.name", row))
-
-
-def _name_font(sheet: Sheet, marked: bool) -> tuple[int, str]:
-    return (sheet.font(12.0), "semibold") if marked else (sheet.font(11.0), "regular")
-
-
-def _add_name(sheet: Sheet, name: str, places: list[tuple[float, float]], marked: bool, key: Key) -> None:
-    size, weight = _name_font(sheet, marked)
-    if marked:
-        backing = faded(sheet.theme.background, 0.86)
-        sheet.labels.append(Label(name, places, size, sheet.theme.text, -1e12, weight, backing, key=key))
-    else:
-        sheet.labels.append(Label(name, places, size, sheet.theme.muted, 1e12, weight, lines="avoid", key=key))
+            size, weight = (sheet.font(12.0), "semibold") if is_marked else (sheet.font(11.0), "regular")
+            half, key = half_size(name, size, weight, sheet.unit), (f"{table}.name", row)
+            at = _beside_particle(sheet, row, half) if table == "particles" else _beside_rod(sheet, index, half)
+            if is_marked:
+                label = Label(name, at, size, sheet.theme.text, -1e12, weight, backing, key=key)
+            else:
+                label = Label(name, at, size, sheet.theme.muted, 1e12, weight, lines="avoid", key=key)
+            sheet.labels.append(label)
 
 
 def _beside_particle(sheet: Sheet, row: int, half: tuple[float, float]) -> list[tuple[float, float]]:

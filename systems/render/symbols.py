@@ -10,13 +10,11 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from systems.render.icons import ICONS, STROKE
 from systems.render.marks import Points
 
-Polygon = NDArray[np.float64]
-Parts = list[tuple[str, Polygon]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
+Parts = list[tuple[str, Points]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
 
 ARROW_LENGTH = 20.0  # points
 SUPPORT_DEPTH = 25.0  # points from the particle's rim to the far side of the ground
@@ -37,12 +35,12 @@ def symbol_parts(symbol: str, size: float, unit: float) -> Parts:
 
 
 @cache
-def _icon(symbol: str) -> list[Polygon]:
+def _icon(symbol: str) -> list[Points]:
     """The polygons of an icon in the units of its square; every colour of it needs them."""
     return [polygon for part in ICONS[symbol] for polygon in _icon_part(*part)]
 
 
-def _icon_part(kind: str, numbers: tuple[float, ...]) -> list[Polygon]:
+def _icon_part(kind: str, numbers: tuple[float, ...]) -> list[Points]:
     """A line with round ends and corners, an area, an arc or a disc of an icon as polygons."""
     if kind == "disc":
         return [circle(numbers[2]) + numbers[:2]]
@@ -54,7 +52,7 @@ def _icon_part(kind: str, numbers: tuple[float, ...]) -> list[Polygon]:
     return [points] if kind == "area" else _thick(points)
 
 
-def _thick(points: Polygon) -> list[Polygon]:
+def _thick(points: Points) -> list[Points]:
     """The polygons of a line through points (n, 2)."""
     along = points[1:] - points[:-1]
     across = along[:, ::-1] * [-1.0, 1.0] / np.hypot(*along.T)[:, None] * (STROKE / 2)
@@ -62,24 +60,20 @@ def _thick(points: Polygon) -> list[Polygon]:
     return [*np.stack(sides, axis=1), *(circle(STROKE / 2) + point for point in points)]
 
 
-def circle(radius: float) -> Polygon:
-    """Corners of a circle about the origin, so many that they are not seen."""
+def circle(radius: float) -> Points:
+    """A circle about the origin as a polygon with enough corners to look round."""
     corners = max(12, math.ceil(4.0 * math.sqrt(16.0 * radius)))
     angle = np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
     return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
-def _bar(left: float, top: float, right: float, bottom: float) -> Polygon:
+def _bar(left: float, top: float, right: float, bottom: float) -> Points:
     return np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
 
 
 def _ring(radius: float, unit: float) -> Parts:
     """An open circle whose rim lies inside the radius."""
     return [("ink", circle(radius)), ("hollow", circle(max(radius - RIM * unit, 0.0)))]
-
-
-def _disc(radius: float, unit: float) -> Parts:
-    return [("ink", circle(radius))]
 
 
 def _arrow(length: float, unit: float) -> Parts:
@@ -120,7 +114,7 @@ def _pinned(size: float, unit: float) -> Parts:
 
 _SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
     "ring": _ring,
-    "disc": _disc,
+    "disc": lambda radius, unit: [("ink", circle(radius))],
     "arrow": _arrow,
     "roller": _roller,
     "pinned": _pinned,

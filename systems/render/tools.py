@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,14 +51,6 @@ def _rod(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
     return [*_lines(sheet, np.array([start, end]), colour), dot]
 
 
-def _force(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
-    return _arrow(sheet, start, end, sheet.theme.force)
-
-
-def _velocity(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
-    return _arrow(sheet, start, end, sheet.theme.ink)
-
-
 def _pull(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
     """A spring to the pointer: straight at both ends, coils between."""
     colour, u = sheet.theme.force, sheet.unit
@@ -73,15 +66,12 @@ def _pull(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
     return [*_lines(sheet, start + share[:, None] * along + side[:, None] * normal, colour, 1.5), hook]
 
 
-def _support(symbol: str) -> Drawn:
+def _support(symbol: str, sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
     """A support's symbol, turned to the side to which it was dragged."""
-
-    def draw(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
-        theme, side = sheet.theme, int(np.argmax(DIRECTIONS @ (end - start)))
-        size = SUPPORT_DEPTH * sheet.unit
-        return [Stamps(symbol, start[None], size, sheet.unit, theme.hover, theme.hollow, side)]
-
-    return draw
+    theme, side = sheet.theme, int(np.argmax(DIRECTIONS @ (end - start)))
+    return [
+        Stamps(symbol, start[None], SUPPORT_DEPTH * sheet.unit, sheet.unit, theme.hover, theme.hollow, side)
+    ]
 
 
 def _box(sheet: Sheet, start: Pixel, end: Pixel) -> list[Mark]:
@@ -116,8 +106,8 @@ def _label(sheet: Sheet, preview: Preview, at: Pixel) -> list[Mark]:
     u, v, theme = sheet.unit, sheet.viewport, sheet.theme
     text, size = preview.label.replace("-", "−"), sheet.font(13.0)
     width, height = text_width(text, size, "semibold") + 14.0 * u, line_height(size) + 6.0 * u
-    left = float(np.clip(at[0] + 14.0 * u, v.left, max(v.left + v.width - width, v.left)))
-    top = float(np.clip(at[1] - 14.0 * u - height, v.top, max(v.top + v.height - height, v.top)))
+    left = float(np.clip(at[0] + 14.0 * u, v.left, max(v.right - width, v.left)))
+    top = float(np.clip(at[1] - 14.0 * u - height, v.top, max(v.bottom - height, v.top)))
     return [
         Panel(left, top, width, height, 5.0 * u, faded(theme.panel, 0.94), theme.line),
         Text(text, left + 7.0 * u, top + height / 2, size, theme.text, "semibold"),
@@ -126,10 +116,10 @@ def _label(sheet: Sheet, preview: Preview, at: Pixel) -> list[Mark]:
 
 _KINDS: dict[str, Drawn] = {
     "rod": _rod,
-    "force": _force,
-    "velocity": _velocity,
-    "roller": _support("roller"),
-    "pinned": _support("pinned"),
+    "force": lambda sheet, start, end: _arrow(sheet, start, end, sheet.theme.force),
+    "velocity": lambda sheet, start, end: _arrow(sheet, start, end, sheet.theme.ink),
+    "roller": partial(_support, "roller"),
+    "pinned": partial(_support, "pinned"),
     "pull": _pull,
     "box": _box,
 }

@@ -6,7 +6,9 @@ import json
 import math
 from functools import cache, lru_cache
 from importlib.resources import files
-from typing import Any
+from typing import Any, TypeVar
+
+T = TypeVar("T")
 
 WEIGHTS = {"regular": "Inter-Regular.otf", "semibold": "Inter-SemiBold.otf"}
 
@@ -34,6 +36,11 @@ def _character_width(character: str, size: int, weight: str) -> int:
     em = float(metrics["units_per_em"])
     advance = float(metrics["advance"].get(character, 0.7 * em))
     return math.floor(advance * size / em + 0.5)
+
+
+def font_size(points: float, unit: float) -> int:
+    """A font size in whole pixels, of which each point takes `unit`."""
+    return max(round(points * unit), 7)
 
 
 def capital_height(size: int) -> float:
@@ -72,3 +79,15 @@ def wrapped(text: str, width: float, size: int, weight: str = "regular") -> list
                 line = longer
         lines.append(line)
     return [shortened(line, width, size, weight) for line in lines]
+
+
+def in_rows(items: list[T], each: int) -> list[list[T]]:
+    """Items in rows of `each`; the last row may be shorter."""
+    return [items[first : first + each] for first in range(0, len(items), each)]
+
+
+def at_most(lines: list[str], most: int, width: float, size: int, weight: str = "regular") -> list[str]:
+    """The first lines, the last of them ending in an ellipsis if there are more."""
+    if len(lines) <= most:
+        return lines
+    return [*lines[: most - 1], shortened(" ".join(lines[most - 1 :]), width, size, weight)]

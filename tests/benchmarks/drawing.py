@@ -18,7 +18,7 @@ from game.app import App
 from systems.render.labels import Placed
 from systems.render.picture import compose
 from systems.render.pygame_canvas import Canvas
-from systems.render.raster_program import load_raster
+from systems.render.raster import load_raster
 from systems.render.theme import load_theme
 from tests.benchmarks.models import mesh
 

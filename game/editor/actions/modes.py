@@ -96,9 +96,7 @@ def _form_scene(context: Context) -> FormScene:
 
 
 def _on_form(name: str, act: Callable[[FormScene, Context], object]) -> None:
-    @action(name)
-    def _act(context: Context, pixel: Vector) -> None:
-        act(_form_scene(context), context)
+    action(name)(lambda context, pixel: act(_form_scene(context), context))
 
 
 _on_form("accept", lambda scene, context: scene.accept(context))
@@ -121,8 +119,4 @@ _on_form("scroll up", lambda scene, context: scene.scroll(context, -1))
 _on_form("scroll down", lambda scene, context: scene.scroll(context, 1))
 _on_form("page up", lambda scene, context: scene.page(context, -1))
 _on_form("page down", lambda scene, context: scene.page(context, 1))
-
-
-@action("click form")
-def _click_form(context: Context, pixel: Vector) -> None:
-    _form_scene(context).click(context, pixel)
+action("click form")(lambda context, pixel: _form_scene(context).click(context, pixel))

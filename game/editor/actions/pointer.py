@@ -10,8 +10,7 @@ from game.editor.context import ACTIONS, Context, action
 from game.editor.gestures.drawing import TOOLS, Drawing, DrawSupport
 from game.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
 from systems.edit import Refusal
-from systems.edit.picking import pick, pick_line, pick_particle, pick_point
-from systems.edit.selecting import everything
+from systems.edit.picking import everything, pick, pick_line, pick_particle, pick_point
 
 
 @action("drag", while_drawing=True)

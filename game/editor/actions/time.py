@@ -58,6 +58,7 @@ action("step")(lambda context, pixel: _step(context, 1))
 action("step back")(lambda context, pixel: _step(context, -1))
 action("faster", while_drawing=True)(lambda context, pixel: context.clock.faster(PACE_STEP))
 action("slower", while_drawing=True)(lambda context, pixel: context.clock.faster(1.0 / PACE_STEP))
+action("natural pace", while_drawing=True)(lambda context, pixel: setattr(context.clock, "factor", 1.0))
 
 
 @action("restart")
@@ -66,11 +67,6 @@ def _restart(context: Context, pixel: Vector) -> None:
         raise Refusal("This is the beginning: no time has passed. Ctrl+Z takes back edits and settling.")
     context.restart()
     context.notice = "Back at the beginning; all edits are kept."
-
-
-@action("natural pace", while_drawing=True)
-def _natural_pace(context: Context, pixel: Vector) -> None:
-    context.clock.factor = 1.0
 
 
 @action("undo")

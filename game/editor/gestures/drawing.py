@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from components.field import Vector
 from components.handle import Handle
+from components.model import Model
 from components.particle import Particle
 from components.view import Preview, drawn_positions
 from game.editor.context import Context, Gesture
@@ -102,19 +103,16 @@ class DrawArrow(DrawFromParticle):
 
     title: ClassVar[str]
     unit: ClassVar[str]
+    usual: ClassVar[staticmethod[[Model], float]]  # the size that an arrow of comfortable length stands for
 
     def __init__(self, context: Context, particle: Particle) -> None:
         super().__init__(context, particle)
         key = self.tool[0].upper()
         self.hint = f"{self.tool} of {particle.name}: {key} or click where its arrow ends     Esc cancel"
 
-    def usual(self, context: Context) -> float:
-        """The size that an arrow of comfortable length stands for."""
-        raise NotImplementedError
-
     def value(self, context: Context, pixel: Vector) -> Vector:
         """The vector that the arrow to a pixel stands for."""
-        return arrow_value(context.view, self.start(context), pixel, self.usual(context))
+        return arrow_value(context.view, self.start(context), pixel, self.usual(context.model))
 
     def shown(self, value: Vector) -> str:
         """The text of a vector."""
@@ -127,31 +125,25 @@ class DrawArrow(DrawFromParticle):
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         value, start = self.value(context, pixel), self.start(context)
-        end = arrow_end(context.view, start, value, self.usual(context))
+        end = arrow_end(context.view, start, value, self.usual(context.model))
         return Preview(self.tool, start, end, self.shown(value))
 
 
 class DrawForce(DrawArrow):
     """The constant force on a particle."""
 
-    tool, title, unit = "force", "Force on", "kN"
-
-    def usual(self, context: Context) -> float:
-        return usual_force(context.model)
+    tool, title, unit, usual = "force", "Force on", "kN", staticmethod(usual_force)
 
 
 class DrawVelocity(DrawArrow):
     """The velocity of a particle; zero where it is held."""
 
-    tool, title, unit = "velocity", "Velocity of", "m/s"
+    tool, title, unit, usual = "velocity", "Velocity of", "m/s", staticmethod(usual_speed)
 
     def __init__(self, context: Context, particle: Particle) -> None:
         if all(particle.fixed):
             raise Refusal(f"{particle.name} is held in both directions and cannot move; C frees it.")
         super().__init__(context, particle)
-
-    def usual(self, context: Context) -> float:
-        return usual_speed(context.model)
 
     def value(self, context: Context, pixel: Vector) -> Vector:
         x, y = super().value(context, pixel)

@@ -13,10 +13,9 @@ from components.view import Preview, drawn_positions
 from game.editor.context import Context, Gesture
 from systems.edit import Refusal
 from systems.edit.moving import Movable
-from systems.edit.picking import Grip
+from systems.edit.picking import Grip, inside
 from systems.edit.placing import check_free, snapped, snapped_to_points
 from systems.edit.pull import hand_on
-from systems.edit.selecting import inside
 
 
 class _Placing(Gesture):
@@ -44,9 +43,7 @@ class Move(_Placing):
             context.select(hit)
         self._movable = Movable(context.model, chosen)
         self._start = self._movable.positions
-        self._leader = self._movable.index(
-            hit
-        )  # index of the element under the pointer, which keeps to the grid
+        self._leader = self._movable.index(hit)  # the row of the element under the pointer keeps to the grid
         self._grip = np.subtract(self._start[self._leader], context.view.camera.to_model(pixel))
 
     def move(self, context: Context, pixel: Vector) -> None:
@@ -119,7 +116,7 @@ class PullParticle(Gesture):
             context.timeline.hold(hand.at(anchor))
 
     def drop(self, context: Context, pixel: Vector) -> None:
-        context.timeline.hold(None)
+        self.cancel(context)
 
     def cancel(self, context: Context) -> None:
         context.timeline.hold(None)

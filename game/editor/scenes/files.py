@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Sequence
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from components.box import FILE_NAME, Box
 from components.form import Form, Tile
@@ -33,14 +33,14 @@ class FileScene(FormScene):
         super().exit(context)
         self._unread = []
 
-    def new_form(self, heading: str, name: str, tiles: Iterable[dict[str, Any]]) -> Form:
-        """A form with a box for the name and these tiles, one mapping of Fields for each."""
+    def new_form(self, heading: str, name: str, offers: Sequence[Offer]) -> Form:
+        """A form with a box for the name and a tile for each offer, its picture to be read later."""
         form = Form(heading)
         form.create(Box, 1, title="name", target="name", accepts=FILE_NAME, text=name, opened=name)
-        rows = list(tiles)
-        if rows:
-            form.create(Tile, len(rows), **{key: [row[key] for row in rows] for key in rows[0]})
-        self._unread = [tile for tile in form.tiles if tile.picture is None and not tile.symbol]
+        if offers:
+            columns = map(list, zip(*offers, strict=True))
+            form.create(Tile, len(offers), **dict(zip(Offer._fields, columns, strict=True)))
+        self._unread = [tile for tile in form.tiles if not tile.symbol]
         return form
 
     @property
@@ -126,32 +126,21 @@ class Pictures(System):
             scene.read_pictures(frame.session)
 
 
-def tile(
-    section: str,
-    title: str,
-    caption: str,
-    file: str,
-    source: Any,
-    explanation: str = "",
-    picture: Any = None,
-    symbol: str = "",
-) -> dict[str, Any]:
-    """The Fields of a tile."""
-    return {
-        "section": section,
-        "title": title,
-        "caption": caption,
-        "file": file,
-        "source": source,
-        "explanation": explanation,
-        "picture": picture,
-        "symbol": symbol,
-    }
+class Offer(NamedTuple):
+    """The Fields of a tile, see components/form.py."""
+
+    section: str
+    title: str
+    caption: str
+    file: str
+    source: Any
+    explanation: str = ""
+    symbol: str = ""
 
 
-def saved_tiles() -> list[dict[str, Any]]:
-    """Tiles of the person's own models, the newest first, their pictures to be read later."""
-    return [tile(SAVED, p.stem, library.written_age(p), p.stem, p) for p in library.saved()]
+def saved_models() -> list[Offer]:
+    """The person's own models, the newest first."""
+    return [Offer(SAVED, p.stem, library.written_age(p), p.stem, p) for p in library.saved()]
 
 
 @cache

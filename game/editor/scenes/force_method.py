@@ -67,12 +67,8 @@ class ForceMethod(Scene):
         self.work(context, "Solving the structure", partial(self._begin, context))
 
     def _begin(self, context: Context) -> None:
-        from game.force_method.guide import (  # scipy is imported only here
-            Guide,
-            Mechanism,
-            base_structure,
-            view_like,
-        )
+        # Here only, since they import scipy.
+        from game.force_method.guide import Guide, Mechanism, base_structure, view_like
         from systems.statics.force_method import ForceMethodError
 
         try:
@@ -164,38 +160,28 @@ class ForceMethod(Scene):
         if guide is None:
             return Page()
         if guide.part != self._page_of:
-            self._page, self._page_of, self._first = (
-                Page(words.working(guide), words.table(guide)),
-                guide.part,
-                0,
-            )
-        return Page(self._page.lines, self._page.table, self._first)
+            self._page = Page(words.working(guide), words.table(guide))
+            self._page_of, self._first = guide.part, 0
+        return replace(self._page, first=self._first)
 
     def _sets(self, middle: Viewport, ratio: float) -> list[tuple[Model, View]]:
         captions = words.captions(self.shown_guide) if self.shown_guide else [("",)] * 3
         there: list[Set | Mechanism] = [*self.shown_guide.shown] if self.shown_guide else self._moving()
         places = [(index, _third(middle, index)) for index in range(3)]
         if there and not _readable(places[0][1], ratio):
-            places = [(0 if self._picks else len(there) - 1, middle)]
+            picks = self.shown_guide is not None and self.shown_guide.part == 2  # from set 1
+            places = [(0 if picks else len(there) - 1, middle)]
+        stages = [(one.model, one.view) for one in there]
+        stages += [(self._blank, view) for view in self._places[len(there) :]]
         shown = []
         for index, viewport in places:
-            caption = captions[index]
-            if index >= len(there):
-                view = self._places[index]
+            model, view = stages[index]
+            if view.camera.viewport != viewport or view.pixel_ratio != ratio:
                 _place(view, viewport, ratio)
-            else:
-                view = there[index].view
-                if view.camera.viewport != viewport or view.pixel_ratio != ratio:
-                    _place(view, viewport, ratio)
-                    _fit(there[index].model, view)
-            view.caption = caption
-            shown.append((there[index].model if index < len(there) else self._blank, view))
+                _fit(model, view)
+            view.caption = captions[index]
+            shown.append((model, view))
         return shown
-
-    @property
-    def _picks(self) -> bool:
-        """True while the unknown is picked from set 1."""
-        return self.shown_guide is not None and self.shown_guide.part == 2
 
     # --- looking closer: all sets alike ----------------------------------------------------------------
 
@@ -206,17 +192,14 @@ class ForceMethod(Scene):
     def zoom(self, context: Context, factor: float, pixel: Vector) -> None:
         foot = self._foot.camera.viewport
         if foot.contains(pixel):
-            self._scroll(context, 1 if factor < 1.0 else -1)
+            last = max(len(self._page.table) - 2, 0)
+            self._first = min(max(self._first + (1 if factor < 1.0 else -1), 0), last)
             return
         cameras = self.cameras(context)
         under = next((c.viewport for c in cameras if c.viewport.contains(pixel)), cameras[0].viewport)
         for camera in cameras:
             v = camera.viewport
             camera.zoom(factor, (pixel[0] - under.left + v.left, pixel[1] - under.top + v.top))
-
-    def _scroll(self, context: Context, rows: int) -> None:
-        last = max(len(self._page.table) - 2, 0)
-        self._first = min(max(self._first + rows, 0), last)
 
     def pan(self, context: Context, pixels: Vector) -> None:
         for camera in self.cameras(context):

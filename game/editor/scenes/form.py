@@ -11,7 +11,6 @@ from components.camera import Camera, Viewport
 from components.field import Vector
 from components.form import Form, Tile
 from components.suggestions import missing
-from components.view import View
 from game.editor.context import Context, Scene, Stage
 from systems.forms import typing
 from systems.render.form_layout import FormLayout, lay_out, row_of
@@ -28,7 +27,7 @@ class FormScene(Scene):
 
     @property
     def message(self) -> str:
-        """What its heading says, and why the text of a box is refused."""
+        """The message of the heading, and why the text of a box is refused."""
         return " ".join(filter(None, [self.form.heading.message, *(box.problem for box in self.form.boxes)]))
 
     def enter(self, context: Context) -> None:
@@ -81,11 +80,7 @@ class FormScene(Scene):
     # --- pictures ----------------------------------------------------------------------------------
 
     def stages(self, context: Context) -> Sequence[Stage]:
-        return [(self.form, self.form_view(context))]
-
-    def form_view(self, context: Context) -> View:
-        """How the form is shown."""
-        return replace(context.view, camera=Camera(viewport=self.viewport(context)))
+        return [(self.form, replace(context.view, camera=Camera(viewport=self.viewport(context))))]
 
     def layout(self, context: Context) -> FormLayout:
         """Where its boxes and tiles are now."""

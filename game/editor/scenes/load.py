@@ -1,4 +1,4 @@
-"""Load: opening a saved model, an example, or an empty one; also what the program starts with."""
+"""Load: opening a saved model, an example or an empty one; the program starts with it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from game.documents import library, models
 from game.documents.autosave import recovered_name
 from game.documents.open_documents import ModelFile
 from game.editor.context import Context
-from game.editor.scenes.files import FileScene, saved_tiles, tile
+from game.editor.scenes.files import FileScene, Offer, saved_models
 from game.scripts.script import Script, lessons
 
 WELCOME = "Welcome to Pinjoint. What would you like to begin with?"
@@ -38,18 +38,11 @@ class Load(FileScene):
 
     def make_form(self, context: Context) -> Form:
         self._asked = False
-        saved = saved_tiles()
-        new = tile(
-            saved[0]["section"] if saved else LESSONS,
-            NEW,
-            "draw your own",
-            "",
-            None,
-            "An empty plane to draw on.",
-            symbol="+",
-        )
-        tiles = [*_left_behind(context), new, *saved, *_lessons(), *_examples()]
-        form = self.new_form(WELCOME if self.welcome else "Load", "", tiles)
+        saved = saved_models()
+        section = saved[0].section if saved else LESSONS
+        new = Offer(section, NEW, "draw your own", "", None, "An empty plane to draw on.", "+")
+        offers = [*_left_behind(context), new, *saved, *_lessons(), *_examples()]
+        form = self.new_form(WELCOME if self.welcome else "Load", "", offers)
         form.boxes[0].note = "type to search, or click a picture"
         return form
 
@@ -58,10 +51,6 @@ class Load(FileScene):
         self.welcome = False
 
     def choose(self, context: Context, tile: Tile) -> None:
-        """Open what was clicked."""
-        self._take(context, tile)
-
-    def _take(self, context: Context, tile: Tile) -> None:
         """Open the source of a tile; the tile "Discard", chosen twice, discards the recovered work."""
         if tile.source is not DISCARD:
             self._open(context, tile.source)
@@ -80,13 +69,13 @@ class Load(FileScene):
         name, chosen = self.box.text.strip(), self.form.chosen
         left = [tile for tile in self.form.tiles if not tile.hidden]
         if chosen is not None:
-            self._take(context, chosen)
+            self.choose(context, chosen)
         elif not name:
             self.say("Type a name, or choose a picture with the arrow keys.")
         elif (source := library.find(name)) is not None:
             self._open(context, source)
         elif len(left) == 1:
-            self._take(context, left[0])
+            self.choose(context, left[0])
         else:
             nearest = library.nearest(name)
             hint = f" Did you mean '{nearest}'?" if nearest else ""
@@ -123,27 +112,25 @@ class Load(FileScene):
         return f"Click a picture     {more}Arrows choose     Return open     Type to search     Esc back"
 
 
-def _left_behind(context: Context) -> list[dict[str, Any]]:
+def _left_behind(context: Context) -> list[Offer]:
     """Unsaved work that a crash left behind."""
     files = context.autosave.left() if context.autosave is not None else []
-    tiles = [
-        tile(LEFT_BEHIND, recovered_name(path) or "Untitled", library.written_age(path), "", path)
+    offers = [
+        Offer(LEFT_BEHIND, recovered_name(path) or "Untitled", library.written_age(path), "", path)
         for path in files
     ]
-    discard = tile(LEFT_BEHIND, "Discard", "what was recovered", "", DISCARD, symbol="×")
-    return [*tiles, discard] if tiles else []
+    discard = Offer(LEFT_BEHIND, "Discard", "what was recovered", "", DISCARD, symbol="×")
+    return [*offers, discard] if offers else []
 
 
-def _lessons() -> list[dict[str, Any]]:
+def _lessons() -> list[Offer]:
     scripts = [(name, Script(name)) for name in lessons()]
-    return [
-        tile(LESSONS, s.title, "a lesson to watch", name, s, s.description, symbol="▶") for name, s in scripts
-    ]
+    return [Offer(LESSONS, s.title, "a lesson to watch", name, s, s.description, "▶") for name, s in scripts]
 
 
-def _examples() -> list[dict[str, Any]]:
-    """Tiles of the bundled models, their pictures to be read later."""
+def _examples() -> list[Offer]:
+    """The bundled models."""
     names = sorted(models.bundled(), key=lambda name: models.header_of(name).title)
     names.sort(key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
     shown = [(name, models.header_of(name)) for name in names]
-    return [tile(EXAMPLES, told.title or name, name, name, name, told.description) for name, told in shown]
+    return [Offer(EXAMPLES, told.title or name, name, name, name, told.description) for name, told in shown]

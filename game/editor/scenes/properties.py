@@ -12,8 +12,6 @@ from components.field import Vector
 from components.form import Form
 from components.handle import Handle
 from components.model import Model
-from components.particle import Particle
-from components.rod import Rod
 from components.toolbar import Toolbar
 from components.view import View, drawn_positions
 from game.editor.context import Context, Stage
@@ -109,13 +107,9 @@ class Properties(FormScene):
 
 def _is_right(context: Context, selected: Sequence[Handle]) -> bool:
     """True if the selected elements are in the right half of the picture."""
-    model, camera = context.model, context.view.camera
-    entities: dict[type, list[int]] = {Particle: [], Rod: []}
+    model, camera, rows_by_table = context.model, context.view.camera, context.model.rows_of(selected)
     places = [getattr(handle, point) for handle in selected for point in handle.points]
-    for handle in selected:
-        if type(handle) in entities:
-            entities[type(handle)].append(handle.entity)
-    ends = model.rods.between[model.row_of_entity[entities[Rod]]].ravel()
-    rows = np.concatenate([model.row_of_entity[entities[Particle]], ends.astype(np.intp)])
+    ends = model.rods.between[rows_by_table["rods"]].ravel()
+    rows = np.concatenate([rows_by_table["particles"], ends.astype(np.intp)])
     points = np.concatenate([drawn_positions(model)[rows], np.reshape(places, (-1, 2))])
     return len(points) > 0 and bool(camera.to_pixels(points)[:, 0].mean() > camera.middle[0])

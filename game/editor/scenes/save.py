@@ -5,7 +5,7 @@ from __future__ import annotations
 from components.form import Form, Tile
 from game.documents import library, models
 from game.editor.context import Context
-from game.editor.scenes.files import FileScene, saved_tiles
+from game.editor.scenes.files import FileScene, saved_models
 from systems.forms import typing
 
 
@@ -21,7 +21,7 @@ class Save(FileScene):
 
     def make_form(self, context: Context) -> Form:
         self._confirmed = ""
-        form = self.new_form("Save", context.file.name, saved_tiles())
+        form = self.new_form("Save", context.file.name, saved_models())
         form.boxes[0].explanation = f"A file in {library.models_folder()}"
         return form
 

@@ -16,7 +16,7 @@ from components.field import Vector
 from systems.render.coverage import stroke_coverage
 from systems.render.marks import Bars, Discs, Mark, Picture, Points, Strokes
 from systems.render.pygame_canvas import Canvas
-from systems.render.raster_program import load_raster
+from systems.render.raster import load_raster
 
 BLACK, WHITE = (0, 0, 0, 255), (255, 255, 255, 255)
 SIZE = 40

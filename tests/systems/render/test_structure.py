@@ -13,10 +13,10 @@ from components.grid import Grid
 from components.model import Model
 from components.particle import Particle
 from components.tags import Hovered, Selected
-from components.view import View
+from components.view import View, drawn_positions
 from components.world import Derivation
 from systems.render.marks import Discs, Rectangles, Stamps, Strokes
-from systems.render.picture import compose, drawn_positions
+from systems.render.picture import compose
 from systems.render.supports import DOWN, LEFT, NO_SUPPORT, RIGHT, UP, freest_sides
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
 
