@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, cast
 
-from components.box import Box, object_field, text_field
+from components.box import Box
 from components.field import Field
 from components.handle import Handle
 from components.table import Table
@@ -19,11 +19,9 @@ class Heading(Handle):
     __slots__ = ()
     table, noun, single = "heading", "heading", True
 
-    text: Field[str] = text_field("text", "Such as the element's name.")
-    message: Field[str] = text_field("message", "What is wrong or asked.")
-    first: Field[int] = Field(
-        dtype=int, default=0, minimum=0, title="first", doc="The first row shown; the others are scrolled away."
-    )
+    text: Field[str] = Field(dtype=str, doc="Such as the element's name.")
+    message: Field[str] = Field(dtype=str, doc="What is wrong or asked.")
+    first: Field[int] = Field(dtype=int, minimum=0, doc="The first row shown; the others are scrolled away.")
 
 
 class Tile(Handle):
@@ -32,15 +30,15 @@ class Tile(Handle):
     __slots__ = ()
     table, noun = "tiles", "tile"
 
-    section: Field[str] = text_field("section", "The heading that it stands under.")
-    title: Field[str] = text_field("title", "Shown below the picture.")
-    caption: Field[str] = text_field("caption", "Shown below the title.")
-    file: Field[str] = text_field("file", "The name that a person types.")
-    explanation: Field[str] = text_field("explanation", "Shown while chosen.")
-    source: Field[Any] = object_field("source", "What it opens: a path, a name or a document.")
-    picture: Field[Any] = object_field("picture", "The model to draw; None: not read yet.")
-    symbol: Field[str] = text_field("symbol", "A sign in place of a picture.")
-    hidden: Field[bool] = Field(title="hidden", doc="Filtered out.", default=False, dtype=bool)
+    section: Field[str] = Field(dtype=str, doc="The heading that it stands under.")
+    title: Field[str] = Field(dtype=str, doc="Shown below the picture.")
+    caption: Field[str] = Field(dtype=str, doc="Shown below the title.")
+    file: Field[str] = Field(dtype=str, doc="The name that a person types.")
+    explanation: Field[str] = Field(dtype=str, doc="Shown while chosen.")
+    source: Field[Any] = Field(dtype=object, doc="What it opens: a path, a name or a document.")
+    picture: Field[Any] = Field(dtype=object, doc="The model to draw; None: not read yet.")
+    symbol: Field[str] = Field(dtype=str, doc="A sign in place of a picture.")
+    hidden: Field[bool] = Field(doc="Filtered out.", dtype=bool)
 
 
 class Form(World):
