@@ -59,7 +59,8 @@ class Handle:
     @property
     def world(self) -> Store:
         """The world it belongs to. Raises LookupError if that is gone."""
-        return self._world() or refuse_orphans(f"this {self.noun}")
+        world = self._world()
+        return world if world is not None else refuse_orphans(f"this {self.noun}")
 
     @property
     def row(self) -> int:

@@ -27,6 +27,9 @@ class Model(World):
     foreign_kinds: the elements of kinds of mods that are not loaded, as in ADDED, kept likewise.
     """
 
+    # With more than 29 attributes in its dict, every access to a world would take longer.
+    __slots__ = ("clock", "environment", "grids", "loads", "particles", "rods", "settings")
+
     def __init__(self) -> None:
         super().__init__((*KINDS, *ADDED.values()), DERIVATIONS)
         self.particles: Table[Particle] = self.tables["particles"]
