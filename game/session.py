@@ -139,7 +139,7 @@ class Session(Context):
             self.fault
             or self.scenes.active.message
             or (simulation.message if simulation.armed else "")  # else it is about what was before an edit
-            or simulation.warning
+            or simulation.step_size.warning
             or simulation.note
             or self.notice
         )
@@ -198,11 +198,11 @@ class Session(Context):
                 self.schedule.run(Phase.EVENTS, frame, headless=True)
             return EVENT_INTERVAL - beyond
 
-        simulation.watchers.append(follow)
+        simulation.before_steps.append(follow)
         try:
             yield
         finally:
-            simulation.watchers.remove(follow)
+            simulation.before_steps.remove(follow)
         self.schedule.run(Phase.EVENTS, frame, headless=True)
 
     def compare(self) -> Comparison:

@@ -100,13 +100,13 @@ class Performance:
         self._wait_for_program()
         self._running_since = None
         simulation = session.simulation
-        simulation.watchers.append(self._watch_time)
+        simulation.before_steps.append(self._watch_time)
         try:
             if set(entry) == {"type"}:  # letter by letter
                 return [f for letter in entry["type"] for f in self._typed(number, letter)]
             return play_line(self._script, number, entry, session)
         finally:
-            simulation.watchers.remove(self._watch_time)
+            simulation.before_steps.remove(self._watch_time)
 
     def _typed(self, number: int, letter: str) -> list[Failure]:
         failures = play_line(self._script, number, {"type": letter}, self._screen.session)
@@ -182,9 +182,9 @@ class Performance:
             self._running_since, self._natural = time.monotonic(), self._screen.session.pace
         if self._skipping:
             return REVIEW_INTERVAL
-        simulation.watchers.remove(self._watch_time)  # the picture is of the run as it is
+        simulation.before_steps.remove(self._watch_time)  # the picture is of the run as it is
         self._frame()
-        simulation.watchers.append(self._watch_time)
+        simulation.before_steps.append(self._watch_time)
         shown = time.monotonic() - self._running_since
         faster = 2.0 ** max(shown - PATIENCE * self._pace, 0.0)
         step = simulation.model.clock.step_size

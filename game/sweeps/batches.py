@@ -142,7 +142,7 @@ class Batches:
             with suppress(*refused), self._runner.taken_back():
                 self._runner.override(self._plan.overrides_of(number))
                 simulation = self._runner.simulation
-                if not simulation.collides:
+                if not any(system.impulsive for system in simulation.plan):
                     self._programs[key] = BatchProgram(
                         simulation.step_program, self._threads, varied_arrays=self._loads_vary
                     )

@@ -94,7 +94,7 @@ def _by_steps(simulation: Simulation, program: Program, target: float, size: flo
     """Run to a time by equal steps, at most half as long as `size`; returns as _pieces does."""
     clock = program.model.clock
     steps = math.ceil(2.0 * (target - clock.time) / size * (1.0 - 1e-9))
-    simulation.begin_step_size((target - clock.time) / steps)
+    simulation.step_size.begin((target - clock.time) / steps)
     if program.integrator.controlled:
         return _pieces(program, target)
     largest, piece = 0.0, -(-steps // PIECES)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -14,18 +14,18 @@ from components.model import ADDED, Model
 from components.numeric_range import incomputable
 from components.snapshot import Snapshot
 from components.world import Derivation
-from systems.base import Event, Integrator, StepSystem, StopReason
+from systems.base import Integrator, StepSystem, StopReason
 from systems.collision.driven.stepper import DrivenCollisions
+from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
 from systems.collision.overlaps import part_overlaps
 from systems.program.program import Program
-from systems.program.stepper import Dynamics, Stepper
 from systems.program.writer import REVIEW_INTERVAL
 from systems.run.checkpoint import Checkpoint
 from systems.run.energy import Account, Energy
 from systems.run.policy import at_rest_since, is_before, is_sleep_review, residual
 from systems.run.program_steps import ProgramSteps
-from systems.run.programs import Programs
+from systems.run.programs import Dynamics, Programs
 from systems.run.recovery import Recovery
 from systems.run.sleep import Sleep
 from systems.run.step_size import StepSize
@@ -46,18 +46,13 @@ OBSERVED = (
 
 
 @dataclass(frozen=True)
-class Happening:
+class EventRecord:
     """An event of a run: its name, when (s), and the names of the elements whose quantity fell below 0 and rose."""
 
     event: str
     time: float
     fallen: tuple[str, ...]
     risen: tuple[str, ...]
-
-    @classmethod
-    def of(cls, event: Event, time: float, fallen: Iterable[Any], risen: Iterable[Any]) -> Happening:
-        """What happened to these elements now."""
-        return cls(event.name, time, tuple(h.name for h in fallen), tuple(h.name for h in risen))
 
 
 class Simulation:
@@ -66,8 +61,9 @@ class Simulation:
     reason: why the last advance ended; message: the same as a sentence, or "".
     note: what a person should know though the run goes on, or "".
     impacts: what collided so far. compute_seconds: spent so far in steps.
-    watchers: each is asked before steps are taken, and returns after how many at most it wants to be asked again.
-    happenings: the events so far, while nothing was taken back.
+    step_size: how long steps are, and what limits them.
+    before_steps: each is called before steps are taken, and returns how many may be taken before the next call.
+    events: what happened so far, without what was taken back.
     """
 
     def __init__(self, model: Model, schedule: Schedule, scene: str = "simulation") -> None:
@@ -77,16 +73,16 @@ class Simulation:
         self.message = ""
         self.note = ""
         self.compute_seconds = 0.0
-        self.watchers: list[Callable[[], int]] = []
-        self.happenings: list[Happening] = []
+        self.before_steps: list[Callable[[], int]] = []
+        self.events: list[EventRecord] = []
         self.impacts = Impacts(model)
         self._programs = Programs(model, schedule, self.impacts, scene)
         self._sleep = Sleep(model)
-        self._step_size = StepSize(model, self._programs, self._sleep)
-        self._steps = ProgramSteps(model, self._programs, self._sleep, self._step_size)
+        self.step_size = StepSize(model, self._programs, self._sleep)
+        self._steps = ProgramSteps(model, self._programs, self._sleep, self.step_size)
         self._driven_collisions = DrivenCollisions(model, self.impacts, self._steps)
         self._account = Account(model, self._measured)
-        self._recovery = Recovery(model, self._programs, self._sleep, self._step_size)
+        self._recovery = Recovery(model, self._programs, self._sleep, self.step_size)
         self._announces = True
         self._present: tuple[int, Snapshot] | None = None  # the state at this revision
         self._rested = 0.0  # s, when it came to rest last
@@ -137,7 +133,7 @@ class Simulation:
     @property
     def program(self) -> Dynamics:
         """What moves the model, bound to it as it is now."""
-        return self._programs.program
+        return self._programs.dynamics
 
     @property
     def step_program(self) -> Program:
@@ -150,19 +146,16 @@ class Simulation:
         return self._programs.ready
 
     @property
-    def collides(self) -> bool:
-        """True if particles may meet."""
-        return self._programs.collides
-
-    @property
     def compile_seconds(self) -> float:
         """Spent so far in compiling or loading programs."""
         return self._programs.compile_seconds
 
     @property
-    def _stepper(self) -> Stepper:
+    def _stepper(self) -> Flight | DrivenCollisions | ProgramSteps:
         """What takes the steps: exact flight, or those of a program, ended at impacts if any may come."""
-        return self._programs.flight or (self._driven_collisions if self._programs.collides else self._steps)
+        if isinstance(self.program, Flight):
+            return self.program
+        return self._driven_collisions if self._programs.collides else self._steps
 
     # --- getting ready -------------------------------------------------------------------------------
 
@@ -199,13 +192,13 @@ class Simulation:
                 self.program.commit()  # what edits left beyond a strength yields
                 self._account.close()
                 self._sleep.review(self.program)
-                self._step_size.begin(self._step_size.first())
+                self.step_size.begin(self.step_size.first())
             self._armed = True
             self._armed_revision = self.model.revision
             self._recovery.safe = None
             self.reason, self.message = StopReason.DIVERGED if problem else StopReason.DONE, problem
         elif self._recovery.safe is None:
-            self._step_size.look_up()
+            self.step_size.look_up()
         if self._recovery.safe is None:
             self._recovery.safe = self.present()
         self._programs.bind()
@@ -258,53 +251,23 @@ class Simulation:
             self.model.clock.steps,
             self._armed,
             self._account.before_edit,
-            self.stable_step,
-            self.warning,
+            self.step_size.stable,
+            self.step_size.warning,
             self._programs.bindings,
         )
 
     def resume(self, checkpoint: Checkpoint) -> None:
         """Return to a checkpoint in which the document was as it is now."""
         checkpoint.state.restore(self.model)
-        self.happenings = [
-            happening for happening in self.happenings if happening.time <= self.model.clock.time
-        ]
+        self.events = [event for event in self.events if event.time <= self.model.clock.time]
         if checkpoint.binding != self._programs.bindings:
             self._programs.unbind()
         self._forget_run()
         self._armed, self._account.before_edit = checkpoint.armed, checkpoint.before_edit
         if checkpoint.whole:  # else what limits the step is found out anew
             self._recovery.safe = checkpoint.state
-            self._step_size.stable, self._step_size.warning = checkpoint.stable_step, checkpoint.warning
+            self.step_size.stable, self.step_size.warning = checkpoint.stable_step, checkpoint.warning
         self._armed_revision = self.model.revision
-
-    # --- the step size -------------------------------------------------------------------------------
-
-    @property
-    def stable_step(self) -> float:
-        """The largest stable step (s) that was found last."""
-        return self._step_size.stable
-
-    @property
-    def warning(self) -> str:
-        """That the steps are longer than is stable, or ""."""
-        return self._step_size.warning
-
-    @property
-    def smooth(self) -> bool:
-        """True if steps are not longer than what is shown at once, even where accuracy would allow it.
-
-        Else they are too long to be watched, and to be interrupted.
-        """
-        return self._step_size.smooth
-
-    @smooth.setter
-    def smooth(self, smooth: bool) -> None:
-        self._step_size.smooth = smooth
-
-    def begin_step_size(self, size: float) -> None:
-        """From now on steps have this size (s); the guard against divergence compares with this moment."""
-        self._step_size.begin(size)
 
     # --- running -------------------------------------------------------------------------------------
 
@@ -323,8 +286,8 @@ class Simulation:
         first, done = clock.steps, 0
         while done < steps and not self.halted:
             ahead = min(steps - done, self._sleep.steps_to_review(self.program))
-            for watch in self.watchers:
-                ahead = min(ahead, watch())
+            for call in self.before_steps:
+                ahead = min(ahead, call())
             self._arm()  # if they edited something
             if self.halted:
                 break
@@ -357,10 +320,11 @@ class Simulation:
     def _announce_events(self) -> None:
         """Let events have their consequences, which may be edits."""
         if self.program.watches_events and self._announces:
-            for event, fallen, risen in self.program.take_events():
-                self.happenings.append(Happening.of(event, self.model.clock.time, fallen, risen))
-                there = [[handle for handle in handles if handle.exists] for handles in (fallen, risen)]
-                event.happen(self.model, *there)
+            for event, *changed in self.program.take_events():
+                elements: list[list[Any]] = changed  # that fell, and that rose
+                names = (tuple(element.name for element in some) for some in elements)
+                self.events.append(EventRecord(event.name, self.model.clock.time, *names))
+                event.happen(self.model, *([e for e in some if e.exists] for some in elements))
                 if event.mod is not None and event.mod.off:
                     self.before_change()  # it fails and acts no more, which counts as an edit
 
@@ -370,7 +334,7 @@ class Simulation:
         if not moves and self.program.changes_end <= self.model.clock.time:
             self._heed(StopReason.REST)  # all that happened was lost in rounding
         else:
-            self._step_size.review()
+            self.step_size.review()
 
     def _recover(self, reason: StopReason) -> None:
         """Return to the last good state and go on without a mod or with shorter steps, or give up."""
@@ -390,7 +354,7 @@ class Simulation:
     def _review_sleep(self) -> None:
         """Let islands at rest sleep."""
         if self._sleep.may_happen(self.program) and self._sleep.review(self.program):
-            self._step_size.limit_anew()
+            self.step_size.limit_anew()
 
     def run_to(self, target: float, *, whole_steps: bool = False) -> None:
         """Advance to exactly this time (s) by a last, short step; or only by whole steps that end by then."""

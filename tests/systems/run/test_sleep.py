@@ -131,7 +131,7 @@ def test_what_sleeps_does_not_limit_controlled_steps() -> None:
         chosen = {"integrator": "dop853", "sleeping": sleeping, "collisions": False}
         gravity = {"acceleration": [0, -9.81]}
         session = Session.open(together(stiff, swings, environment=gravity, settings=chosen))
-        session.simulation.smooth = False
+        session.simulation.step_size.watched = False
         session.run(time=0.5)
         runs.append(session)
     on, off = runs
@@ -145,7 +145,7 @@ def test_what_sleeps_does_not_limit_controlled_steps() -> None:
 
 def test_an_impact_limits_controlled_steps_at_once_by_what_it_wakes() -> None:
     session = struck(sleeping=True, integrator="dop853", time_step=None)
-    session.simulation.smooth = False
+    session.simulation.step_size.watched = False
     session.run(time=0.39)
     assert asleep(session) == {"struck", "beside"}
     assert session.model.clock.step_limit == 0.0  # a falling disc has none
