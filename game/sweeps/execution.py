@@ -12,7 +12,7 @@ from game.sweeps.batches import Batches
 from game.sweeps.plan import Outcome, Plan, Record
 from game.sweeps.variant_runner import VariantRunner
 from game.sweeps.variation import INSTALL, SweepError
-from systems.program.cores import VARIABLE, cores
+from systems.program.parallel import VARIABLE, cores
 
 MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
 TASKS_PER_WORKER = 16  # so that no worker waits long for another's last task

@@ -13,14 +13,30 @@ from components.field import Column
 from components.model import Model
 from systems.base import Integrator, StepSystem
 from systems.program.blocks import Layout
-from systems.program.cores import cores
 from systems.program.program import Program
 from systems.program.reordered import ReorderedProgram
 from systems.program.writer import VERY_MANY, form_of
 
+VARIABLE = "PINJOINT_CORES"  # of the environment
+
 _QUICK = ("omp", "tbb")  # threading layers that start the cores in some microseconds
 _SPINS = "10000"  # some 0.1 ms that a core waits awake: waking it costs as much as a step of 10 000 rods
 _WORTHWHILE = 100_000  # rods from which a layer that takes 50 µs to start the cores is worth it
+
+
+_home = os.getpid()
+
+
+def cores() -> int:
+    """How many cores a computation may use: what PINJOINT_CORES says, else as many as this process may.
+
+    One in a process that was forked, for the threads of its parent are not there.
+    """
+    if os.getpid() != _home:
+        return 1
+    there = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    asked = os.environ.get(VARIABLE, "")
+    return min(max(int(asked), 1), there) if asked.isdigit() else there
 
 
 def make_program(

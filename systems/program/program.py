@@ -120,7 +120,7 @@ class Program:
             extra.update(bind(system, model).arrays)
         written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
         extra |= {name: self._storage(path) for name, path in written.items()}
-        self._sides = [(b, self._sides_of(b)) for b in self._writer.happenings]
+        self._sides = [(b, self._sides_of(b)) for b in self._writer.events]
         extra |= {sides_of(b): sides for b, sides in self._sides}
         self._columns = [
             extra[name] if name in extra else self._column(name.replace("_", ".", 1))
@@ -145,7 +145,7 @@ class Program:
     @property
     def watches_events(self) -> bool:
         """True if it stops where the quantity of an Event changes sign."""
-        return bool(self._writer.happenings)
+        return bool(self._writer.events)
 
     def _sides_of(self, b: Bound) -> NDArray[np.uint8]:
         """Of each row of an event, whether its quantity is negative, as the state has it."""
@@ -208,7 +208,7 @@ class Program:
             "rod_work": (self.integrator.rod_rows, rods),
             "marks": (
                 max(rods, particles),
-                len(Mark) * len([*self._writer.branching, *self._writer.happenings]),
+                len(Mark) * len([*self._writer.branching, *self._writer.events]),
             ),
             "search": (len(Search),),
         }
@@ -250,57 +250,34 @@ class Program:
         if self._sides and not self._is_fresh:
             for b, sides in self._sides:
                 sides[:] = self._sides_of(b)
-        if self.integrator.controlled:
-            return self._advance_controlled(steps, until, landing)
-        time, size = self._control[:2].tolist()
-        if until < math.inf:
+        controlled, (time, size) = self.integrator.controlled, self._control[:2].tolist()
+        if until < math.inf and not controlled:
             steps = min(steps, max(int((until - time) / size * (1.0 + 1e-12)), 0))
             if steps == 0:
                 return 0, StopReason.DONE
-        origin = float(self._origin[0])
-        total, since = self._counts.tolist()
-        taken, reason = self.module.advance(
-            steps,
-            self._is_fresh,
-            total,
-            total - since,
-            origin,
-            size,
-            self._breaks,
-            self.changes_end,
-            *self._arguments,
-        )
-        if taken:
-            self._counts[0] = total + taken
-            self._control[0] = origin + (total - since + taken) * size
-            self._mark_changes()
-        self._state_revision = self.model.newest(Role.STATE)
-        return taken, _REASONS[reason]
-
-    def _advance_controlled(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
-        before = self._control.item(0)
         origin, limit = self._origin.tolist()
         total, since = self._counts.tolist()
+        chosen = (self.tolerance, limit or math.inf) if controlled else (size,)
+        bounds = (float(until), float(landing)) if controlled else ()
         taken, reason = self.module.advance(
             steps,
             self._is_fresh,
             total,
             total - since,
             origin,
-            self.tolerance,
-            limit or math.inf,
+            *chosen,
             self._breaks,
-            float(until),
-            float(landing),
+            *bounds,
             self.changes_end,
             *self._arguments,
         )
-        time = self._control.item(0)
-        if time > before:
+        if taken and not controlled:
+            self._control[0] = origin + (total - since + taken) * size
+        now = self._control.item(0)
+        if taken or now > time:
             self._counts[0] = total + taken
-            if self.tolerance or time == landing:
-                self._origin[0] = time
-                self._counts[1] = total + taken
+            if controlled and (self.tolerance or now == landing):
+                self._origin[0], self._counts[1] = now, total + taken
             self._mark_changes()
         self._state_revision = self.model.newest(Role.STATE)
         return taken, _REASONS[reason]

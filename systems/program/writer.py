@@ -6,7 +6,7 @@ on the plan: which kernels are called for each particle and rod, with which colu
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -121,7 +121,7 @@ class Writer:
         check_names(self.bound)
         self.of = by_role(self.bound)
         self.commits = [b for role in HISTORIES for b in self.of[role]]
-        self.happenings = self.of[StepRole.EVENT]
+        self.events = self.of[StepRole.EVENT]
         self.branching = [b.system for b in self.bound if getattr(b.system, "margin", "")]
         self.names: dict[str, Callable[..., Any]] = {b.call: b.function for b in self.bound} | _of_energy()
         self.names |= {kind.__name__: kind for kind in _ENTRIES}
@@ -207,7 +207,7 @@ class Writer:
             "RATES": self.rates,
             "POWERS": self.powers,
             "LOADS": bool(self.of[StepRole.LOAD]),
-            "HAPPENINGS": bool(self.happenings),
+            "STOPS": bool(self.events),
             "SHADOW": float(self.integrator.guard),
             "CHECK_INTERVAL": self.integrator.check_interval,
             "REVIEW_INTERVAL": REVIEW_INTERVAL,
@@ -431,26 +431,29 @@ class Writer:
 
     def _happened(self) -> list[str]:
         """What tells at the end of a step whether the quantity of an event changed sign."""
-        if not self.happenings:
-            return []
-        of_rods, of_particles = self._turns(["gap < 0.0"] * len(self.happenings))
-        return [pasted(events.happened_by_now, "compiled", "happened", rods=of_rods, particles=of_particles)]
-
-    def _turns(self, conditions: Sequence[str]) -> tuple[list[str], list[str]]:
-        """Loops over the rods and over the particles in which events change sides, each under its condition."""
         lines: dict[str, list[str]] = {"rods": [], "particles": []}
-        for b, condition in zip(self.happenings, conditions, strict=True):
+        for place, b in enumerate(self.events):
             lines[b.each] += [
-                *(self._axial_force() if "axial_force" in b.parameters else []),
-                *fragment(events.turn, sides=sides_of(b), quantity=self._apply(b, "r"), turned=condition),
+                *self._needed_force(b),
+                *fragment(
+                    events.turn, sides=sides_of(b), quantity=self._apply(b, "r"), turned=self._turned(place)
+                ),
             ]
-        return self._each_row(lines["rods"], lines["particles"])
+        return [pasted(events.happened, "compiled", **self._each_row(lines))] if self.events else []
 
-    def _each_row(self, of_rods: list[str], of_particles: list[str]) -> tuple[list[str], list[str]]:
+    def _turned(self, place: int) -> str:
+        """Whether the quantity of an event, `gap` on the side that it was on, changed sign in the step."""
+        return "gap < 0.0"
+
+    def _needed_force(self, b: Bound) -> list[str]:
+        return self._axial_force() if "axial_force" in b.parameters else []
+
+    def _each_row(self, lines: Mapping[str, list[str]]) -> dict[str, Any]:
         """Loops over the rods and over the particles with these lines, where there are any, for row `r`."""
+        of_rods, of_particles = lines["rods"], lines["particles"]
         rod_loop = RodLoop(SHIFT | DRIFT, [*self.geometry(), *fragment(rods.rate), *of_rods]).one_by_one()
         particle_loop = [f"for r in range({EVERY}):", *indented(of_particles)]
-        return rod_loop if of_rods else [], particle_loop if of_particles else []
+        return {"rods": rod_loop if of_rods else [], "particles": particle_loop if of_particles else []}
 
     # --- reading ----------------------------------------------------------------------------------
 

@@ -18,7 +18,7 @@ from systems.program import blocks as layout
 from systems.program import parallel as in_blocks
 from systems.program import writer
 from systems.program.blocks import Layout
-from systems.program.cores import VARIABLE, cores
+from systems.program.parallel import VARIABLE, cores
 from tests.benchmarks.models import lattice
 from tests.reference import bits
 
