@@ -19,16 +19,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from enum import Enum, IntEnum
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
 import esper
 from numpy.typing import NDArray
 
+from components.handle import Handle
+from components.model import Model
 from systems.entries import ACCOUNTS
-
-if TYPE_CHECKING:
-    from components.handle import Handle
-    from components.model import Model
 
 __all__ = [
     "ACCOUNTS",

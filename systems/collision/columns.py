@@ -26,9 +26,8 @@ OVERLAP = 1e-9  # of the reach of two nodes; a larger overlap at the start of a 
 # Steps of piles and crowds
 STEP_SHARE = 0.04  # longest step, as a share of the time in which a disc falls through its diameter
 SHORTEST_SHARE = 1.0 / 16.0  # shortest step, where discs are fast, as a share of the longest
-TRAVEL = (
-    0.35  # relative travel of two discs in a longer step than the shortest, at most, in radii of the smaller
-)
+# Relative travel of two discs in a longer step than the shortest, at most, in radii of the smaller.
+TRAVEL = 0.35
 
 
 class Disc(IntEnum):

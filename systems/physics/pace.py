@@ -52,9 +52,9 @@ def _response_time(model: Model) -> float | None:
         return None
     frequency = math.sqrt(float((rods.stiffness / rods.rest_length * elongation**2).sum()) / inertia)
     damping = float((rods.damping * elongation**2).sum()) / inertia + model.environment.drag
-    ratio = damping / (2.0 * frequency) if frequency > 0.0 else 0.0
     if frequency == 0.0:
         return None
+    ratio = damping / (2.0 * frequency)
     if ratio < 1.0:
         return 2.0 * math.pi / frequency / PERIOD_SHOWN
     creep = frequency / (ratio + math.sqrt(ratio * ratio - 1.0))

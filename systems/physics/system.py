@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from components.model import Model
 from components.rod import has_cables, has_plastic_strain
 from systems.base import Law
-
-if TYPE_CHECKING:
-    from components.model import Model
 
 
 class Elasticity(Law):

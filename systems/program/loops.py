@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from systems.program.pasting import indented
 
 CHUNK = 64  # rods in a chunk: their values stay in the nearest cache
-_APART = (
-    7  # columns read directly: LLVM checks at run time that they do not overlap scratch; with more it gives up
-)
+# Columns read directly: LLVM checks at run time that they do not overlap scratch; with more it gives up.
+_APART = 7
 
 ALL = "0, rods_between.shape[0]"
 

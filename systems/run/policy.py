@@ -25,15 +25,10 @@ FIRST_SHARE = 0.1  # of 1/ω, the step at which error control begins
 FREE_STEP = 1e-3  # s, where nothing limits the step
 DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
 
-ERROR_CONTROL = (
-    "step_error",
-    "largest_displacement",
-    "largest_speed",
-)  # of the clock; 0 where steps begin anew
+ERROR_CONTROL = "step_error", "largest_displacement", "largest_speed"  # of the clock; 0 where steps begin anew
 
-SLEEP_INTERVAL = (
-    1024  # steps between reviews of islands; fewer: asleep sooner, but one costs as much as ten steps
-)
+# Steps between reviews of islands; fewer: asleep sooner, but a review costs as much as ten steps.
+SLEEP_INTERVAL = 1024
 
 
 # --- step sizes ------------------------------------------------------------------------------------------
@@ -54,23 +49,18 @@ class Limits:
         return cls(frequency, decay, integrator.stable_step(frequency, decay) if limited else math.inf)
 
 
-def not_shown() -> float:
-    """The longest step (s) that a person can follow, where nobody watches."""
-    return math.inf
-
-
 @dataclass(frozen=True, slots=True)
 class StepPolicy:
     """How the steps of a run are chosen.
 
     fixed: the step (s) that a person chose; None: automatic. rods: how many the model has.
-    shown: gives the longest step (s) that a person can follow.
+    shown: gives the longest step (s) that a person can follow; infinite where nobody watches.
     """
 
     integrator: Integrator
     fixed: float | None
     rods: int
-    shown: Callable[[], float] = not_shown
+    shown: Callable[[], float] = lambda: math.inf
 
     @property
     def controls_error(self) -> bool:
