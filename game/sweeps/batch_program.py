@@ -15,13 +15,8 @@ from game.sweeps.batched_model import BatchedModel
 from systems.program.compiler import compile_module, note_compiled
 from systems.program.program import Program
 
-_SHARED = (
-    "fresh",
-    "breaks",
-    "until",
-    "landing",
-    "loads_end",
-)  # one for all variants, besides what is written anew for each
+# One for all variants, besides what is written anew for each.
+_SHARED = "fresh", "breaks", "until", "landing", "loads_end"
 _RETURNS = {"advance": "taken[k], reason[k] = "}
 _KEPT = {"observe": ("force",)}
 _PIECES = 4  # for each thread, so that none waits long for another

@@ -65,9 +65,8 @@ class Batches:
     @staticmethod
     def _is_number(target: Target) -> bool:
         name = f"{target.table.name}.{target.field.name}"
-        return (
-            target.field.dtype in (float, int, bool) and name not in _ALONE
-        ) or name == "settings.integrator"
+        plain = target.field.dtype in (float, int, bool) and name not in _ALONE
+        return plain or name == "settings.integrator"
 
     # --- the variants ---------------------------------------------------------------------------------
 
@@ -105,10 +104,7 @@ class Batches:
     def _allowed(self, values: Sequence[Value]) -> bool:
         try:
             for target, value in zip(self._targets, values, strict=True):
-                if target.axis:
-                    target.field.check((value, value), "")
-                else:
-                    target.field.check(value, "")
+                target.field.check((value, value) if target.axis else value, "")
         except FieldError:
             return False
         return True
@@ -174,10 +170,8 @@ class Batches:
         batch.observe()
         energy, residual = batch.energy.as_dict(), batch.residual
         batch.alone |= ~_finite(batch, energy, residual)
-        columns = [batch.clock("time").tolist(), [None] * batch.model.variants]
-        for measure in self._plan.measures:
-            columns.append(self._column(measure, batch, energy, residual))
-        return list(zip(*columns, strict=True))
+        measured = (self._column(measure, batch, energy, residual) for measure in self._plan.measures)
+        return list(zip(batch.clock("time").tolist(), [None] * batch.model.variants, *measured, strict=True))
 
     def _column(self, measure: Measure, batch: Batch, energy: dict[str, Any], residual: Column) -> list[Any]:
         section, *rest = measure.keys

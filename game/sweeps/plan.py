@@ -114,21 +114,19 @@ class Plan:
 
     def values(self, number: int) -> tuple[Value, ...]:
         """What a variant gives to the paths that are varied."""
-        combination, sample = divmod(number, self.samples)
-        taken: list[tuple[Value, ...]] = []
-        for variation in reversed(self.variations):
+        place, sample = divmod(number, self.samples)
+        combinations = self.size // self.samples
+        drawn = any(isinstance(variation, Random) for variation in self.variations)
+        generator = np.random.default_rng([self.seed, sample]) if drawn else None
+        taken: list[Value] = []
+        for variation in self.variations:
             if isinstance(variation, Values):
-                combination, index = divmod(combination, len(variation.values))
-                taken.insert(0, (variation.values[index],))
-            else:
-                taken.insert(0, ())
-        if any(isinstance(variation, Random) for variation in self.variations):
-            generator = np.random.default_rng([self.seed, sample])
-            taken = [
-                v.draw(generator) if isinstance(v, Random) else t
-                for v, t in zip(self.variations, taken, strict=True)
-            ]
-        return tuple(value for values in taken for value in values)
+                combinations //= len(variation.values)
+                index, place = divmod(place, combinations)
+                taken.append(variation.values[index])
+            elif generator is not None:
+                taken += variation.draw(generator)
+        return tuple(taken)
 
     def overrides_of(self, number: int) -> tuple[str, ...]:
         """A variant as `pinjoint run MODEL --set …` has it."""

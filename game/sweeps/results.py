@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import importlib.util
 import io
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -58,8 +59,7 @@ class Results:
     def counts(self) -> dict[str, int]:
         """How many variants ended with each status."""
         last = dict(zip(self.columns["variant"], self.columns["status"], strict=True))
-        statuses = list(last.values())
-        return {status: statuses.count(status) for status in sorted(set(statuses))}
+        return dict(sorted(Counter(last.values()).items()))
 
     @property
     def found(self) -> NDArray[np.bool_]:

@@ -31,6 +31,13 @@ OBSERVED = {
     "rods": ("axial_force", "length", "strain", "yielding"),
 }
 _GIVEN = {"fixed": "particles.fixed", "tension": "rods.tension_limit", "compression": "rods.compression_limit"}
+COLUMNS_OBSERVED = {  # by the parameter of observe() that they are
+    **{f"rods_{name}": f"rods.{name}" for name in ("axial_force", "length", "strain")},
+    "applied": "particles.applied_force",
+    "reaction": "particles.reaction",
+    "yielding": "rods.yielding",
+    **_GIVEN,
+}
 _REASONS = tuple(StopReason)
 
 
@@ -223,23 +230,15 @@ class Program:
         self._arguments = (*self._after("loads_end", "advance"), *self._columns)
 
     def _bind_observed(self) -> None:
-        derived = {name: f"{table}.{name}" for table, names in OBSERVED.items() for name in names}
         for path in _GIVEN.values():
             self.model.column(path)  # brings it up to date
-        storage = {name: self._storage(path) for name, path in (derived | _GIVEN).items()}
-        storage |= {f"rods_{name}": storage[name] for name in ("axial_force", "length", "strain")}
+        storage = {name: self._storage(path) for name, path in COLUMNS_OBSERVED.items()}
         apart = {
             name: np.zeros_like(self._arrays[name]) for name in ("force", "resisting", "direction", "power")
         }
         self._unbalanced = apart["force"]
-        self._observed = self._after(
-            "dt",
-            "observe",
-            applied=storage["applied_force"],
-            yields=self.model.settings.plasticity,
-            **storage,
-            **apart,
-        )
+        yields = self.model.settings.plasticity
+        self._observed = self._after("dt", "observe", yields=yields, **storage, **apart)
 
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
         """Take up to `steps` steps; returns how many, and why it stopped.
