@@ -78,8 +78,9 @@ class Preparation(System):
             self._load_driven(simulation)
             if seen == self._seen and not frame.session.busy:
                 self._load_pulled(simulation)
-        else:
-            self._load(simulation, idle=seen == self._seen)
+        elif self.waits_for(simulation) is None and seen == self._seen and _is_compiled(simulation):
+            # As soon as what was done is seen: who needs the program first need not wait.
+            simulation.program  # noqa: B018 (it is loaded when asked for)
         self._compile_ahead()
 
     def _load_driven(self, simulation: Simulation) -> None:
@@ -110,12 +111,6 @@ class Preparation(System):
         if is_prepared(pulled):
             load_program(pulled)
 
-    def _load(self, simulation: Simulation, *, idle: bool) -> None:
-        """As soon as its program is compiled, and what was done is seen: who needs it first need not wait."""
-        waits = self.waits_for(simulation) is not None
-        if idle and not waits and not simulation.ready and _is_compiled(simulation):
-            simulation.program  # noqa: B018 (it is loaded when asked for)
-
     def waits_for(self, simulation: Simulation) -> float | None:
         """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
         if simulation.integrator.exact:  # it may be ready, but not for piles
@@ -137,7 +132,8 @@ class Preparation(System):
         waited = self._waits_for_units((DRIVEN,))
         if not _may_rest(simulation.model):
             return waited
-        plan = _with_support(simulation)
+        names = (system.name for system in simulation.plan)
+        plan = simulation.schedule.named((*names, Support.name))  # from when on something rests on something
         resting = self._waits(_job(simulation, plan), lambda: _has_program(simulation, plan))
         return resting if waited is None else waited
 
@@ -179,12 +175,6 @@ def _may_meet(simulation: Simulation) -> bool:
 def _may_rest(model: Model) -> bool:
     """True if something that is no structure may come to rest on one, or a structure on a wall, and none does yet."""
     return persistent_contacts(model) is None and (any_obstacles(model) or not nodes(model).all())
-
-
-def _with_support(simulation: Simulation) -> list[StepSystem]:
-    """The plan from when on something rests on something."""
-    names = (system.name for system in simulation.plan)
-    return simulation.schedule.named((*names, Support.name))
 
 
 def _are_compiled(units: Units) -> bool:

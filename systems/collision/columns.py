@@ -134,22 +134,15 @@ class Constraints(NamedTuple):
         pairs = np.asarray(joined, dtype=np.int64).reshape(-1, 2)
         ends = np.concatenate([pairs, pairs[:, ::-1]])
         ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
-        empty = cls(
-            first=np.searchsorted(ends[:, 0], np.arange(n + 1)),
-            partners=np.ascontiguousarray(ends[:, 1]),
-            first_persistent=np.zeros(n, dtype=np.int64),
-            persistent=np.zeros((0, 2), dtype=np.int64),
-            forces=np.zeros(0),
-        )
-        return empty.cleared(size, counts)
+        first, partners = np.searchsorted(ends[:, 0], np.arange(n + 1)), np.ascontiguousarray(ends[:, 1])
+        contacts = np.zeros(n, dtype=np.int64), np.zeros((0, 2), dtype=np.int64), np.zeros(0)
+        return cls(first, partners, *contacts).cleared(size, counts)
 
     def cleared(self, size: int, counts: Integers) -> Constraints:
         """The same without persistent contacts, with room for `size` entries."""
         counts[Count.SPARE], counts[Count.SPARES] = NONE, 0
-        none = np.full(len(self.first_persistent), NONE, dtype=np.int64)
-        emptied = self._replace(
-            first_persistent=none, persistent=np.zeros((0, 2), dtype=np.int64), forces=np.zeros(0)
-        )
+        none = np.full_like(self.first_persistent, NONE)
+        emptied = self._replace(first_persistent=none, persistent=self.persistent[:0], forces=self.forces[:0])
         return emptied.enlarged(size, counts)
 
     def enlarged(self, size: int, counts: Integers) -> Constraints:

@@ -8,7 +8,7 @@ from typing import Any
 from components.model import Model
 from systems.base import Integrator, StepSystem
 from systems.entries import Mark
-from systems.program.binding import Bound, StepRole, bind
+from systems.program.binding import StepRole, bind
 from systems.program.loops import RodLoop
 from systems.program.pasting import fragment, pasted
 from systems.program.templates import events, forces, implicit, rods
@@ -25,9 +25,11 @@ class ControlledWriter(Writer):
     """Writes step programs whose integrator needs powers at every stage, events and tangents."""
 
     def __init__(self, model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> None:
+        from systems.physics.kernels import lowest  # imports numba, when a program is built, not before
+
         super().__init__(model, systems, integrator, form)
         self.branches = [(bind(s, model, "branch"), bind(s, model, "margin")) for s in self.branching]
-        self.names |= {b.call: b.function for pair in self.branches for b in pair} | {"lowest": _lowest()}
+        self.names |= {b.call: b.function for pair in self.branches for b in pair} | {"lowest": lowest}
         self._add_columns(b for pair in self.branches for b in pair)
 
     @property
@@ -108,23 +110,15 @@ class ControlledWriter(Writer):
         ]
         damping_force = [
             "damping_force = 0.0",
-            *(f"damping_force += {self._apply(b, 'r')}" for b in self._rates),
+            *(f"damping_force += {self._apply(b, 'r')}" for b in self.of[StepRole.RATE]),
         ]
         tangent = fragment(
             implicit.rod_tangent,
             rate=fragment(rods.rate),
             axial_force=self._axial_force(),
-            dampers=fragment(implicit.damper_tangent, damping_force=damping_force) if self._rates else [],
+            dampers=fragment(implicit.damper_tangent, damping_force=damping_force)
+            if self.of[StepRole.RATE]
+            else [],
         )
         loop = RodLoop(SHIFT | DRIFT, [*self.geometry(), *tangent])
         return pasted(implicit.tangent, "compiled", particles=particles, rods=loop.one_by_one())
-
-    @property
-    def _rates(self) -> list[Bound]:
-        return self.of[StepRole.RATE]
-
-
-def _lowest() -> Any:
-    from systems.physics.kernels import lowest  # numba is imported when a program is built, not before
-
-    return lowest

@@ -113,6 +113,11 @@ class Writer:
     """
 
     def __init__(self, model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> None:
+        from systems.physics.kernels import (  # imports numba, when a program is built, not before
+            conserved,
+            judge,
+        )
+
         self.model = model
         self.form = form
         self.integrator = integrator
@@ -123,7 +128,8 @@ class Writer:
         self.commits = [b for role in HISTORIES for b in self.of[role]]
         self.events = self.of[StepRole.EVENT]
         self.branching = [b.system for b in self.bound if getattr(b.system, "margin", "")]
-        self.names: dict[str, Callable[..., Any]] = {b.call: b.function for b in self.bound} | _of_energy()
+        self.names: dict[str, Callable[..., Any]] = {b.call: b.function for b in self.bound}
+        self.names |= {"conserved": conserved, "judge": judge}
         self.names |= {kind.__name__: kind for kind in _ENTRIES}
         self.rates = bool(self.of[StepRole.RATE] or self.of[StepRole.RESISTANCE])
         self.working = [b for b in self.of[StepRole.SUMMED] if not _is_elastic(b)]
@@ -482,16 +488,10 @@ class Writer:
 
 def read_sources(integrators: Iterable[Integrator]) -> None:
     """Find the sources of integrators ahead of need; those of one take some frames."""
-    for integrator in integrators:
-        for part in (
-            integrator.kernel,
-            integrator.begins,
-            integrator.ends,
-            integrator.entry,
-            *integrator.parts,
-        ):
+    for one in integrators:
+        for part in (one.kernel, one.begins, one.ends, one.entry, *one.parts):
             if isinstance(part, str) and part:
-                source_of(find(part.partition("=")[0], integrator))
+                source_of(find(part.partition("=")[0], one))
 
 
 def sides_of(b: Bound) -> str:
@@ -542,12 +542,6 @@ def _literal(value: Any) -> str:
 def _origin(function: Any) -> str:
     plain = getattr(function, "py_func", function)
     return f"{plain.__module__}.{plain.__qualname__}"
-
-
-def _of_energy() -> dict[str, Callable[..., Any]]:
-    from systems.physics.kernels import conserved, judge  # imports numba, when a program is built, not before
-
-    return {"conserved": conserved, "judge": judge}
 
 
 def _is_elastic(b: Bound) -> bool:

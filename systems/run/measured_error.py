@@ -49,12 +49,8 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     model = simulation.model
     clock, then = model.clock, beginning.columns
     met = clock.collisions > then["clock.collisions"][0] or clock.collision_state is not None
-    if (
-        met
-        or simulation.program.watches_events
-        or simulation.integrator.exact
-        or not clock.time > then["clock.time"][0]
-    ):
+    meaningless = met or simulation.program.watches_events or simulation.integrator.exact
+    if meaningless or not clock.time > then["clock.time"][0]:
         return None
     program = simulation.step_program
     reached, size, target = model.particles.displacement.copy(), clock.step_size, simulation.moved_until

@@ -141,7 +141,7 @@ def is_before(time: Any, target: float) -> Any:
 def residual(measures: Column) -> Column:
     """Largest unbalanced force on a free particle over the largest force of all, dampers apart.
 
-    measures: as of Dynamics, along the first axis.
+    measures: as of Program, along the first axis.
     """
     unbalanced, largest = measures[Measure.RESIDUAL], measures[Measure.LARGEST_FORCE]
     found: Column = np.divide(unbalanced, largest, out=np.zeros(largest.shape), where=largest > 0.0)

@@ -306,15 +306,13 @@ class Simulation:
 
     def _heed(self, reason: StopReason) -> None:
         """Do what a stepper that returned for this reason asks for."""
-        self.reason = reason
+        self.reason = StopReason.DONE if reason is StopReason.EVENT else reason
         if reason is StopReason.REST:
             self._rested = self.model.clock.time
             self.message = at_rest_since(self._rested)
         elif reason is StopReason.REVIEW:
             self._review()
-        elif reason is StopReason.EVENT:
-            self.reason = StopReason.DONE
-        elif reason is not StopReason.DONE:
+        elif self.reason is not StopReason.DONE:
             self._recover(reason)
 
     def _announce_events(self) -> None:
