@@ -25,7 +25,7 @@ from systems.program.writer import STATE, VERY_MANY, Writer, form_of, sides_of
 
 _ORIGIN = ("origin", "step_limit")
 _COUNTS = ("steps", "origin_steps")
-_OF_PARTICLES = ("displacement", "velocity")
+MOTION = "particles.displacement", "particles.velocity"
 OBSERVED = {
     "particles": ("applied_force", "reaction"),
     "rods": ("axial_force", "length", "strain", "yielding"),
@@ -138,7 +138,7 @@ class Program:
         self.changes_end = math.inf if self.lasting else loads_end(model)
         self._breaks = np.array([*load_breaks(model), math.inf])
         self._arrays = {name: np.zeros(shape) for name, shape in self.scratch.items()}
-        self._arrays |= {name: self._storage(f"particles.{name}") for name in _OF_PARTICLES}
+        self._arrays |= {path.partition(".")[2]: self._storage(path) for path in MOTION}
         self._arrays |= {"control": self._control, "account": self._account, "measures": self.measures}
         self._bind_arguments()
         self._bind_observed()
@@ -314,7 +314,7 @@ class Program:
 def _by_table_and_role(model: Model, written: Iterable[str]) -> list[tuple[str, list[str], Role]]:
     """Table, arrays and role of the columns that steps change, those of commits included."""
     paths = [f"clock.{name}" for name in (*CONTROL, *_ORIGIN, *_COUNTS, *ACCOUNT)]
-    paths += [*(f"particles.{name}" for name in _OF_PARTICLES), *written]
+    paths += [*MOTION, *written]
     found: dict[tuple[str, Role], list[str]] = {}
     for path in dict.fromkeys(paths):
         table, _, name = path.partition(".")

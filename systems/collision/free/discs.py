@@ -84,7 +84,7 @@ class Discs:
         rest_height: float = REST_HEIGHT,
         joined: Sequence[tuple[int, int]] | NDArray[Any] = (),
         time: float = 0.0,
-        obstacles: Obstacles | None = None,
+        obstacles: Obstacles = NO_OBSTACLES,
         lost: float = 0.0,
     ) -> None:
         """Take over the state at `time` (s).
@@ -96,7 +96,7 @@ class Discs:
         never move; in pairs their numbers follow those of the discs. lost: energy lost so far, J.
         """
         place = np.atleast_2d(np.asarray(position, dtype=np.float64))
-        self._obstacles = obstacles if obstacles is not None else NO_OBSTACLES
+        self._obstacles = obstacles
         self.count = len(place)
         n = self.count + len(self._obstacles)
         self.rows = np.zeros((n, len(Disc)))
