@@ -73,8 +73,8 @@ class Preparation(System):
         if before != self._structure:  # what was made or deleted is seen first
             return
         seen, self._seen = self._seen, simulation.model.revision
-        loaded, self._loaded = self._loaded, simulation.ready
-        if loaded and simulation.ready and self._waits_for_meetings(simulation) is None:
+        loaded, self._loaded = self._loaded, simulation.programs.ready
+        if loaded and simulation.programs.ready and self._waits_for_meetings(simulation) is None:
             self._load_driven(simulation)
             if seen == self._seen and not frame.session.busy:
                 self._load_pulled(simulation)
@@ -116,7 +116,7 @@ class Preparation(System):
         if simulation.integrator.exact:  # it may be ready, but not for piles
             waits = [self._waits_for_units(units) for units in _units(simulation)]
             return max((waited for waited in waits if waited is not None), default=None)
-        if simulation.ready:
+        if simulation.programs.ready:
             return self._waits_for_meetings(simulation)
         job = _job(simulation, simulation.plan)
         waited = self._waits(job, lambda: _is_compiled(simulation))

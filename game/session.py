@@ -188,7 +188,9 @@ class Session(Context):
     def without_frames(self) -> Iterator[None]:
         """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
         simulation, frame = self.simulation, Unseen(self, 0.0)
-        if self.performing or not self.schedule.runs_headless(Phase.EVENTS, simulation.scene, self.model):
+        if self.performing or not self.schedule.runs_headless(
+            Phase.EVENTS, simulation.programs.scene, self.model
+        ):
             yield
             return
 

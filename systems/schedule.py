@@ -17,12 +17,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from graphlib import CycleError, TopologicalSorter
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 from components.model import Model
 from systems.base import Commit, Integrator, Law, Phase, StepSystem, System
-
-S = TypeVar("S", bound=System)
 
 
 class ScheduleError(ValueError):
@@ -90,7 +88,7 @@ class Schedule:
         self._check_conflicts(ordered, predecessors)
         return tuple(ordered)
 
-    def _known(self, system: System, others: Sequence[str], phase_systems: dict[str, S]) -> list[str]:
+    def _known(self, system: System, others: Sequence[str], phase_systems: Mapping[str, System]) -> list[str]:
         """The named systems that are in the same phase; absent ones are allowed, misplaced ones are not."""
         for other in others:
             elsewhere = [s for s in self._systems if s.name == other and other not in phase_systems]

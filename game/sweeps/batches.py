@@ -140,7 +140,7 @@ class Batches:
                 simulation = self._runner.simulation
                 if not any(system.impulsive for system in simulation.plan):
                     self._programs[key] = BatchProgram(
-                        simulation.step_program, self._threads, varied_arrays=self._loads_vary
+                        simulation.programs.compiled, self._threads, varied_arrays=self._loads_vary
                     )
         return self._programs[key]
 

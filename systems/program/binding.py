@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from components.field import Role
 from components.model import Model
-from systems.base import ACCOUNTS, Commit, Event, Integrator, Law, StepSystem
+from systems.base import Commit, Event, Integrator, Law, StepSystem
+from systems.entries import ACCOUNTS
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
 PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for

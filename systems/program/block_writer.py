@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from systems.base import ACCOUNTS
+from systems.entries import ACCOUNTS
 from systems.program.binding import Bound, StepRole
 from systems.program.loops import RodLoop
 from systems.program.pasting import indented

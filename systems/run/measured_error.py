@@ -52,7 +52,7 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     meaningless = met or simulation.program.watches_events or simulation.integrator.exact
     if meaningless or not clock.time > then["clock.time"][0]:
         return None
-    program = simulation.step_program
+    program = simulation.programs.compiled
     reached, size, target = model.particles.displacement.copy(), clock.step_size, simulation.moved_until
     yielded = clock.dissipated_plastic > then["clock.dissipated_plastic"][0]
     with simulation.aside(beginning):

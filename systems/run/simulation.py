@@ -19,7 +19,6 @@ from systems.collision.driven.stepper import DrivenCollisions
 from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
 from systems.collision.overlaps import part_overlaps
-from systems.program.program import Program
 from systems.program.writer import REVIEW_INTERVAL
 from systems.run.checkpoint import Checkpoint
 from systems.run.energy import Account, Energy
@@ -61,7 +60,9 @@ class Simulation:
     reason: why the last advance ended; message: the same as a sentence, or "".
     note: what a person should know though the run goes on, or "".
     impacts: what collided so far. compute_seconds: spent so far in steps.
-    step_size: how long steps are, and what limits them.
+    armed: all edits are accounted for, and the step size fits the document. armed_revision: changes whenever the
+    document that is run changed.
+    programs: by what steps are taken. step_size: how long they are, and what limits them.
     before_steps: each is called before steps are taken, and returns how many may be taken before the next call.
     events: what happened so far, without what was taken back.
     """
@@ -76,18 +77,18 @@ class Simulation:
         self.before_steps: list[Callable[[], int]] = []
         self.events: list[EventRecord] = []
         self.impacts = Impacts(model)
-        self._programs = Programs(model, schedule, self.impacts, scene)
+        self.programs = Programs(model, schedule, self.impacts, scene)
         self._sleep = Sleep(model)
-        self.step_size = StepSize(model, self._programs, self._sleep)
-        self._steps = ProgramSteps(model, self._programs, self._sleep, self.step_size)
+        self.step_size = StepSize(model, self.programs, self._sleep)
+        self._steps = ProgramSteps(model, self.programs, self._sleep, self.step_size)
         self._driven_collisions = DrivenCollisions(model, self.impacts, self._steps)
         self._account = Account(model, self._measured)
-        self._recovery = Recovery(model, self._programs, self._sleep, self.step_size)
+        self._recovery = Recovery(model, self.programs, self._sleep, self.step_size)
         self._announces = True
         self._present: tuple[int, Snapshot] | None = None  # the state at this revision
         self._rested = 0.0  # s, when it came to rest last
-        self._armed = False  # the energy account and the step size fit the present document
-        self._armed_revision = -1
+        self.armed = False
+        self.armed_revision = -1
         model.before_change = self.before_change
         model.derive(Derivation(OBSERVED, self._sources(), lambda world: self.observe()))
         self.forget()  # a saved run goes on with the step size it had
@@ -105,69 +106,39 @@ class Simulation:
     # --- what takes the steps ------------------------------------------------------------------------
 
     @property
-    def scene(self) -> str:
-        """The name of the scene whose laws, commits and integrators act."""
-        return self._programs.scene
-
-    @property
     def plan(self) -> list[StepSystem]:
         """The laws and commits that act in its scene and that the model needs, in order."""
-        return self._programs.plan
+        return self.programs.plan
 
     def planned(self, scene: str = "") -> Plan:
         """All systems that run in a scene (none given: its own) with its model, and why the others do not."""
-        with self._programs.in_scene(scene or self.scene):
-            return self._programs.planned()
+        with self.programs.in_scene(scene or self.programs.scene):
+            return self.programs.planned()
 
     def act_in(self, scene: str) -> None:
         """Let the systems of a scene act from now on. What they do otherwise counts as an edit."""
-        if self._programs.differ_in(scene):
+        if self.programs.differ_in(scene):
             self.before_change()  # the edit starts from the energy under the laws until now
-        self._programs.scene = scene
+        self.programs.scene = scene
 
     @property
     def integrator(self) -> Integrator:
         """What advances time: an integrator, or exact flight."""
-        return self._programs.integrator
+        return self.programs.integrator
 
     @property
     def program(self) -> Dynamics:
         """What moves the model, bound to it as it is now."""
-        return self._programs.dynamics
-
-    @property
-    def step_program(self) -> Program:
-        """The same as a compiled step program; exact flight has none."""
-        return self._programs.compiled
-
-    @property
-    def ready(self) -> bool:
-        """False if the next step or observation needs a program that is not loaded yet."""
-        return self._programs.ready
-
-    @property
-    def compile_seconds(self) -> float:
-        """Spent so far in compiling or loading programs."""
-        return self._programs.compile_seconds
+        return self.programs.dynamics
 
     @property
     def _stepper(self) -> Flight | DrivenCollisions | ProgramSteps:
         """What takes the steps: exact flight, or those of a program, ended at impacts if any may come."""
         if isinstance(self.program, Flight):
             return self.program
-        return self._driven_collisions if self._programs.collides else self._steps
+        return self._driven_collisions if self.programs.collides else self._steps
 
     # --- getting ready -------------------------------------------------------------------------------
-
-    @property
-    def armed(self) -> bool:
-        """True if all edits are accounted for and the step size fits the document."""
-        return self._armed
-
-    @property
-    def armed_revision(self) -> int:
-        """Changes whenever the document that is run changed."""
-        return self._armed_revision
 
     @property
     def _started(self) -> bool:
@@ -175,17 +146,17 @@ class Simulation:
 
     def before_change(self) -> None:
         """Before anything is edited, note the energy that the edit starts from; the program is void."""
-        if self._armed:
+        if self.armed:
             self._account.begin_edit()
-            self._armed = False
+            self.armed = False
         if self.model.clock.collision_state is not None:
             self.model.writable("clock.collision_state")[0] = None
-        self._programs.void()
+        self.programs.void()
         self._sleep.forget()
 
     def _arm(self) -> None:
         """Get ready to run after edits: account for them, choose the step size, keep a safe state."""
-        if not self._armed:
+        if not self.armed:
             problem = incomputable(self.model)
             if not problem:
                 self._part_overlaps()
@@ -193,15 +164,15 @@ class Simulation:
                 self._account.close()
                 self._sleep.review(self.program)
                 self.step_size.begin(self.step_size.first())
-            self._armed = True
-            self._armed_revision = self.model.revision
+            self.armed = True
+            self.armed_revision = self.model.revision
             self._recovery.safe = None
             self.reason, self.message = StopReason.DIVERGED if problem else StopReason.DONE, problem
         elif self._recovery.safe is None:
             self.step_size.look_up()
         if self._recovery.safe is None:
             self._recovery.safe = self.present()
-        self._programs.bind()
+        self.programs.bind()
 
     def _part_overlaps(self) -> None:
         """Particles that edits left in one another's place are moved apart; a note says so."""
@@ -221,11 +192,11 @@ class Simulation:
 
     def forget(self) -> None:
         """The state was replaced (undo, a saved run) by one that fits the document, accounted for."""
-        self._programs.unbind()  # its plan may be another one: what is in contact is part of the state
+        self.programs.unbind()  # its plan may be another one: what is in contact is part of the state
         self._forget_run()
 
     def _forget_run(self) -> None:
-        self._armed = self._started
+        self.armed = self._started
         self._sleep.forget()
         self._account.before_edit = None
         self._recovery.forget()
@@ -249,32 +220,32 @@ class Simulation:
         return Checkpoint(
             Snapshot.take(self.model, *tables) if tables else self.present(),
             self.model.clock.steps,
-            self._armed,
+            self.armed,
             self._account.before_edit,
             self.step_size.stable,
             self.step_size.warning,
-            self._programs.bindings,
+            self.programs.bindings,
         )
 
     def resume(self, checkpoint: Checkpoint) -> None:
         """Return to a checkpoint in which the document was as it is now."""
         checkpoint.state.restore(self.model)
         self.events = [event for event in self.events if event.time <= self.model.clock.time]
-        if checkpoint.binding != self._programs.bindings:
-            self._programs.unbind()
+        if checkpoint.binding != self.programs.bindings:
+            self.programs.unbind()
         self._forget_run()
-        self._armed, self._account.before_edit = checkpoint.armed, checkpoint.before_edit
+        self.armed, self._account.before_edit = checkpoint.armed, checkpoint.before_edit
         if checkpoint.whole:  # else what limits the step is found out anew
             self._recovery.safe = checkpoint.state
             self.step_size.stable, self.step_size.warning = checkpoint.stable_step, checkpoint.warning
-        self._armed_revision = self.model.revision
+        self.armed_revision = self.model.revision
 
     # --- running -------------------------------------------------------------------------------------
 
     @property
     def halted(self) -> bool:
         """True if the run ended by itself, at rest or diverged, and nothing was edited since."""
-        return self._armed and self.reason in ENDS
+        return self.armed and self.reason in ENDS
 
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> int:
         """Take up to `steps` steps, none of which ends after `until` (s); returns how many.
@@ -408,7 +379,7 @@ class Simulation:
         """What is run inside starts from another state, and is taken back as if it had not been."""
         before, announces = self.checkpoint(), self._announces
         self._announces = False  # what happened is known
-        said = self.reason, self.message, self.note, self._armed_revision
+        said = self.reason, self.message, self.note, self.armed_revision
         self.resume(replace(before, state=beginning, armed=False, before_edit=None))
         try:
             self._arm()
@@ -416,7 +387,7 @@ class Simulation:
         finally:
             self.resume(before)
             self._announces = announces
-            self.reason, self.message, self.note, self._armed_revision = said
+            self.reason, self.message, self.note, self.armed_revision = said
 
     # --- reading -------------------------------------------------------------------------------------
 
@@ -432,7 +403,7 @@ class Simulation:
     @property
     def energy(self) -> Energy:
         """The energy account now."""
-        return self._account.energy(edited=not self._armed)
+        return self._account.energy(edited=not self.armed)
 
     @property
     def moved_until(self) -> float:

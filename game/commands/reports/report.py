@@ -164,7 +164,7 @@ def _run(
         "time_step": clock.step_size if moves else None,
         "integrator": simulation.integrator.key if moves else None,
         "wall_seconds": simulation.compute_seconds,
-        "compile_seconds": simulation.compile_seconds,
+        "compile_seconds": simulation.programs.compile_seconds,
         "events": [],
         "states": states,
     }

@@ -210,7 +210,7 @@ def test_what_is_beyond_all_numbers_stays_awake_without_a_warning(beyond: float)
 def test_an_island_is_at_rest_by_the_rule_by_which_a_run_ends() -> None:
     """judge() of a model with one island, in states from motion to rest."""
     session = Session.open(vee("one", 0.0, 20.0) | {"settings": STEPS | {"sleeping": False}})
-    program, state = session.simulation.step_program, session.model
+    program, state = session.simulation.programs.compiled, session.model
     of_particle = islands(state)
     of_rod = of_particle[state.rods.between].max(axis=1)
 
