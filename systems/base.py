@@ -26,7 +26,21 @@ from numpy.typing import NDArray
 
 from components.handle import Handle
 from components.model import Model
-from systems.entries import ACCOUNTS as ACCOUNTS  # for mods
+from systems.entries import ACCOUNTS
+
+__all__ = [
+    "ACCOUNTS",
+    "EVENT_INTERVAL",
+    "Commit",
+    "Event",
+    "Integrator",
+    "Law",
+    "Mod",
+    "Phase",
+    "StepSystem",
+    "StopReason",
+    "System",
+]
 
 
 class Phase(Enum):

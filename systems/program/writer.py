@@ -13,7 +13,7 @@ import numpy as np
 
 from components.model import Model
 from components.rod import is_warm
-from systems.base import Event, Integrator, Law, StepSystem, StopReason
+from systems.base import Event, Integrator, StepSystem, StopReason
 from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
 from systems.physics.automatic import SMALL
 from systems.program.binding import (
@@ -132,7 +132,7 @@ class Writer:
         self.names |= {"conserved": conserved, "judge": judge}
         self.names |= {kind.__name__: kind for kind in _ENTRIES}
         self.rates = bool(self.of[StepRole.RATE] or self.of[StepRole.RESISTANCE])
-        self.working = [b for b in self.of[StepRole.SUMMED] if not _is_elastic(b)]
+        self.working = [b for b in self.of[StepRole.SUMMED] if not getattr(b.system, "elastic", False)]
         self.powers = self.rates or bool(self.of[StepRole.PARTICLE_FORCE] or self.working)
         # All arrays that the functions read or write besides the integrator's own.
         self.columns = [*_ALWAYS, *(["rods_misfit"] if self.warm else [])]
@@ -177,7 +177,7 @@ class Writer:
             self._integrate(),
             *(self._pasted(part, "inlined") for part in reversed(self.integrator.parts)),
             *self._of_steps(),
-            self._external(),
+            pasted(forces.external, "compiled", particle_forces=self._particle_forces()),
             self._measure(),
             self._observe(),
             *([self._commit()] if self.commits else []),
@@ -245,9 +245,6 @@ class Writer:
         ]
 
     # --- particles --------------------------------------------------------------------------------
-
-    def _external(self) -> str:
-        return pasted(forces.external, "compiled", particle_forces=self._particle_forces())
 
     def _particle_forces(self, powers: bool = False, span: str = EVERY) -> list[str]:
         """Forces on the particles from outside, and of the laws that resist their motion."""
@@ -542,7 +539,3 @@ def _literal(value: Any) -> str:
 def _origin(function: Any) -> str:
     plain = getattr(function, "py_func", function)
     return f"{plain.__module__}.{plain.__qualname__}"
-
-
-def _is_elastic(b: Bound) -> bool:
-    return isinstance(b.system, Law) and b.system.elastic

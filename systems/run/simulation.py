@@ -159,7 +159,8 @@ class Simulation:
         if not self.armed:
             problem = incomputable(self.model)
             if not problem:
-                self._part_overlaps()
+                collides = any(system.impulsive for system in self.plan)
+                self.note = part_overlaps(self.model) if collides else ""  # of what edits left in one place
                 self.program.commit()  # what edits left beyond a strength yields
                 self._account.close()
                 self._sleep.review(self.program)
@@ -173,11 +174,6 @@ class Simulation:
         if self._recovery.safe is None:
             self._recovery.safe = self.present()
         self.programs.bind()
-
-    def _part_overlaps(self) -> None:
-        """Particles that edits left in one another's place are moved apart; a note says so."""
-        collides = any(system.impulsive for system in self.plan)
-        self.note = part_overlaps(self.model) if collides else ""
 
     def account_for_edits(self) -> None:
         """If the run was edited, account for it now, so that its state is complete."""

@@ -87,19 +87,14 @@ def first_impact(h, pairs, kinds, position, before, velocity, after, radius, spa
 
 @compiled
 def resolve(members, count, restitution, tolerance, group):
-    """Resolve an impact, or where the restitution is negative only separate the motion.
+    """Resolve the impact of a group whose links, normals and velocities are set; see kernels/impact.py.
 
-    One kernel for both, so that what they share is compiled once.
+    Where the restitution is negative the motion is separated instead: by one kernel, so that what both share is compiled
+    once.
     """
     if restitution < 0.0:
         separate_motion(members, count, tolerance, group)
-    else:
-        resolve_impact(members, count, restitution, group)
-
-
-@compiled
-def resolve_impact(members, count, restitution, group):
-    """Resolve the impact of a group whose links, normals and velocities are set; see kernels/impact.py."""
+        return
     for c in range(count):
         group.contacts[c, Contact.BIAS] = 0.0
         group.contacts[c, Contact.COMPLIANCE] = compliance(c, c, group)
