@@ -58,7 +58,7 @@ class Camera:
     def to_pixels(self, points: ArrayLike) -> NDArray[np.float64]:
         """Model points (m), shape (..., 2), as pixels."""
         points = np.asarray(points, dtype=np.float64)
-        pixels = np.empty_like(points)  # by columns, since numpy is slow along an axis of two
+        pixels = np.empty_like(points)  # by columns: numpy is slow along an axis of two
         pixels[..., 0] = self.middle[0] + (points[..., 0] - self.centre[0]) * self.scale
         pixels[..., 1] = self.middle[1] - (points[..., 1] - self.centre[1]) * self.scale
         return pixels

@@ -54,6 +54,9 @@ class _Saved(Mapping[str, Any]):
 
     __hash__ = None  # type: ignore[assignment]
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({dict(self)!r})"
+
 
 class FreeFlightState(_Saved):
     """The parabolas of all particles and the contacts that persist, of particles that fly free.

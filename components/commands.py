@@ -68,7 +68,7 @@ class Group:
 
 @runtime_checkable
 class Custom(Protocol):
-    """A command of a mod's own, for what is not in a table: applying it returns what takes it exactly back."""
+    """A command of a mod, for data outside the tables; applying it returns its exact inverse."""
 
     def apply(self, world: Any) -> Command:
         """Make the change in a World; returns the inverse."""

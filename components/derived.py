@@ -1,4 +1,4 @@
-"""What follows directly from the document: masses, lengths, limits and constant forces."""
+"""Derived columns: masses, lengths, limits and constant forces."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ def derive_lengths(world: World) -> None:
 def derive_masses(world: World) -> None:
     """Lumped masses (half of each attached rod's density × rest length) and mobilities."""
     particles, rods = world.tables["particles"], world.tables["rods"]
-    with np.errstate(over="ignore"):  # what is too large is told before it is computed with
+    with np.errstate(over="ignore"):  # too large numbers are reported before a run
         half = 0.5 * rods.density * rods.rest_length
     lumped = np.bincount(rods.between.ravel(), np.repeat(half, 2), particles.count)
     lumped[lumped == 0.0] = DEFAULT_MASS
     prescribed = particles.prescribed_mass
     mass = world.writable("particles.mass")
     mass[...] = np.where(np.isnan(prescribed), lumped, prescribed)
-    with np.errstate(over="ignore", divide="ignore"):  # likewise what is too small
+    with np.errstate(over="ignore", divide="ignore"):  # too small numbers are, too
         mobility = np.where(particles.fixed, 0.0, 1000.0 / mass[:, None])
     world.writable("particles.mobility")[...] = mobility
 
@@ -57,7 +57,7 @@ def derive_constant_force(world: World) -> None:
     particles, loads = world.tables["particles"], world.tables["loads"]
     environment = world.tables["environment"]
     constant = [row for row, history in enumerate(loads.history) if history["kind"] == CONSTANT["kind"]]
-    with np.errstate(over="ignore", invalid="ignore"):  # who computes with what is too large says so
+    with np.errstate(over="ignore", invalid="ignore"):  # too large numbers are reported before a run
         acceleration = particles.acceleration + environment.acceleration
         force = particles.force + environment.force + particles.mass[:, None] * acceleration / 1000.0
         np.add.at(force, loads.on[constant], loads.force[constant])

@@ -118,7 +118,7 @@ class Field(Generic[T]):
         self.dtype = dtype
         self.shape = shape
         self.role = role
-        self.derived = role is Role.DERIVED  # asked so often that a look at the enumeration would be felt
+        self.derived = role is Role.DERIVED  # asked so often that comparing roles would be felt
         self.shown = shown if shown is not None else (unit, 1.0)
         self.minimum = minimum
         self.maximum = maximum
@@ -193,7 +193,7 @@ class Field(Generic[T]):
     def _column_of_default(self, where: str) -> Column:
         try:
             return self.allocate(1)
-        except (TypeError, ValueError):  # numpy's, which do not say where
+        except (TypeError, ValueError):  # numpy's errors do not name the place
             self.check(self.default, where)
             raise
 
@@ -260,7 +260,7 @@ class Field(Generic[T]):
             raise FieldError(f"{where}: {self.title} is {value!r}; choose one of {', '.join(self.choices)}.")
         if not isinstance(value, str):
             raise FieldError(f"{where}: {self.title} is {value!r}; it must be a text.")
-        return str(value)  # numpy's texts are a type of their own
+        return str(value)  # numpy's texts are of another type
 
     def _components(self, value: Any, where: str, of_what: str) -> list[Any]:
         if isinstance(value, str | bytes | Mapping | Set) or not np.iterable(value):

@@ -50,7 +50,7 @@ class Tile(Handle):
 class Form(World):
     """The boxes and tiles of one screen.
 
-    They are entities like all others, but not of the model: neither its undo nor its run notices them.
+    They are entities of a world of their own, apart from the undo log and the run of the model.
     check: why a box's text is refused, or "".
     """
 

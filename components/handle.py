@@ -18,7 +18,7 @@ from components.table import Store, Table, living
 class Handle:
     """The component of an entity: its identity, whose Fields read and write one row of a table.
 
-    It does not keep its world alive: esper keeps every component, and so would keep every world for ever.
+    It refers to its world weakly: esper keeps every component, and so would keep every world for ever.
     """
 
     __slots__ = ("_world", "entity")
@@ -41,10 +41,10 @@ class Handle:
         deque(map(_set_world, handles, repeat(weakref.ref(world))), maxlen=0)
         return handles
 
-    if not TYPE_CHECKING:  # or any name would be right
+    if not TYPE_CHECKING:  # else type checkers would accept any name
 
         def __getattr__(self, name: str) -> Any:
-            """Tell what was meant by a name that is not there."""
+            """Refuse an unknown name, and suggest the nearest."""
             inner = {*dir(Handle), *Handle.__annotations__}
             facts = [known for known in dir(type(self)) if known not in inner and not known.startswith("_")]
             of = self.noun if self.single else f"a {self.noun}"
@@ -75,7 +75,7 @@ class Handle:
 
     @classmethod
     def after_change(cls, table: Table[Any], rows: NDArray[np.intp], changed: Collection[str]) -> None:
-        """Make what follows from changed Fields of some rows agree with them, or refuse it by FieldError.
+        """Adjust what depends on changed Fields of some rows, or refuse the change by FieldError.
 
         Called after rows were created (all Fields changed) or assigned to, inside the same transaction.
         """
@@ -84,6 +84,6 @@ class Handle:
         return f"<{self.world.describe(self)}>" if self.exists else f"<deleted {self.noun}>"
 
 
-# Setters of the slots, which many handles are handed to at once without a look at the name.
+# Setters of the slots, for many handles at once without __setattr__.
 _set_world: Callable[[Handle, weakref.ref[Store]], None] = vars(Handle)["_world"].__set__
 set_entity: Callable[[Handle, int], None] = vars(Handle)["entity"].__set__

@@ -1,4 +1,4 @@
-"""Extremes: numbers that can be kept, but whose squares and products are beyond what can be computed with."""
+"""Numeric range: numbers that can be stored, but are too large or too small to compute with."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import numpy as np
 from components.field import Column, Field, Role
 from components.model import Model
 
-LARGEST, SMALLEST = 1e30, 1e-30  # in the units inside; SMALLEST of what must be above 0
+LARGEST, SMALLEST = 1e30, 1e-30  # in inside units; SMALLEST holds for Fields that must be above 0
 
 _TABLES = ("particles", "rods", "loads", "environment", "settings")
-_FOLLOWING = ("rest_length", "mass")  # derived, but from positions that may be too near or too far
+_FOLLOWING = ("rest_length", "mass")  # derived, from positions that may be too near or too far
 _MOVING = ("displacement", "velocity", "plastic_strain")  # state that a person can type
 
 
@@ -38,7 +38,7 @@ def is_extreme(field: Field[Any], column: Column) -> Column:
 
 
 def is_computed_with(field: Field[Any]) -> bool:
-    """True if the numbers of a Field must not be extreme: what a person made, and what follows from it at once."""
+    """True if the numbers of a Field are checked: those that a person made or can type, and some that follow."""
     return field.dtype is float and (field.role is Role.DOCUMENT or field.name in (*_FOLLOWING, *_MOVING))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -12,10 +12,8 @@ from numpy.typing import NDArray
 
 from components.field import Role
 from components.handle import Handle
+from components.model import Model
 from components.table import Table
-
-if TYPE_CHECKING:
-    from components.model import Model
 
 Floats = NDArray[np.float64]
 

@@ -1,11 +1,11 @@
-"""Names that are not there: which one was meant, and the words that say so."""
+"""Suggestions: what to say about a name that does not exist, with the nearest one that does."""
 
 from __future__ import annotations
 
 import difflib
 from collections.abc import Collection
 
-_FEW = 30  # names are told rather than none
+_FEW = 30  # names; so few are listed
 
 
 def nearest(name: str, names: Collection[str], cutoff: float = 0.6) -> str | None:
@@ -16,7 +16,7 @@ def nearest(name: str, names: Collection[str], cutoff: float = 0.6) -> str | Non
 
 
 def remedy(name: str, names: Collection[str]) -> str:
-    """What to do about a name that is not among some: the end of a sentence."""
+    """The end of a sentence about a name that is not among some: the nearest name, or all of them."""
     few = len(names) <= _FEW
     if near := nearest(name, names, cutoff=0.6 if few else 0.4):
         return f"did you mean '{near}'?"

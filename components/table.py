@@ -90,7 +90,7 @@ class Table(Generic[H]):
         self._blocks = self._side_by_side() if kind.single else {}
 
     def _side_by_side(self) -> dict[tuple[str, ...], Column]:
-        """Let the numbers of a single row lie in one array for each type and role, to be copied together."""
+        """Store the numbers of a single row in one array for each type and role, to be copied together."""
         alike: dict[tuple[Any, Role], list[str]] = {}
         for name, field in self.fields.items():
             if field.dtype in (float, int) and not field.shape:
@@ -212,7 +212,7 @@ class Table(Generic[H]):
     def storage(self, *group: str) -> Column:
         """The array of one column, shape (count, ...), or of a group of columns, to write to.
 
-        It is neither marked as changed nor brought up to date: who writes to it marks it then.
+        It is neither marked as changed nor brought up to date: the writer marks it.
         """
         return self._columns[group[0]][: self.count] if len(group) == 1 else self._blocks[group]
 
@@ -227,11 +227,11 @@ class Table(Generic[H]):
     def mark(self, names: Iterable[str], role: Role) -> None:
         """Mark columns, all with this role, and those stored with them as changed now."""
         versions, first_of, revision = self._versions, self._first_of, self.world.next_revision(role)
-        for name in names:  # quicker than an update
+        for name in names:  # faster than an update
             versions[first_of[name]] = revision
 
     def arrays_of(self, names: Iterable[str]) -> list[str]:
-        """Of these columns one for each array that they lie in: who marks it marks them all."""
+        """One of these columns for each array that they are stored in; marking it marks all of that array."""
         return list(dict.fromkeys(self._first_of[name] for name in names))
 
     def free_names(self, count: int, besides: Iterable[str] = ()) -> list[str]:

@@ -41,7 +41,7 @@ class World:
 
     on_command: called with the inverse of every executed command (the undo log listens here).
     before_change: called before any command is applied (a running simulation notes what it starts from).
-    before_command: called before a command begins; what it raises stops whoever gives the command.
+    before_command: called before a command begins; its exceptions stop the command.
     revision: grows by one at every change of anything.
     changing: a command is being applied; code that is interrupted now would leave half of it.
     """
@@ -156,7 +156,7 @@ class World:
         row = self.row_of_entity.item(handle.entity)
         column = self.tables[handle.table]._columns[field.name]
         if row < 0:
-            row = self.row(handle)  # raises
+            row = self.row(handle)  # raises LookupError
         return column.item(row) if field.plain else field.loaded(column, row)
 
     def write(self, handle: Handle, field: Field[Any], value: Any) -> None:
@@ -175,7 +175,7 @@ class World:
         first = self.describe(handles[0])
         rows = self.row_of_entity[ids]
         for row in np.flatnonzero(rows < 0)[:1].tolist():
-            self.row(handles[row])  # raises
+            self.row(handles[row])  # raises LookupError
         field = self._settable(table, field_name, first)
         column = self._checked(field, values, len(handles), lambda row: self.describe(handles[row]))
         if field.name == "name":

@@ -18,7 +18,8 @@ from game.interrupts import quietly_interrupted
 with quietly_interrupted():
     from game import included as _included  # noqa: F401 (registers what is written as mods are)
     from game.checks import SystemCheckError, check_system
+    from game.editor.context import Context
     from game.session import Session
     from game.version import __version__
 
-__all__ = ["Session", "SystemCheckError", "__version__", "check_system"]
+__all__ = ["Context", "Session", "SystemCheckError", "__version__", "check_system"]

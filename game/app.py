@@ -52,10 +52,10 @@ from systems.render.theme import load_theme
 FRAME_RATE = 60  # Hz
 FIRST_SIZE = (1000, 720)  # points
 SMALLEST_SIZE = (320, 240)
-SELDOM = 1_000_000  # new objects, after which the garbage collector looks through them in mid work
-MANY_NEW = 20_000  # from which on it does while nothing happens
+SELDOM = 1_000_000  # new objects, after which the garbage collector runs even while a person works
+MANY_NEW = 20_000  # new objects, from which on it runs while nothing happens
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")  # where Linux says what to draw on
-UNSEEN = ("offscreen", "dummy")  # drivers of SDL whose windows nobody sees
+UNSEEN = ("offscreen", "dummy")  # drivers of SDL without a visible window
 
 Points = NDArray[np.float64]
 Colours = NDArray[np.uint8]
@@ -73,11 +73,11 @@ def open_window(
     record: tuple[str | None, Any] = (None, None),
     lesson: Script | None = None,
 ) -> list[Failure]:
-    """Show a model until the person closes the window; a model without a name: what there is. Raises NoDisplay.
+    """Show a model, or a choice of models if it has no name, until the window is closed. Raises NoDisplay.
 
-    theme: the name of its colours; None: those that the person chose last. record: the file to write what the
-    person does to, if any, and the model as the script names it. lesson: a script to play first; what it
-    expected in vain is returned.
+    theme: the name of its colours; None: those that the person chose last. record: the file for a
+    recording, if any, and the model as its header names it. lesson: a script to play first; its failed
+    expectations are returned.
     """
     path, source = record
     autosave, trouble = _autosave()
@@ -94,7 +94,7 @@ def open_window(
 
 
 def _autosave() -> tuple[Autosave | None, str]:
-    """None where nothing can be written, and why; the program is of use all the same."""
+    """The autosave of this person; None and the reason where nothing can be written."""
     try:
         return Autosave(), ""
     except OSError as error:
@@ -118,7 +118,7 @@ def _find_display() -> None:
 
 
 class App:
-    """The window and its session; without a preparation it stands still while something is compiled."""
+    """The window and its session. preparation: compiles in another process; without it, compiling stops the frames."""
 
     def __init__(
         self,
@@ -147,7 +147,7 @@ class App:
         systems: list[System] = [self.input, Hover(), *further, self.render]
         self.session = Session(model, systems, View(theme=theme), file)
         self.session.window = self
-        self.session.faults_seen = 0  # also which mods were left out is shown
+        self.session.faults_seen = 0  # so that mods that were left out are shown
         self.session.autosave = self.autosave = autosave
         self.session.preparation = self.preparation = preparation
         self._theme = theme
@@ -159,10 +159,10 @@ class App:
         self._known: OpenDocument | None = None
 
     def run(self) -> list[Failure]:
-        """Frames at 60 Hz until the window is closed; returns what played scripts expected in vain."""
+        """Run frames at 60 Hz until the window is closed; returns the failed expectations of played scripts."""
         failures: list[Failure] = []
         thresholds = gc.get_threshold()
-        gc.set_threshold(SELDOM)  # else it looks through thousands of new elements in mid edit; see _clean_up
+        gc.set_threshold(SELDOM)  # else it runs in the middle of large edits; see _clean_up
         try:
             while not self.closed:
                 self.next_frame()
@@ -179,7 +179,7 @@ class App:
         return failures
 
     def close(self) -> None:
-        """Close the window. Left to quit(), it would close once more when it is collected: perhaps the next one's."""
+        """Close the window now; when it was collected later, it would close the display of the next one."""
         self.window.destroy()
         pygame.display.quit()
 
@@ -254,10 +254,10 @@ class App:
             self.window.title = title
 
     def _clean_up(self) -> None:
-        """While nothing happens, let the garbage collector look through what is new.
+        """Run the garbage collector while nothing happens.
 
-        Through a newly opened model it looks for the last time: its elements stay, and looking through those of
-        a large one takes a tenth of a second, else in mid drag.
+        The elements of a newly opened model are frozen, since they stay: collecting a large model takes a tenth of
+        a second, else in the middle of a drag.
         """
         if self._known is not self.session.document:
             self._known = self.session.document
@@ -311,7 +311,7 @@ class App:
 
 
 def _save(surface: pygame.Surface, path: Path) -> None:
-    """Write a picture as what its suffix says, as a whole or not at all. Raises OSError."""
+    """Write a picture in the format of its suffix, as a whole or not at all. Raises OSError."""
     made = io.BytesIO()
     pygame.image.save(surface, made, path.suffix)
     models.replace(path, made.getvalue())
@@ -348,7 +348,7 @@ def _drawn(
 ) -> pygame.Surface:
     surface = pygame.Surface(size, depth=32)
     session.update_view()
-    status = replace(session.view.status, hint="")  # nobody presses keys in a picture
+    status = replace(session.view.status, hint="")  # a picture takes no keys
     camera = Camera(viewport=Viewport(0, 0, *size))
     view = replace(session.view, camera=camera, toolbar=Toolbar(), heading="", status=status)
     view.camera.fit(around, MARGIN, view.room, view.pixel_ratio)

@@ -1,4 +1,4 @@
-"""Session: one model in the program, with or without a window; what scripts and tests drive."""
+"""Session: the program with or without a window, as scripts and tests drive it."""
 
 from __future__ import annotations
 
@@ -383,7 +383,7 @@ class Session(Context):
 
 
 def _forward(name: str, value: float, *, whole: bool = False) -> float:
-    """How far a run goes, which a script said. Raises ValueError."""
+    """A time or a number of steps given by a script, checked. Raises ValueError."""
     number = isinstance(value, int | np.integer | (np.integer if whole else float | np.floating))
     if not number or isinstance(value, bool) or not math.isfinite(value):
         kind = "whole" if whole else "finite"

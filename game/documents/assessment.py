@@ -28,7 +28,7 @@ class Assessment:
         self._model = model
         self._simulation = simulation
         self._beginning: Snapshot | None = None
-        self._disturbed_at = math.inf  # the first step at which it was
+        self._disturbed_at = math.inf  # the first step with an edit or a pull
         self._theories: tuple[int, Theories] | None = None
         self._remarks: tuple[tuple[int, int], tuple[Event, ...]] | None = None
         self._error: tuple[tuple[int, int], MeasuredError | None] | None = None
@@ -39,7 +39,7 @@ class Assessment:
         self._theories = self._remarks = self._error = None
 
     def disturb(self) -> None:
-        """Something is changed during the run, now."""
+        """Note that the run is edited or pulled at the present step."""
         self._disturbed_at = min(self._disturbed_at, self._model.clock.steps)
 
     @property
@@ -81,7 +81,7 @@ class Assessment:
 
     @property
     def remarks(self) -> tuple[Event, ...]:
-        """What a run that came to rest did and a slowly growing load would not have done; none if unsure."""
+        """How a run at rest differs from what a slowly growing load would have done; empty if unsure."""
         at_rest = self._simulation.halted and self._simulation.reason is StopReason.REST
         if not at_rest or not self._is_comparable():
             return ()
@@ -93,10 +93,10 @@ class Assessment:
         return self._remarks[1]
 
     def error(self, most_work: float | None = None) -> MeasuredError | None:
-        """How far the displacements are from the exact motion; None where that is not known.
+        """The measured error of the displacements; None where it is not known.
 
-        most_work: evaluations of the forces of rods that measuring it may take; None: as many as no frame
-        would notice. What was measured before is known at once.
+        most_work: evaluations of the forces of rods that measuring may take; None: few enough for one frame. An error
+        measured before is kept.
         """
         from systems.run.measured_error import IN_A_FRAME, measure_error, work
 
@@ -110,7 +110,7 @@ class Assessment:
         return self._error[1]
 
     def _is_comparable(self) -> bool:
-        """True if the run is that of a structure under one load, at once or by one history, and nothing else."""
+        """True if the run is that of a structure under one load, at once or by one history, without collisions."""
         beginning = self._beginning
         if beginning is None or not (self.undisturbed and self._model.rods.count and self.is_small):
             return False

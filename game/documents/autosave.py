@@ -1,4 +1,4 @@
-"""Autosave: unsaved work, written every few seconds, so that a crash loses no more than that."""
+"""Autosave: unsaved work is written to recovery files every few seconds, so that a crash loses little."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from game.documents.open_documents import OpenDocument
 from systems.base import Phase, System
 
 INTERVAL = 2.0  # s between recovery files of the same model, at least
-SHARE = 0.05  # of the time at most goes into making them
-LAST_SESSION = "last session"  # the name under which edits are kept that nobody saved
+SHARE = 0.05  # of the time at most is spent on writing them
+LAST_SESSION = "last session"  # the model that keeps edits that nobody saved
 
 
 def recovered_name(path: Path) -> str:
@@ -34,7 +34,7 @@ def recovered_name(path: Path) -> str:
 
 
 def unkept(folder: Path, error: OSError) -> str:
-    """That unsaved work would not survive a crash, and why."""
+    """The sentence that unsaved work would not survive a crash, and why."""
     return (
         f"Unsaved work is not kept against a crash: {folder}: {error.strerror}. Make room there, or start Pinjoint with"
         f" {library.DATA_VARIABLE} naming another folder."
@@ -61,8 +61,8 @@ class Autosave(System):
         self._count = 0
         self._written: dict[OpenDocument, int] = {}  # revision of what the recovery file of a document holds
         self._due = 0.0
-        self._trouble = self._told = (
-            ""  # why the last recovery file could not be written; what of that was said
+        self._trouble = self._said = (
+            ""  # why the last recovery file could not be written; the reason that was said last
         )
         self._thread: threading.Thread | None = None
         self._folder.mkdir(parents=True, exist_ok=True)
@@ -85,18 +85,18 @@ class Autosave(System):
         return sorted(files, key=lambda path: path.stat().st_mtime, reverse=True)
 
     def left(self) -> list[Path]:
-        """What a crash left behind."""
+        """The recovery files that a crash left behind."""
         return [path for path in self._left if path.exists()]
 
     def take_over(self, path: Path, opened: OpenDocument) -> None:
-        """What was left behind is unsaved work of this document from now on."""
+        """Make a recovery file that of a document, whose work is unsaved."""
         self._left.remove(path)
         opened.recovery = path
         opened.saved = -1
         self._written[opened] = -1
 
     def discard(self) -> None:
-        """What a crash left behind is not wanted any more."""
+        """Delete the recovery files that a crash left behind."""
         for path in self._left:
             path.unlink(missing_ok=True)
         self._left = []
@@ -105,8 +105,8 @@ class Autosave(System):
 
     def process(self, frame: Any) -> None:
         """Write a recovery file of one model that changed, if it is time to; say once if that cannot be done."""
-        if self._trouble != self._told:
-            self._told = self._trouble
+        if self._trouble != self._said:
+            self._said = self._trouble
             frame.session.notice = self._trouble or frame.session.notice
         if (self._thread is not None and self._thread.is_alive()) or time.monotonic() < self._due:
             return
@@ -129,7 +129,7 @@ class Autosave(System):
 
     def _put(self, path: Path, still: _Still) -> None:
         began = time.monotonic()
-        with contextlib.suppress(models.ModelError):  # what no file can hold; saving says what is wrong
+        with contextlib.suppress(models.ModelError):  # numbers that no file can hold; saving says which
             content = msgspec.json.encode(document(cast(Model, still)))
             try:
                 models.replace(path, content)
@@ -164,7 +164,7 @@ class Autosave(System):
 
 
 class _Still:
-    """What a file holds of a model, as it is now, for `document` to read in another thread."""
+    """A copy of the data of a model that a file holds, for `document` to read in another thread."""
 
     def __init__(self, model: Model) -> None:
         self.title = model.title

@@ -30,7 +30,7 @@ FORMAT = "pinjoint model"
 VERSION = 1
 
 Migration = Callable[[dict[str, Any]], dict[str, Any]]
-MIGRATIONS: dict[int, Migration] = {}  # version → what turns its documents into those of the next version
+MIGRATIONS: dict[int, Migration] = {}  # by version: the function that turns a document into the next version
 
 SECTIONS: Mapping[str, type[Handle]] = MappingProxyType(
     {
@@ -46,7 +46,7 @@ SECTIONS: Mapping[str, type[Handle]] = MappingProxyType(
 REQUIRED: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {"particles": ("name", "position"), "rods": ("name", "between"), "loads": ("on",)}
 )
-FOREIGN = "components"  # where an element, and the document, keep what belongs to mods
+FOREIGN = "components"  # the key of the data of mods, at elements and in the document
 
 _HEADER = ("format", "version", "title", "description")
 _SAVED = (Role.DOCUMENT, Role.STATE)
@@ -111,7 +111,7 @@ def _parsed(document: Any) -> Model:
 
 
 def _read_added(model: Model, kinds: Any) -> None:
-    """Put the elements of mods' kinds into the model, and keep those of mods that are not loaded."""
+    """Read the elements of mods' kinds; those of mods that are not loaded are kept as they are."""
     path = f"$.{FOREIGN}"
     if not isinstance(kinds, Mapping):
         _fail(path, f"it must be an object, not {_kind_of(kinds)}.")
@@ -121,7 +121,7 @@ def _read_added(model: Model, kinds: Any) -> None:
         if name not in ADDED:
             _refuse_misspelt(name, ADDED, path)
             model.foreign_kinds[name] = _copied(elements, f"{path}.{name}")
-    for name, kind in ADDED.items():  # what refers to another comes after it
+    for name, kind in ADDED.items():  # kinds that refer to others come after them
         if name in kinds:
             _read(model, _section(f"{path}.{name}", kind, kinds[name]))
 
@@ -231,7 +231,7 @@ def _read(model: Model, section: _Section) -> None:
     else:
         try:
             handles = model.create(kind, len(section.elements), **columns)
-        except FieldError as error:  # what holds between the facts of a mod's element
+        except FieldError as error:  # the rules of the kind of a mod
             raise ModelError(f"{section.path}: {error}") from None
     if FOREIGN in section.keys:
         _keep_foreign(model, section, handles)
@@ -257,7 +257,7 @@ def _column(model: Model, section: _Section, field: Field[Any]) -> Column:
         return section.where(row, field.key)
 
     for row, value in enumerate(values if field.shape else ()):
-        if not isinstance(value, list | tuple):  # or two of these could pass for one vector for all
+        if not isinstance(value, list | tuple):  # else two values could pass for one vector for all
             field.check(value, where(row))
     return field.check_column(values, len(values), where)
 
@@ -306,7 +306,7 @@ def _are_names(names: Any, shape: tuple[int, ...]) -> bool:
 
 
 # --- what holds between several facts ------------------------------------------------------------------
-# The data layer sees to these rules too; here they are checked beforehand, to tell the path.
+# The model checks these rules too; here they are checked first, to name the path.
 
 
 def _check_particles(model: Model, section: _Section, columns: Columns) -> None:
@@ -354,7 +354,7 @@ _CHECKS: Mapping[type[Handle], Callable[[Model, _Section, Columns], None]] = Map
 
 
 def _check_components(section: _Section) -> None:
-    """What mods keep at elements has the form {"mod.Component": {…}}, with the keys of those that are loaded."""
+    """Check that the data of mods has the form {"mod.Component": {…}}, with the keys of loaded mods. Raises ModelError."""
     known = _components(section.kind)
     for row, element in enumerate(section.elements):
         if FOREIGN not in element:
@@ -372,7 +372,7 @@ def _check_components(section: _Section) -> None:
 
 
 def _refuse_misspelt(name: str, known: Collection[str], where: str) -> None:
-    """What is kept unread belongs to a mod that is not loaded; one that is knows all that is its own."""
+    """Refuse unknown components of a loaded mod; those of other mods are kept unread. Raises ModelError."""
     components = itertools.chain.from_iterable(map(_components, (*SECTIONS.values(), *ADDED.values())))
     mod = name.partition(".")[0]
     if mod in {loaded.partition(".")[0] for loaded in (*ADDED, *components)}:

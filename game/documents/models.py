@@ -84,7 +84,7 @@ def load(source: str | Path | Mapping[str, Any]) -> Model:
 
 @contextmanager
 def _nothing_collected() -> Iterator[None]:
-    """Garbage is not looked for meanwhile: among millions of new elements that takes a third of the time."""
+    """Switch the garbage collector off meanwhile: with millions of new elements it takes a third of the time."""
     collects = gc.isenabled()
     gc.disable()
     try:
@@ -121,11 +121,11 @@ def _decoded(raw: bytes, source: str) -> Any:
     raw = raw.removeprefix(codecs.BOM_UTF8)
     try:
         content = msgspec.json.decode(raw)
-        # The decoder keeps the last of repeated keys only, and with the others some texts are gone.
+        # The decoder keeps only the last of repeated keys, so that fewer texts come back.
         if _count_texts(raw) != _count_texts(msgspec.json.encode(content)):
             _refuse_repeated_keys(_decoded_strictly(raw, source), f"{source}: $")
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        _decoded_strictly(raw, source)  # knows the line
+        _decoded_strictly(raw, source)  # names the line
         raise _not_json(source, error) from None
     except RecursionError:
         raise ModelError(f"{source} is nested too deeply to be a model.") from None
@@ -208,7 +208,7 @@ def save(model: Model, path: str | Path) -> None:
 def replace(path: str | Path, content: bytes) -> None:
     """Give a file new content; at every moment it has either the old or the new one. Raises OSError, ValueError.
 
-    What is no file but a device or a pipe, and a file in whose folder nothing new can be made, is written into.
+    A device, a pipe, and a file in a folder without write permission are written in place.
     """
     path = Path(os.path.realpath(path))
     if path.exists() and not (path.is_file() and os.access(path.parent, os.W_OK)):
@@ -230,7 +230,7 @@ def replace(path: str | Path, content: bytes) -> None:
 def laid_out(value: Any, depth: int, indent: str = "", *, spaced: bool = True) -> str:
     """JSON text whose outermost `depth` levels have one entry a line, indented by 2 spaces.
 
-    spaced: also a space after every comma and colon, for people; else it is written sooner.
+    spaced: a space after every comma and colon, for people; without, writing is faster.
     """
     if depth == 0 or not isinstance(value, dict | list) or not value:
         return msgspec.json.format(msgspec.json.encode(value), indent=0).decode()
@@ -241,7 +241,7 @@ def laid_out(value: Any, depth: int, indent: str = "", *, spaced: bool = True) -
             for key, item in value.items()
         ]
         opening, closing = "{", "}"
-    elif depth == 1:  # quicker than one by one
+    elif depth == 1:  # faster than one by one
         entries = _ENCODER.encode_lines(value).decode().removesuffix("\n").split("\n")
         if spaced:
             entries = [msgspec.json.format(entry, indent=0) for entry in entries]

@@ -31,9 +31,9 @@ Stamp = tuple[int, ...]
 
 @dataclass(frozen=True)
 class ModelFile:
-    """Where a model is saved again (None: it has no place yet), and the name that it goes by.
+    """The file of a model and its name. path: None if the model was never saved.
 
-    stamp: of what the file held when it was opened or saved.
+    stamp: identifies the content of the file when it was opened or saved.
     """
 
     path: Path | None = None
@@ -42,12 +42,12 @@ class ModelFile:
 
     @classmethod
     def at(cls, path: Path) -> ModelFile:
-        """The file there, as it is now."""
+        """The file at a path with its present stamp."""
         return cls(path, path.stem, stamp_of(path))
 
 
 def stamp_of(path: Path) -> Stamp:
-    """What is another one as soon as anybody has written to a file; () if there is none."""
+    """A stamp that changes whenever the file is written; () if there is no file."""
     try:
         found = path.stat()
     except OSError:
@@ -150,7 +150,7 @@ class OpenDocument:
         return self.edited or (self.file.path is not None and self.newest > self.saved)
 
     def leave(self) -> None:
-        """Its time stops, nothing of it is held any more, and what only helps to step back is forgotten."""
+        """End the run and the pull of a hand, and drop the checkpoints."""
         if self._pull.hand is not None:
             self.timeline.hold(None)
         self.history.end_run()
@@ -163,7 +163,7 @@ class OpenDocument:
 
 
 class OpenDocuments:
-    """The open documents, one of them in use; those with unsaved work wait to be gone back to."""
+    """The open documents, one of them in use; undo and redo lead to the others."""
 
     def __init__(self, model: Model, schedule: Schedule, pull: Pull, file: ModelFile) -> None:
         self._schedule = schedule
@@ -179,7 +179,7 @@ class OpenDocuments:
 
     @property
     def current(self) -> OpenDocument:
-        """The one in use."""
+        """The document in use."""
         return self._documents[self._at]
 
     def add(self, model: Model, file: ModelFile) -> None:
@@ -202,7 +202,7 @@ class OpenDocuments:
         return 0 <= self._at + by < len(self._documents)
 
     def move(self, by: int) -> str:
-        """Use the document before (-1) or after (1) this one; returns what that undoes or repeats, or ""."""
+        """Use the document before (-1) or after (1) this one; returns what is undone or repeated so, or ""."""
         target = self._at + by
         if not self.can_move(by):
             return ""

@@ -45,7 +45,7 @@ def preferred_keys() -> list[tuple[str, str, str]]:
 
 
 def preferred_magnification() -> float:
-    """How much larger than by itself everything but the model is to be drawn; 1 where that cannot be read."""
+    """The factor by which type and symbols are enlarged; 1 where it cannot be read."""
     factor = _read().get("magnification")
     return float(factor) if factor in MAGNIFICATIONS else 1.0
 

@@ -1,4 +1,4 @@
-"""Shapes: how a structure can move without elongating a rod, or how it vibrates, as something to draw."""
+"""Shapes: mechanisms and natural modes of a structure, to be drawn over the model."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from components.model import Model
 from components.view import Shape
 
 DRAWN_SHARE = 0.12  # of the structure's size that the largest displacement is drawn as
-LOWEST = 10  # mechanisms, then modes, that one key goes through
-LOWEST_OF_LARGE = 50  # modes that are found of structures that are too large for all
-LARGEST = 2000  # rods up to which they are found while a person waits
+LOWEST = 10  # mechanisms, and modes, in the round of `next`
+LOWEST_OF_LARGE = 50  # modes of structures that are too large for all
+LARGEST = 2000  # rods; shapes of larger structures are left to the command line
 
 
 class NoShape(LookupError):
@@ -22,27 +22,27 @@ class NoShape(LookupError):
 
 
 class Shapes:
-    """The shape that is shown over a model, if any; it goes away when what it follows from changes."""
+    """The shape that is shown over a model, if any, until the model changes in what the shape depends on."""
 
     def __init__(self, model: Model) -> None:
         self._model = model
-        self._round: list[Shape] = []  # those that `next` goes through
+        self._round: list[Shape] = []  # the shapes that `next` goes through
         self._shown: Shape | None = None
         self._revision = -1
 
     @property
     def shown(self) -> Shape | None:
-        """What is drawn now."""
+        """The shape that is drawn now, if any."""
         if self._shown is not None and self._newest(self._shown) != self._revision:
             self._shown = None
         return self._shown
 
     def _newest(self, shape: Shape) -> int:
-        """The newest change of what a shape follows from: about an equilibrium, of the state too."""
+        """The revision of the newest change that matters to a shape: of the state, too, if it is about an equilibrium."""
         return self._model.newest(Role.DOCUMENT, *(() if shape.about is None else (Role.STATE,)))
 
     def show(self, shape: Shape) -> None:
-        """Draw this one until the model is edited, or leaves the equilibrium that it is about."""
+        """Draw a shape until the model is edited, or leaves the equilibrium that the shape is about."""
         self._shown, self._revision = shape, self._newest(shape)
 
     def next(self) -> None:

@@ -48,13 +48,13 @@ Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 Action = Callable[["Context", Vector], None]
 
 ACTIONS: dict[str, Action] = {}
-WHILE_DRAWING: set[str] = set()  # names of actions that what is being drawn or dragged survives
+WHILE_DRAWING: set[str] = set()  # names of actions during which a gesture goes on
 
 
 def action(name: str, *, while_drawing: bool = False) -> Callable[[Action], Action]:
     """Register a function(context, pixel) as a named action; `pixel` is where the pointer is.
 
-    while_drawing: it goes on with what is being drawn or dragged, or only looks; all others end that first.
+    while_drawing: the action belongs to a gesture or only looks; all others end the gesture first.
     """
 
     def register(function: Action) -> Action:
@@ -80,20 +80,20 @@ class Gesture:
     hint = "let go to finish     Esc cancel"
 
     def move(self, context: Context, pixel: Vector) -> None:
-        """The pointer was dragged to a pixel."""
+        """The pointer moved to a pixel."""
 
     def drop(self, context: Context, pixel: Vector) -> None:
         """Finish at a pixel. Raises Refusal or FieldError if that cannot be; then nothing has changed."""
 
     def cancel(self, context: Context) -> None:
-        """End it as if it had never begun."""
+        """End as if the gesture had never begun."""
 
     def leave(self, context: Context) -> None:
         """Something else was begun before it was finished."""
         self.cancel(context)
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
-        """What is drawn while it goes on, with the pointer at a pixel."""
+        """The preview while the gesture goes on, with the pointer at a pixel."""
         return None
 
 
@@ -125,20 +125,20 @@ class Scene:
 
     @property
     def message(self) -> str:
-        """What it asks, tells or refuses in a place of its own; "" if nothing."""
+        """What the scene asks, says or refuses in a place of its own; "" if nothing."""
         return ""
 
     def enter(self, context: Context) -> None:
-        """Called once when the scene becomes the active one."""
+        """The scene becomes the active one."""
 
     def exit(self, context: Context) -> None:
-        """Called once when it stops being the active one."""
+        """The scene stops being the active one."""
 
     def finish(self) -> None:
-        """Do now what was put off until a picture has announced it."""
+        """Do the work that waits until a picture has announced it."""
 
     def zoom(self, context: Context, factor: float, pixel: Vector) -> None:
-        """Look closer, so that what is under a pixel stays there."""
+        """Enlarge the picture by a factor about a pixel."""
         context.view.camera.zoom(factor, pixel)
         context.view.fitted = False
 
@@ -152,15 +152,15 @@ class Scene:
         context.view.fit(context.model)
 
     def helped(self, context: Context) -> Viewport:
-        """The part of the window in which its keys are shown."""
+        """The part of the window for the list of keys."""
         return context.view.canvas
 
     def resized(self, context: Context) -> None:
         """The window has another size."""
 
     def busy(self, context: Context) -> bool:
-        """True while frames change something without a person's doing."""
-        return False
+        """True while frames change something without a person's doing, as where time passes."""
+        return context.time_passes and not context.simulation.halted
 
     def focus(self, context: Context) -> tuple[Model, View]:
         """The model that a pointer picks from, and its view."""
@@ -175,11 +175,11 @@ class Scene:
 
     @property
     def boxes(self) -> dict[str, str]:
-        """What the boxes contain, by their titles."""
+        """Texts of the boxes, by their titles."""
         return {}
 
     def stages(self, context: Context) -> Sequence[Stage]:
-        """What is shown: models and forms, each in its view."""
+        """The models and forms that are shown, each in its view."""
         return [(context.model, context.view)]
 
     def hint(self, context: Context) -> str:
@@ -235,7 +235,7 @@ class Scenes:
 
 _TIME = Time()
 FAULTS: list[str] = []  # sentences about mods that failed while the program ran, the oldest first
-PANELS: list[Callable[[Context], Sequence[Readout]]] = []  # that mods add beside the model
+PANELS: list[Callable[[Context], Sequence[Readout]]] = []  # panels of mods beside the model
 
 
 class Context:
@@ -296,14 +296,14 @@ class Context:
         self.notice = f"Saved as '{path.stem}'."
 
     def open_here(self, source: Source | None) -> None:
-        """Go on with another model, a new one if None; undo goes back to this one. Raises ModelError."""
+        """Open another model, an empty one if None; undo goes back to this one. Raises ModelError."""
         if source is None:
             self.adopt(Model())
         else:
             self.adopt(models.load(source), file_of(source))
 
     def adopt(self, model: Model, file: ModelFile = ModelFile()) -> None:  # noqa: B008
-        """Go on with another model. Unsaved work stays open; undo goes back to it."""
+        """Open a model. A document with unsaved work stays open, and undo goes back to it."""
         self.leave_gesture()
         self.documents.add(model, file)
         self.begin_document()
@@ -326,17 +326,17 @@ class Context:
 
     @property
     def simulation(self) -> Simulation:
-        """Its run."""
+        """The run of the open document."""
         return self.document.simulation
 
     @property
     def timeline(self) -> Timeline:
-        """The moments of its run to go back to."""
+        """The checkpoints of the run, to step back through."""
         return self.document.timeline
 
     @property
     def history(self) -> History:
-        """Its undo log."""
+        """The undo log of the open document."""
         return self.document.history
 
     @property
@@ -545,7 +545,7 @@ class Context:
         if self.window is not None:
             self.window.copy(text)
 
-    # --- what is seen --------------------------------------------------------------------------------
+    # --- scene and view ------------------------------------------------------------------------------
 
     @property
     def scene(self) -> str:
@@ -572,9 +572,9 @@ class Context:
         return (readout for panel in PANELS for readout in panel(self))
 
     def make_room(self) -> None:
-        """Let the model stand beside the panels, if there are any that would cover it.
+        """Fit the model beside the panels if some are large enough to cover it.
 
-        After actions, and never because of time or frames, so that a recording is replayed in the same picture.
+        Called after actions, never because of time or frames, so that a recording is replayed in the same picture.
         """
         view = self.view
         wanted = view.theory or view.energy or any(readout.is_large for readout in self.panels())

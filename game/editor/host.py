@@ -8,7 +8,7 @@ from systems.run.simulation import Simulation
 
 
 class Window(Protocol):
-    """What a window does for actions that only make sense in one."""
+    """The window, for actions that only make sense in one."""
 
     def toggle_full_screen(self) -> None:
         """Fill the screen, or stop doing so."""

@@ -17,7 +17,7 @@ from systems.base import StopReason
 if TYPE_CHECKING:  # it imports scipy
     from systems.statics.verify import Comparison, Row, Theories
 
-MOST_ELEMENTS = 3  # of the selected ones that have a readout of their own
+MOST_ELEMENTS = 3  # selected elements with a readout of their own
 NOTHING = 1e-12  # of the largest exact value of its kind: round-off, shown as 0
 
 _SHOWN = {"axial_force": ("N", "kN", 1.0), "reaction": ("R", "kN", 1.0), "displacement": ("u", "mm", 1000.0)}
@@ -25,7 +25,7 @@ _WAYS = {"simulation": "run", "linear": "linear theory", "exact": "exact theory"
 
 
 def own_readouts(context: Context) -> Iterator[Readout]:
-    """Those that are switched on, for the view."""
+    """The readouts that a person switched on."""
     if context.view.theory:
         yield from _theory(context)
     if context.view.energy:
@@ -39,7 +39,7 @@ def _energy(context: Context) -> Readout:
     ]
     error = (
         context.document.assessment.error() if not context.busy else None
-    )  # measuring takes a run of its own
+    )  # since measuring takes a run of its own
     if error is not None:
         rows.append(("displacement error", f"{error.relative:.1e} of the largest"))
     return Readout("Energy account", tuple(rows))
@@ -56,7 +56,7 @@ def _theory(context: Context) -> Iterator[Readout]:
     else:
         try:
             theory, comparison = context.document.assessment.theories, context.document.assessment.comparison()
-        except FieldError:  # whoever runs or settles it is told which number it is
+        except FieldError:  # running or settling names the number
             yield Readout("Theory beside the run", (("numbers too large or too small", ""),))
             return
         yield Readout("Theory beside the run", tuple(_overview(context, theory, comparison)))
@@ -86,7 +86,7 @@ def _overview(context: Context, theory: Theories, comparison: Comparison) -> Ite
 
 
 def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, str]]:
-    """Of a run at rest: whether it is where a slowly growing load leads to, and why not."""
+    """Whether a run at rest is where a slowly growing load leads to, and if not, why."""
     from systems.statics.verify import DEPARTURES, differs
 
     if context.simulation.reason is not StopReason.REST or comparison.worst("simulation") is None:
@@ -99,12 +99,12 @@ def _verdict(context: Context, comparison: Comparison) -> Iterator[tuple[str, st
 
 
 def _symbol(row: Row) -> str:
-    """Such as "N of AB" or "u y of B"."""
+    """The symbol of a quantity, such as "N of AB" or "u y of B"."""
     return f"{_SHOWN[row.quantity][0]} {row.component}".rstrip() + f" of {row.name}"
 
 
 def _of_element(handle: Handle, comparison: Comparison) -> Iterator[Readout]:
-    """A readout for every quantity of an element that theory knows."""
+    """Readouts of all quantities of an element that theory computes."""
     if isinstance(handle, Rod):
         yield _beside(comparison, "axial_force", (handle.row,))
     elif isinstance(handle, Particle):
@@ -113,7 +113,7 @@ def _of_element(handle: Handle, comparison: Comparison) -> Iterator[Readout]:
 
 
 def _beside(comparison: Comparison, quantity: str, place: tuple[int, ...]) -> Readout:
-    """One quantity of one element by the three ways, with errors."""
+    """One quantity of one element in the run and by both theories, with errors."""
     row, nothing = comparison.row(quantity, place), NOTHING * comparison.scale(quantity)
     _, unit, factor = _SHOWN[row.quantity]
     rows = []

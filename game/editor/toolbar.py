@@ -1,4 +1,4 @@
-"""The toolbar of a session: what its buttons offer now, from the table of keys."""
+"""Toolbar: the buttons of the active scene, from the table of keys."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from components.tags import DiagramShown
 from components.toolbar import Tool, Toolbar
 from game.editor.context import Context
-from game.editor.gestures import Drawing
+from game.editor.gestures.drawing import Drawing
 from systems.input.bindings import Binding, toolbar
 
 Condition = Callable[["Context"], bool]
@@ -58,7 +58,7 @@ def _guided(context: Context, condition: Callable[[Any], bool]) -> bool:
     return guide is not None and condition(guide)
 
 
-# Actions that switch something on, and whether it is.
+# By action that switches something: whether it is on.
 _PRESSED: dict[str, Condition] = {
     "toggle run": lambda context: context.scene == "simulation",
     "toggle diagrams": _shows_diagrams,
@@ -67,7 +67,7 @@ _PRESSED: dict[str, Condition] = {
     "toggle energy": lambda context: context.view.energy,
     "toggle help": lambda context: context.view.help > 0,
 }
-# What must be there for an action to do something.
+# By action: whether it would do something now.
 _NEEDS: dict[str, Condition] = {
     "undo": lambda context: context.can_undo,
     "redo": lambda context: context.can_redo,

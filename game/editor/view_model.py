@@ -1,4 +1,4 @@
-"""Showing: what the view says of a session, brought up to date once a frame."""
+"""View model: what the view says of a session, brought up to date once a frame."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from components.view import Preview, Status
 from game.editor.context import Context
-from game.editor.gestures import TOOL_HINTS
+from game.editor.gestures.drawing import TOOL_HINTS
 from game.editor.readouts import own_readouts
 from systems.base import StopReason
 from systems.edit import Refusal
@@ -20,7 +20,7 @@ MOST_FLASHES = 500  # impacts marked at a time
 
 
 def show(context: Context) -> None:
-    """Let the view show the context as it is now."""
+    """Let the view show the session as it is now."""
     view, scene = context.view, context.scenes.active
     view.forces_known = context.waited_for(context.simulation) is None
     said = _awaited(context) or context.notice
@@ -42,7 +42,7 @@ def show(context: Context) -> None:
 
 
 def pages_of_help(context: Context) -> list[list[tuple[str, str]]]:
-    """What can be pressed in the active scene; the page that is shown is one of them."""
+    """Pages of the keys of the active scene; view.help is kept to their number."""
     scene, view = context.scenes.active, context.view
     pages = help_pages(help_lines(scene.name), scene.helped(context), view.pixel_ratio)
     view.help = min(view.help, len(pages))
@@ -50,7 +50,7 @@ def pages_of_help(context: Context) -> list[list[tuple[str, str]]]:
 
 
 def _show_readouts(context: Context) -> None:
-    """All panels, and in which order they came."""
+    """All panels, and the order in which they came."""
     view = context.view
     view.readouts = (*own_readouts(context), *context.panels())
     latest, since = max(view.since.values(), default=0), view.since
@@ -61,7 +61,7 @@ def _show_readouts(context: Context) -> None:
 
 
 def _awaited(context: Context) -> str:
-    """That a step program is waited for, "" if none is (any more)."""
+    """The notice that a step program is compiled, "" if none is (any more)."""
     waited = context.waited_for(context.awaited) if context.awaited is not None else None
     if waited is None:
         context.awaited = None
@@ -70,7 +70,7 @@ def _awaited(context: Context) -> str:
 
 
 def _flashes(context: Context) -> NDArray[np.float64]:
-    """Where particles collided within the last moment that was shown."""
+    """Where particles collided within the last FLASH seconds shown (m), shape (k, 2)."""
     impacts = context.impacts
     if not context.busy or len(impacts) == 0:
         return np.zeros((0, 2))
@@ -104,7 +104,7 @@ def _state_word(context: Context) -> str:
 
 
 def _problem(context: Context) -> str:
-    """What went wrong, or a person should know though the run goes on."""
+    """Why the run stopped, or a warning though it goes on."""
     simulation = context.simulation
     if context.fault:
         return f"{context.fault} Esc takes this away."

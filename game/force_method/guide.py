@@ -48,12 +48,12 @@ class Set:
 
     @property
     def simulation(self) -> Simulation:
-        """Its run."""
+        """The run of the model."""
         return self.live.simulation
 
     @property
     def moves(self) -> bool:
-        """True if frames change it."""
+        """True while its motion is shown."""
         return not self.live.simulation.halted
 
     def advance(self, elapsed: float) -> None:
@@ -61,7 +61,7 @@ class Set:
         self.live.frame(elapsed)
 
     def scale_to(self, state: SetState) -> None:
-        """Choose drawing scales for the displacements and forces that it will come to."""
+        """Choose drawing scales for the displacements and forces at the end of the motion."""
         moved = float(np.abs(state.displacement).max(initial=0.0))
         pulled = float(np.abs(state.axial_force).max(initial=0.0))
         share = DRAWN_SHARE * extent(self.model)
@@ -69,7 +69,7 @@ class Set:
         self.model.settings.diagram_scale = _round(DIAGRAM_HEIGHT / pulled) if pulled > 0.0 else 1.0
 
     def settle(self) -> None:
-        """Do not wait for the rest of the motion: go to where it ends, if it does."""
+        """Skip the rest of the motion: go to its end, if there is one."""
         final = settle(self.model).final
         if final.status == "equilibrium":
             with self.model.transaction("settle"):
@@ -78,10 +78,10 @@ class Set:
 
 
 class Mechanism:
-    """What a structure does that cannot carry anything: it swings along its motion, (n, 2)."""
+    """A structure that cannot carry its load, swinging along its motion, shape (n, 2)."""
 
     moves = True
-    simulation = None  # no run: it is moved by hand
+    simulation = None  # no run: `advance` sets the displacements
 
     def __init__(self, model: Model, motion: Column, view: View) -> None:
         self.model, self.view = model, view
@@ -97,10 +97,10 @@ class Mechanism:
 
 
 class Guide:
-    """Where the person is in the force method, and what was found.
+    """The part of the force method that the person is in, and the results so far.
 
     part: 1 to 7 as in REQUIREMENTS §4. released: the static unknowns, the newest last. solution: with all
-    of them. sets: those that exist so far. mechanism: what the last release that was refused would leave.
+    of them. sets: those that exist so far. mechanism: the structure that the last refused release would leave.
     Raises ForceMethodError at the start if the structure cannot carry its load.
     """
 
@@ -142,12 +142,12 @@ class Guide:
 
     @property
     def shown(self) -> list[Set | Mechanism]:
-        """What there is to see, from left to right."""
+        """The sets and mechanisms to show, from left to right."""
         return [*self.sets, self.mechanism] if self.mechanism is not None else [*self.sets]
 
     @property
     def moving(self) -> list[Set | Mechanism]:
-        """What frames change."""
+        """The sets and mechanisms in motion."""
         shown: list[Set | Mechanism] = [*self.running, *([self.mechanism] if self.mechanism else [])]
         return [one for one in shown if one.moves]
 
@@ -172,7 +172,7 @@ class Guide:
 
     @property
     def can_release_another(self) -> bool:
-        """True if the base structure is hyperstatic still, and all is known of the unknowns so far."""
+        """True if the base structure is still hyperstatic and the unknowns so far are solved."""
         return self.part == PARTS and len(self.released) < self.degree
 
     def release_another(self) -> None:
@@ -182,7 +182,7 @@ class Guide:
             self.sets, self.part = self.sets[:1], 2
 
     def pick(self, hit: Handle | None) -> None:
-        """Take what was clicked in set 1 as the unknown (part 2)."""
+        """Take the element clicked in set 1 as the unknown (part 2)."""
         self._forget_refusal()
         self.axis_wanted = None
         if isinstance(hit, Rod):
@@ -223,7 +223,7 @@ class Guide:
         self.part = 3
 
     def _refuse(self, error: ForceMethodError, wanted: Sequence[Unknown]) -> None:
-        """Say why, and show the mechanism, if that is why."""
+        """Say why a release is refused, and show the mechanism, if it would leave one."""
         self.refusal = str(error)
         if error.motion is not None:
             base = base_structure(self.model, wanted)
@@ -255,7 +255,10 @@ class Guide:
             axial_force += p * unit.axial_force
         third.model.assign(list(third.model.particles), "force", force.tolist())
         third.scale_to(SetState(displacement, axial_force))
-        for name in ("displacement_scale", "diagram_scale"):  # the same, so that one sees that they add up
+        for name in (
+            "displacement_scale",
+            "diagram_scale",
+        ):  # the same scale, so that the sum of sets 2 and 3 can be seen
             scale = min(getattr(one.model.settings, name) for one in self.sets)
             for one in self.sets:
                 setattr(one.model.settings, name, scale)
@@ -267,7 +270,7 @@ def _shapes(solution: Solution) -> tuple[tuple[int, ...], ...]:
 
 
 def view_like(view: View) -> View:
-    """How a set is seen in a window that is seen like this."""
+    """A view of a set with the choices of the view of the window."""
     return View(all_diagrams=view.all_diagrams, legend=False, pixel_ratio=view.pixel_ratio)
 
 
@@ -317,7 +320,7 @@ def exact_forces(model: Model, unknowns: Sequence[Unknown]) -> list[float] | Non
 
 
 def _unload(model: Model) -> None:
-    """No load, no acceleration, no lack of fit, no warmth, no moved support: only what is added acts."""
+    """Remove loads, accelerations, misfits, temperature changes and moved supports."""
     model.delete(list(model.loads))
     model.environment.force = model.environment.acceleration = (0.0, 0.0)
     particles = list(model.particles)

@@ -1,4 +1,4 @@
-"""What is said in the force method: what happens, what was measured, the equations and the table."""
+"""Words of the force method: messages, captions, the equations and the table."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ def _one_equation(solution: Solution) -> tuple[str, ...]:
 
 
 def _equations(solution: Solution) -> tuple[str, ...]:
-    """Δ_real = Δ₀ + Σ Δ₁ p, a line for every unknown, and what solves them."""
+    """Δ_real = Δ₀ + Σ Δ₁ p, a line for every unknown, and the solution."""
     names = [unknown.name for unknown in solution.unknowns]
     lines = []
     for row, name in enumerate(names):
@@ -159,7 +159,7 @@ def table(guide: Guide) -> Sequence[tuple[str, ...]]:
 
 
 class Superposition(Sequence[tuple[str, ...]]):
-    """The rows of the last table, each written when it is asked for: a large structure has more than are seen."""
+    """The rows of the last table, each written on demand, since few of a large table are visible."""
 
     def __init__(self, names: list[str], solution: Solution) -> None:
         total = solution.superposed.axial_force

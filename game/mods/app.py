@@ -22,8 +22,7 @@ from game.commands.arguments import BAD_INPUT, UsageError
 from game.documents import models
 from game.editor.actions import ACTIONS, WHILE_DRAWING, Action, action
 from game.editor.context import PANELS, Context
-from game.editor.gestures import TOOL_HINTS, TOOLS
-from game.editor.gestures.drawing import drawing_of
+from game.editor.gestures.drawing import TOOL_HINTS, TOOLS, drawing_of
 from game.editor.scenes import SCENES, Scene, all_scenes
 from game.mods.guard import guarded_history, guarded_integrator, guarded_scene, guarded_system
 from game.mods.mod import Mod, ModError

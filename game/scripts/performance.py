@@ -17,17 +17,17 @@ from game.scripts.script import Script
 from game.session import Session
 from systems.program.writer import REVIEW_INTERVAL
 
-FOOTER = 112.0  # points, height of the strip below the picture in which the words of a script stand
-LARGER = 1.25  # its type, relative to all other
+FOOTER = 112.0  # points, height of the strip for the words of a script below the picture
+LARGER = 1.25  # factor of the type in that strip
 RATE = 60.0  # pictures a second of a run
-BEAT = 0.7  # s between what is done, so that each can be seen
-REACH = 0.4  # s that the pointer takes to where something is done
-READING = 1.2, 0.055  # s that a sentence stays: at least, and more for each character
-PATIENCE = 6.0  # s of a run that are shown at its natural pace; then it goes faster and faster
+BEAT = 0.7  # s between two actions
+REACH = 0.4  # s of a movement of the pointer
+READING = 1.2, 0.055  # s that a sentence stays: at least, and for each character
+PATIENCE = 6.0  # s of a run shown at its natural pace, before it goes faster and faster
 HURRY = ("space", "return", "right", "click")
 DONE = "That was it. Go on from here as you like; Ctrl+Z goes back through all of it."
 
-_UNSEEN = {"expect", "resize", "window"}  # what takes no time to watch
+_UNSEEN = {"expect", "resize", "window"}  # verbs without a pause after them
 
 
 class Screen(Protocol):
@@ -45,9 +45,9 @@ class Screen(Protocol):
 
 
 class Performance:
-    """Plays a script in a window; keys go on at once (Space) or end it (Esc), and else do nothing.
+    """Plays a script in a window; Space goes on at once, Esc ends it, other keys do nothing.
 
-    pace: 1 for people; 0 waits for nobody.
+    pace: 1 for people; 0 without waiting.
     """
 
     def __init__(self, screen: Screen, script: Script, pace: float = 1.0) -> None:
@@ -59,9 +59,9 @@ class Performance:
         self._natural = 0.0  # simulated seconds per second shown of what runs
 
     def play(self) -> list[Failure]:
-        """Play all lines, or until the person ends it; returns what was expected in vain. Raises ScriptError.
+        """Play all lines, or until the person ends it; returns failed expectations. Raises ScriptError.
 
-        What the script saves, it saves in a folder of its own; the person goes on with unsaved work.
+        The script saves in a folder of its own; afterwards its models count as unsaved work.
         """
         if self._script.has_data:
             return self._play()
@@ -130,7 +130,7 @@ class Performance:
             self._frame()
 
     def _target(self, entry: Mapping[str, Any]) -> Vector | None:
-        """The pixel where a line does something, if it does it anywhere."""
+        """The pixel at which a line acts, if it acts at one."""
         if isinstance(pixel := entry.get("pixel"), list):
             return float(pixel[0]), float(pixel[1])
         at = entry.get("over") or entry.get("click") or (entry.get("drag") or [None])[0]
@@ -163,26 +163,26 @@ class Performance:
         return self._hurried or self._ended or self._pace == 0.0
 
     def _wait(self, seconds: float) -> None:
-        """Frames for so long; one at least."""
+        """Let frames pass for some seconds; one frame at least."""
         began = time.monotonic()
         self._frame()
         while not self._skipping and time.monotonic() - began < seconds * self._pace:
             self._frame()
 
     def _wait_for_program(self) -> None:
-        """Let the picture go on while what the model needs is compiled."""
+        """Let frames pass while the step program is compiled."""
         session = self._screen.session
         while not self._ended and not session.has_program(session.simulation):
             self._frame()
 
     def _watch_time(self) -> int:
-        """Show what a run has come to; returns the steps that it may take until the next picture."""
+        """Show the state of a run; returns its steps until the next picture."""
         simulation = self._screen.session.simulation
         if self._running_since is None:
             self._running_since, self._natural = time.monotonic(), self._screen.session.pace
         if self._skipping:
             return REVIEW_INTERVAL
-        simulation.before_steps.remove(self._watch_time)  # the picture is of the run as it is
+        simulation.before_steps.remove(self._watch_time)  # the run stands still during the picture
         self._frame()
         simulation.before_steps.append(self._watch_time)
         shown = time.monotonic() - self._running_since
@@ -192,11 +192,11 @@ class Performance:
         return math.ceil(min(steps, REVIEW_INTERVAL))
 
     def _frame(self) -> None:
-        """A picture, and a look at what the person wants."""
+        """One frame, and the keys that the person pressed meanwhile."""
         screen = self._screen
         pointer = screen.session.view.pointer
         pressed = [key for key, _ in screen.next_frame(wait=self._pace > 0.0).pressed]
-        screen.session.view.pointer = pointer  # the mouse leads nobody astray
+        screen.session.view.pointer = pointer  # the mouse of the person does not count
         self._hurried |= any(key in HURRY for key in pressed)
         self._ended |= "escape" in pressed or screen.closed
 

@@ -53,7 +53,7 @@ def play_line(script: Script, number: int, entry: Mapping[str, Any], session: Se
         raise ScriptError(f"{script.path} line {number}: {reason}") from error
 
 
-_EXAMPLES: dict[str, Any] = {  # of what a line may say: the shape that each value has
+_EXAMPLES: dict[str, Any] = {  # by key of a line: an example of its value
     "press": "space",
     "over": [1.0, 1.0],
     "click": [1.0, 1.0],
@@ -98,7 +98,7 @@ def _is_like(value: Any, example: Any) -> bool:
 
 
 def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Do what one line says; yields (expected, got) if it expects something that is not so. Raises ValueError."""
+    """Do what one line says; yields (expected, got) of a failed expectation. Raises ValueError."""
     _check_line(entry)
     rest = dict(entry)
     if "window" in rest:
@@ -177,7 +177,7 @@ class Recorder:
         entry: dict[str, Any] = {"at": self._session.model.clock.steps, "input": key}
         if pixel is not None:
             entry["pixel"] = list(pixel)
-        if key == "ctrl+v":  # what comes from another program is not there when this is played
+        if key == "ctrl+v":  # the text may come from another program, which is not there at replay
             entry["clipboard"] = self._session.clipboard
         self._write(entry)
 

@@ -14,12 +14,12 @@ a "description". Every further line does one thing:
     {"steps": 128}                              by fixed steps
     {"expect": "rods.AB.axial_force ≈ -28.34 ± 0.01"}   also =, <, >, <=, >=; scene, time, count.rods, energy.…
     {"expect": "clock.collisions = 3"}          how many impacts there were
-    {"expect": "message ≈ not found"}           what the window tells; of a text, ≈ asks for a part
+    {"expect": "message ≈ not found"}           the message in the window; of a text, ≈ asks for a part
     {"input": "click", "pixel": [512, 300]}     what a window recorded
     {"resize": [1280, 800, 2]}                  the window's pixels, and pixels per point
-    {"say": "Press Space."}                     told to who watches it in a window; else nothing
+    {"say": "Press Space."}                     shown in a window; else nothing
 
-"clipboard" says what was on the clipboard then.
+"clipboard" sets the text on the clipboard.
 
 "at": N on a line first lets time pass to the N-th fixed step, as it had in a recording; "window":
 [width, height] sets the size of the view in pixels. Replaying gives the same bits.
@@ -61,8 +61,8 @@ def _found(source: str | Path) -> Path | Traversable:
 class Script:
     """A script read from a file, or a lesson by its name, ready to be played in a session.
 
-    title, description: what its header says of it, or "". has_data: whoever plays it chose a folder in which it
-    saves and loads; else it must be kept away from what the person saved.
+    title, description: of its header, or "". has_data: it saves and loads in a folder that the person chose; else it
+    is kept away from what the person saved.
     """
 
     has_data = False
@@ -110,7 +110,7 @@ class Script:
 
     @property
     def source(self) -> Any:
-        """What the header names as the model to begin with."""
+        """The model of the header: the name of a bundled one, a file, or a document."""
         source = self.lines[0][1].get("model", EMPTY)
         beside = self.path.parent / source if isinstance(self.path, Path) and isinstance(source, str) else None
         return beside if beside is not None and beside.is_file() else source

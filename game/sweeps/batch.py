@@ -246,7 +246,7 @@ class Batch:
 
     def land(self, target: float) -> None:
         """Take the last, short step to a time (s)."""
-        variants = np.flatnonzero(is_before(self.clock("time"), target) & ~self.alone)
+        variants = np.flatnonzero((self.clock("time") < target) & ~self.alone)
         if not len(variants):
             return
         if self.integrator.controlled:

@@ -1,4 +1,4 @@
-"""Arrows: forces and velocities as arrows that a person drags, to a round scale."""
+"""Arrows: forces and velocities drawn as arrows, to a round scale."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from components.model import Model
 from components.view import View
 from systems.edit.placing import SNAP_REACH
 
-COMFORTABLE = 100.0  # points long is an arrow of the size that is usual in a model
+COMFORTABLE = 100.0  # points, length of an arrow of usual size
 USUAL_STRAIN = 1e-3  # of a loaded structure, where no force is known yet
 USUAL_ACCELERATION = 10.0  # m/s², of a loaded free body
 USUAL_SPEED = 5.0  # m/s
 
 
 def usual_force(model: Model) -> float:
-    """The size (kN) of forces in a model: the largest there is, else what suits its rods, else its masses."""
+    """The usual size (kN) of forces in a model: the largest there is, else one that suits its rods, else its masses."""
     particles, rods, loads = model.particles, model.rods, model.loads
     largest = max(np.abs(particles.force).max(initial=0.0), np.abs(loads.force).max(initial=0.0))
     if largest > 0.0:
@@ -29,13 +29,13 @@ def usual_force(model: Model) -> float:
 
 
 def usual_speed(model: Model) -> float:
-    """The size (m/s) of velocities in a model."""
+    """The usual size (m/s) of velocities in a model."""
     largest = float(np.abs(model.particles.velocity).max(initial=0.0))
     return largest if largest > 0.0 else USUAL_SPEED
 
 
 def arrow_value(view: View, start: Vector, pixel: Vector, usual: float) -> Vector:
-    """What an arrow from the point `start` (m) of the picture to a pixel stands for, both components.
+    """The vector that an arrow from the point `start` (m) of the picture to a pixel stands for.
 
     An arrow of COMFORTABLE length is about `usual`, to a scale of 1, 2 or 5 times a power of ten for each
     point. Whole points count; a component within reach of zero is zero.

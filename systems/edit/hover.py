@@ -1,19 +1,17 @@
-"""Hover: what a click would hit is marked before the click."""
+"""Hover: marks the element that a click would hit."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from components.field import Vector
 from components.kind import outlines
+from components.model import Model
 from components.tags import Hovered
 from components.view import View
 from systems.base import Phase, System
 from systems.edit.picking import pick
-
-if TYPE_CHECKING:
-    from components.model import Model
 
 
 class Hover(System):
@@ -28,7 +26,7 @@ class Hover(System):
     scenes = ("simulation", "pause", "properties", "force method")
 
     def __init__(self) -> None:
-        self._looked: Any = None  # at what, from where and at which point, in the last frame
+        self._looked: Any = None  # context, revision, camera and pointer of the last frame
 
     def needs(self, model: Model) -> bool:
         return model.particles.count + model.grids.count > 0 or any(outlines(model))

@@ -1,4 +1,4 @@
-"""Laws that follow from a person's hand."""
+"""Kernels of editing: the pull of a person's hand."""
 
 from systems.kernels import compiled
 

@@ -1,4 +1,4 @@
-"""Moving: dragging and nudging change original positions, the design; displacements stay as they are."""
+"""Moving: dragging and nudging change original positions; displacements stay as they are."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Points = NDArray[np.float64]
 
 
 def movable(model: Model, handles: Iterable[Handle]) -> list[Particle]:
-    """The particles that move with some elements: themselves, and the ends of rods; in row order."""
+    """The particles that move with elements: the particles among them, and the ends of rods; in row order."""
     return [model.particles[row] for row in moving_rows(model, model.rows_of(handles)).tolist()]
 
 
@@ -31,7 +31,7 @@ def moving_rows(model: Model, rows: Mapping[str, NDArray[np.intp]]) -> NDArray[n
 
 
 class Movable:
-    """What moves with some elements: particles by their original positions, others by their points."""
+    """The movable parts of elements: particles by original positions, other elements by their points."""
 
     def __init__(self, model: Model, handles: Iterable[Handle]) -> None:
         chosen = list(handles)
@@ -62,7 +62,7 @@ class Movable:
         return np.concatenate(columns)
 
     def index(self, handle: Handle) -> int:
-        """The row of its position, or of its first point, in `positions`; 0 for what moves with others."""
+        """The row of an element (of its first point) in `positions`; 0 for elements that move with others."""
         if handle in self.particles:
             return self.particles.index(handle)
         row = len(self.particles)

@@ -25,20 +25,20 @@ GRID_REACH = 5.0  # points
 
 @dataclass(frozen=True)
 class Grip:
-    """A point of an element by which it can be taken: the name of the Field."""
+    """A point by which an element can be dragged. point: the name of the Field."""
 
     element: Handle
     point: str
 
     @property
     def place(self) -> Vector:
-        """Where it is (m)."""
+        """The place of the point (m)."""
         place: Vector = getattr(self.element, self.point)
         return place
 
 
 def pick(model: Model, view: View, pixel: Vector) -> Handle | None:
-    """The particle, else the rod, the element of a mod or the shown grid under a pixel; None if nothing is seen."""
+    """The particle, else the rod, the element of a mod or the shown grid under a pixel; None if there is nothing."""
     if view.strip.contains(pixel):
         return None
     return pick_particle(model, view, pixel) or pick_line(model, view, pixel) or _grid_at(model, view, pixel)
@@ -50,7 +50,7 @@ def pick_line(model: Model, view: View, pixel: Vector) -> Handle | None:
 
 
 def pick_particle(model: Model, view: View, pixel: Vector) -> Particle | None:
-    """The particle that is nearest to being hit at a pixel, if one is; none under the toolbar."""
+    """The particle within reach of a pixel, the nearest relative to its reach; None under the toolbar."""
     if model.particles.count == 0 or view.strip.contains(pixel):
         return None
     x, y = (view.camera.to_pixels(drawn_positions(model)) - pixel).T
@@ -97,7 +97,7 @@ def _outlined_at(model: Model, view: View, pixel: Vector) -> Handle | None:
 
 
 def pick_point(model: Model, view: View, pixel: Vector, besides: Handle | None = None) -> Grip | None:
-    """The element of a mod's kind, one of whose points is within reach of a pixel, and which."""
+    """The nearest point of an element of a mod's kind within reach of a pixel; None if there is none."""
     best, found = PARTICLE_REACH * view.pixel_ratio, None
     for table, points in outlines(model):
         away = np.hypot(*np.moveaxis(view.camera.to_pixels(points) - pixel, -1, 0))

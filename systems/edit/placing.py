@@ -1,4 +1,4 @@
-"""Placing: where a new or moved particle comes to lie."""
+"""Placing: where new and moved particles lie, on the grid if near it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SNAP_REACH = 5.0  # points from a grid line
 def snapped(model: Model, view: View, point: Vector) -> Vector:
     """A point (m) moved onto the lines of the shown grid within reach, each axis by itself.
 
-    Elsewhere it is rounded to a power of ten that is at most a pixel, so that numbers stay short.
+    Other points are rounded to a power of ten of at most a pixel, so that numbers stay short.
     """
     shown = np.flatnonzero(model.grids.shown)
     spacing = model.grids.spacing[shown[-1]].tolist() if len(shown) else (math.inf, math.inf)

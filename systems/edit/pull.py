@@ -24,7 +24,7 @@ STEPS_PER_RADIAN = 5.0  # at least, so that the spring does not upset the integr
 
 @dataclass(frozen=True)
 class Hand:
-    """What pulls: a spring (kN/m) with a damper (kN·s/m) from a particle to the displacement `anchor` (m)."""
+    """A spring (kN/m) with a damper (kN·s/m) from a particle to the displacement `anchor` (m)."""
 
     particle: Particle
     stiffness: float
@@ -37,7 +37,7 @@ class Hand:
 
 
 class Pull(Law):
-    """The hand's force on one particle. Its work is accounted for; no hand, no law."""
+    """The force of the hand on one particle. Its work is accounted for; without a hand the law is left out."""
 
     name = "edit.pull"
     unneeded = "no hand pulls a particle"

@@ -53,7 +53,7 @@ def join(model: Model, first: Particle, second: Particle) -> Rod:
 
 
 def delete(model: Model, handles: Iterable[Handle]) -> None:
-    """Delete elements with all that refer to them; the masses of what remains follow from the rods again."""
+    """Delete elements with all that refer to them; masses of the remaining particles follow from the rods again."""
     doomed = list(handles)
     rows = model.rows_of(doomed)
     rods = np.zeros(model.rods.count, dtype=bool)

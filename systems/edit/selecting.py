@@ -12,7 +12,7 @@ from components.view import drawn_positions
 
 
 def inside(model: Model, corner: Vector, opposite: Vector) -> list[Handle]:
-    """Particles drawn inside the box between two points (m), and what has all its ends or points inside."""
+    """Particles drawn inside the box between two points (m), and elements with all ends or points inside."""
     low, high = np.minimum(corner, opposite), np.maximum(corner, opposite)
     drawn = drawn_positions(model)
     within = np.asarray(((drawn >= low) & (drawn <= high)).all(axis=1))

@@ -8,7 +8,7 @@ from components.field import Vector
 from components.model import Model
 from components.particle import Particle
 
-# What pressing the key again leads to, and what a person calls each.
+# Supports in the order in which pressing the key goes through them, with their names.
 CYCLE = ((False, False), (True, True), (False, True), (True, False))
 NAMES = {
     (False, False): "free",
@@ -18,21 +18,21 @@ NAMES = {
 }
 
 
-DIAGONAL = math.tan(math.pi / 8.0)  # what leaves an axis by more than 22.5° goes along the other one, too
+DIAGONAL = math.tan(math.pi / 8.0)  # tan 22.5°; a direction farther from an axis counts along both
 
 
 def next_support(model: Model, particles: list[Particle]) -> str:
-    """Give all these particles the support that follows on that of the first; returns what it is called."""
+    """Give particles the support after that of the first one; returns its name."""
     return support(model, particles, CYCLE[(CYCLE.index(particles[0].fixed) + 1) % len(CYCLE)])
 
 
 def support(model: Model, particles: list[Particle], fixed: tuple[bool, bool]) -> str:
-    """Hold all these particles in x and y, or not; returns what that is called."""
+    """Hold particles in x and y, or not; returns the name of the support."""
     model.assign(particles, "fixed", [fixed] * len(particles))
     return NAMES[fixed]
 
 
 def support_towards(along: Vector) -> tuple[bool, bool]:
-    """What a ground in that direction holds: below or above y, at a side x, in between both."""
+    """The directions that a ground at that side holds: y below or above, x at a side, both in between."""
     across, up = abs(along[0]), abs(along[1])
     return across > DIAGONAL * up, up > DIAGONAL * across

@@ -1,1 +1,1 @@
-"""Forms: typing into boxes, and boxes that show and change what elements are."""
+"""Forms: typing into boxes, and boxes that show and change the Fields of elements."""

@@ -1,4 +1,4 @@
-"""Answers: what was typed into the boxes of properties, checked and put back into the elements."""
+"""Answers: texts typed into the boxes of properties, checked and assigned to the elements."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _name_problem(model: Model, box: Box) -> str:
 
 
 def apply(form: Form, model: Model) -> list[str]:
-    """Put all changed boxes into the model, as one step; returns the sentences about those refused."""
+    """Assign all changed boxes to the model, as one edit; returns the sentences about refused ones."""
     refused = []
     with model.transaction(f"properties of {form.heading.text}"):
         for box in form.boxes:
@@ -97,7 +97,7 @@ def _target(model: Model, box: Box) -> tuple[Field[Any], str]:
 
 
 def _value(field: Field[Any], part: str, text: str) -> Any:
-    """What a text means, in the units inside. Raises DecimalException if it should be a number."""
+    """The value of a text, in inside units. Raises DecimalException if it is no number but should be."""
     if field.dtype is bool:
         return text == YES_NO[1]
     if field.dtype is str or part == KIND:

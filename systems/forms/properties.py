@@ -29,12 +29,12 @@ _OF_RODS = (
     "diagram_scale",
     "plasticity",
     "sleeping",
-)  # settings of all rods together; the others are of all particles
+)  # settings that concern rods; the others concern particles
 _DECIDED = (Particle.asleep,)  # anew after every edit
 _NUMBERS = (float, int)
 _EDITABLE = (*_NUMBERS, bool, str)
 
-Content = tuple[str, str]  # a box's text and its note
+Content = tuple[str, str]  # text and note of a box
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Subject:
 
 
 def heading(model: Model, selected: Sequence[Handle]) -> str:
-    """What a person calls these elements: "rod AB", "2 particles, 1 rod"; none: the environment."""
+    """The name of some elements, such as "rod AB" or "2 particles, 1 rod"; without any, the environment."""
     if not selected:
         return "Environment"
     if len(selected) == 1:
@@ -157,7 +157,7 @@ def _words(field: Field[Any]) -> tuple[str, ...] | None:
 
 
 def _content(model: Model, subject: Subject, field: Field[Any], axis: str) -> Content:
-    """The text for some elements, and a note: that they differ, or that it is automatic."""
+    """The text of a box for some elements, and its note: that they differ, or that the value is automatic."""
     table = model.tables[subject.elements[0].table]
     column = table.column(field.name)
     values = (column[:, "xy".index(axis)] if axis else column)[subject.rows]

@@ -13,20 +13,20 @@ YES_NO = ("no", "yes")
 MOST_CHARACTERS = 200  # in one box
 
 _MEANS = {"0": "no", "1": "yes"}
-_DIGITS = r"-?(\d+\.?\d*|\.\d*)?"  # a number, or what can still become one
+_DIGITS = r"-?(\d+\.?\d*|\.\d*)?"  # a number, or the beginning of one
 _NUMBER_SO_FAR = re.compile(rf"{_DIGITS}|-?(\d+\.?\d*|\.\d+)[eE][+-]?\d*")
 _IN_NUMBERS = {
     ",": ".",
     "−": "-",
     "/": "-",
-}  # of other keyboards, of numbers copied from the screen, and the thesis'
+}  # other keyboards, numbers copied from the screen, the notation of the thesis
 
 
 # --- selecting ---------------------------------------------------------------------------------------
 
 
 def select(form: Form, box: Box | None) -> None:
-    """Make this box the selected one, all its text marked; None: no box is."""
+    """Select a box, all its text marked; None: select none."""
     before = form.selected
     if before is not None:
         form.untag(before, Selected)
@@ -39,7 +39,7 @@ def select(form: Form, box: Box | None) -> None:
 
 
 def restore(form: Form) -> None:
-    """Give the selected box back what it held, and deselect it."""
+    """Restore the former text of the selected box, and deselect it."""
     box = form.selected
     if box is not None:
         _set(form, box, box.held, len(box.held))
@@ -78,7 +78,7 @@ def write(form: Form, text: str) -> None:
 
 
 def erase(form: Form, *, after: bool = False) -> None:
-    """Erase what is marked, or the character before (or after) the caret."""
+    """Erase the marked text, or the character before (or after) the caret."""
     box = form.selected
     if box is None:
         return
@@ -92,7 +92,7 @@ def erase(form: Form, *, after: bool = False) -> None:
 
 
 def place_caret(form: Form, caret: int) -> None:
-    """Put the caret of the selected box after so many characters; nothing is marked any more."""
+    """Put the caret of the selected box after so many characters, and mark nothing."""
     box = form.selected
     if box is not None:
         box.caret = min(max(caret, 0), len(box.text))
@@ -100,7 +100,7 @@ def place_caret(form: Form, caret: int) -> None:
 
 
 def step_caret(form: Form, by: int) -> None:
-    """Move the caret by one character, or to that end of what is marked."""
+    """Move the caret by one character, or to the end of the marked text."""
     box = form.selected
     if box is not None and box.marked:
         place_caret(form, len(box.text) if by > 0 else 0)
@@ -159,7 +159,7 @@ def _entered(box: Box, character: str) -> tuple[str, int] | None:
 
 
 def _completed(box: Box, words: Sequence[str], character: str) -> tuple[str, int] | None:
-    """The word whose beginning was typed, and how much of it was."""
+    """The word whose beginning was typed, and the number of typed characters."""
     so_far = "" if box.marked or box.text not in words else box.text[: box.caret]
     for typed in (so_far + character, character):
         meant = _MEANS.get(typed, typed).lower() if words == YES_NO else typed.lower()

@@ -1,4 +1,4 @@
-"""The one table of keys and buttons: what a person presses → which named action, in which scenes."""
+"""The table of keys and buttons: the key, the named action that it performs, and the scenes in which it does."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LIVE = (SIMULATION, PAUSE)
 FORMS = (PROPERTIES, SAVE, LOAD)
 EVERY = (*LIVE, *FORMS, FORCE_METHOD)
 
-TEXT = "text "  # what begins the "key" that is typed text, such as "text a"
+TEXT = "text "  # prefix of the "key" of typed text, such as "text a"
 
 MODIFIERS = {"ctrl+": "ctrl+", "control+": "ctrl+", "cmd+": "ctrl+", "shift+": "shift+"}
 ALSO_CALLED = {"esc": "escape", "enter": "return", "del": "delete", "spacebar": "space", " ": "space"}
@@ -26,8 +26,8 @@ class Binding:
     """A key (or "click", "wheel up", …) that performs an action in some scenes.
 
     Key names are lower case: "escape", "return", "space", "a", "+", "left", "f1"; modifiers come first,
-    in the order ctrl, shift: "ctrl+z", "ctrl+shift+z". "drag" begins one, "drag to" and "drop" follow.
-    title: what it does, for the help; "" where that goes without saying. repeats: while the key is held.
+    in the order ctrl, shift: "ctrl+z", "ctrl+shift+z". "drag" begins a drag, "drag to" and "drop" follow.
+    title: for the help; "" leaves the key out of it. repeats: the action is repeated while the key is held.
     """
 
     key: str
@@ -142,7 +142,7 @@ BINDINGS: list[Binding] = [
     Binding("drag middle", "pan", (*LIVE, FORCE_METHOD), "move the view (or right button)"),
 ]
 
-# What the toolbar offers, in groups from the top to the bottom.
+# The actions of the toolbar, in groups from the top to the bottom.
 TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("toggle run", "restart", "step back", "step", "slower", "faster", "settle"),
     ("next part", "release x", "release y", "release another"),
@@ -154,14 +154,14 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
     ("next theme", "toggle help"),
 )
 
-ADDED_TOOLS: list[str] = []  # actions of mods that draw, at the end of the group in which PLACE is
+ADDED_TOOLS: list[str] = []  # drawing actions of mods, at the end of the group of PLACE
 PLACE = "place"
 
 _BY_KEY = {(scene, binding.key): binding for binding in BINDINGS for scene in binding.scenes}
 
 
 def add_binding(binding: Binding) -> list[Binding]:
-    """Let a key perform an action in those of its scenes in which it does nothing yet; returns what has it elsewhere."""
+    """Let a key perform an action in the scenes in which it is free; returns the bindings that have it in the others."""
     taken = {scene: _BY_KEY[scene, binding.key] for scene in binding.scenes if (scene, binding.key) in _BY_KEY}
     free = tuple(scene for scene in binding.scenes if scene not in taken)
     if free:
@@ -193,7 +193,7 @@ def remove_binding(binding: Binding) -> None:
 
 
 def prefer(scene: str, key: str, action: str) -> None:
-    """Let a key perform what a person chose for it, whatever else it was for."""
+    """Let a key perform the action that a person chose, whatever it did before."""
     titles = (binding.title for binding in BINDINGS if binding.action == action)
     old = _BY_KEY.get((scene, key))
     if old is not None:
@@ -209,7 +209,7 @@ def _index() -> None:
 
 
 def _binding(scene: str, key: str) -> Binding | None:
-    """In a mod's scene, the keys that do the same in every one of ours do so too."""
+    """The binding of a key in a scene; in scenes of mods, keys that do the same in all of ours do so, too."""
     found = _BY_KEY.get((scene, key))
     if found is None and scene not in EVERY:
         found = next((b for b in BINDINGS if b.key == key and set(EVERY) <= set(b.scenes)), None)
@@ -223,9 +223,9 @@ def action_for(scene: str, key: str) -> str | None:
 
 
 def key_named(text: str) -> str:
-    """The key that a person means, as bindings call it: "K", "Esc", "Ctrl+Z". Raises ValueError if there is none.
+    """The name that bindings use for a key such as "K", "Esc" or "Ctrl+Z". Raises ValueError if there is no such key.
 
-    Shift alone makes no other key of one with a character: on some keyboards "+" needs it, on others not.
+    Shift with a character is the same key: on some keyboards "+" needs it, on others not.
     """
     if text.startswith(TEXT):
         return text
@@ -250,10 +250,10 @@ def repeats(scene: str, key: str) -> bool:
 
 @cache
 def toolbar(scene: str) -> tuple[tuple[Binding, ...], ...]:
-    """Groups of what the toolbar offers in a scene: the same while time passes as in pause; none in forms."""
+    """Groups of bindings of the toolbar in a scene: the same while time passes as in pause; none in forms."""
     scenes = set(LIVE if scene in LIVE else () if scene in FORMS else (scene,))
     found = [binding for binding in BINDINGS if scenes & set(binding.scenes)]
-    found.sort(key=lambda binding: scene not in binding.scenes)  # keys that work here come first
+    found.sort(key=lambda binding: scene not in binding.scenes)  # keys that act here come first
     offered = {binding.action: binding for binding in reversed(found)}
     wanted = ([*group, *(ADDED_TOOLS if PLACE in group else ())] for group in TOOLBAR)
     groups = (tuple(offered[action] for action in group if action in offered) for group in wanted)
@@ -261,6 +261,6 @@ def toolbar(scene: str) -> tuple[tuple[Binding, ...], ...]:
 
 
 def help_lines(scene: str) -> list[tuple[str, str]]:
-    """(key, title) of everything that can be pressed in a scene."""
+    """(key, title) of all keys of a scene."""
     shown = (b for b in BINDINGS if b.title and _binding(scene, b.key) is b)
     return [(binding.key, binding.title) for binding in shown]

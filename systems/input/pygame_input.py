@@ -13,9 +13,9 @@ from systems.base import Phase, System
 from systems.input.bindings import TEXT, repeats
 
 CLICK_REACH = 4.0  # points that the pointer may move while a button is down; more: a drag
-IDLE_PAUSE = 0.016  # s between looks for events while nothing moves
-IDLE_LOOKS = 16  # until a frame goes by without any
-WAITING_LOOKS = 4  # where something is being compiled, which frames would hold up
+IDLE_PAUSE = 0.016  # s between polls for events while nothing moves
+IDLE_LOOKS = 16  # polls before a frame passes without events
+WAITING_LOOKS = 4  # polls while something is compiled, which frames would slow down
 
 _NAMES = {
     pygame.K_ESCAPE: "escape",
@@ -39,7 +39,7 @@ _NAMES = {
 
 
 def _awaited(looks: int) -> list[pygame.event.Event]:
-    """The next events, or none after a while. pygame.event.wait looks so often that it takes 2 % of a core."""
+    """The next events, or none after some seconds. pygame.event.wait polls so often that it takes 2 % of a core."""
     for _ in range(looks):
         time.sleep(IDLE_PAUSE)
         if events := pygame.event.get():
@@ -50,7 +50,7 @@ def _awaited(looks: int) -> list[pygame.event.Event]:
 class PygameInput(System):
     """Turns events into pressed keys and buttons; `closed` once the window's close icon was clicked.
 
-    density: pixels for each of the points in which the window counts.
+    density: pixels per point of the window.
     """
 
     name = "input.pygame"
@@ -65,7 +65,7 @@ class PygameInput(System):
         self._dragging = False
 
     def process(self, frame: Any) -> None:
-        """Collect the events since the last frame; sleep a little where nothing can happen without one."""
+        """Collect the events since the last frame; sleep a little if nothing can happen without one."""
         session, events = frame.session, pygame.event.get()
         waiting = session.awaited is not None
         if not events and not session.performing and (waiting or not session.busy):
@@ -99,7 +99,7 @@ class PygameInput(System):
             frame.pressed += [(key, view.pointer or view.camera.middle)] * abs(event.y)
         elif event.type == pygame.WINDOWLEAVE:
             view.pointer = None
-        elif event.type == pygame.WINDOWFOCUSLOST:  # what is let go of elsewhere is not told
+        elif event.type == pygame.WINDOWFOCUSLOST:  # no event tells of keys that are released elsewhere
             self._held.clear()
             if self._dragging:
                 self._release(frame)

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from components.load import CONSTANT, HISTORIES, HistoryKind
+from components.model import Model
 from systems.base import Law
-
-if TYPE_CHECKING:
-    from components.model import Model
 
 
 class VaryingLoads(Law):

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from components.model import Model
 from components.rod import can_yield
 from systems.base import Commit, Law
-
-if TYPE_CHECKING:
-    from components.model import Model
 
 
 class Strength(Law):

@@ -1,4 +1,4 @@
-"""Arrows that say which way particles are loaded and thrown, all of one length; force diagrams say how much."""
+"""Arrows of one length for the directions of loads and velocities; force diagrams show sizes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ GAP = 3.0  # points between an arrow and its particle
 
 
 def draw_loads(sheet: Sheet) -> Iterator[Mark]:
-    """The force that a person put on each particle, its loads at full size included, where no diagram shows it."""
+    """The direction of the force on each particle, its loads at full size included, where no diagram shows it."""
     model = sheet.model
     force, count = model.particles.force.copy(), model.particles.count
     for axis in (0, 1):
@@ -42,7 +42,7 @@ def draw_loads(sheet: Sheet) -> Iterator[Mark]:
 
 
 def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
-    """The way each free particle goes, and each node that time has not moved yet, while time stands still."""
+    """The direction of velocity of free particles, and of nodes before their first step, while time stands still."""
     model = sheet.model
     velocity = model.particles.velocity
     moving = (velocity[:, 0] != 0.0) | (velocity[:, 1] != 0.0)
@@ -57,7 +57,7 @@ def draw_velocities(sheet: Sheet) -> Iterator[Mark]:
 
 def _directions(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     """Unit vectors in pixels, y down."""
-    scaled = vectors / np.abs(vectors).max(axis=1)[:, None]  # squares of very small ones would be 0
+    scaled = vectors / np.abs(vectors).max(axis=1)[:, None]  # squares of tiny components would underflow
     directions: NDArray[np.float64] = scaled / np.hypot(scaled[:, 0], scaled[:, 1])[:, None] * [1.0, -1.0]
     return directions
 

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 Points = NDArray[np.float64]
 
-BLOCK = 32  # pixels side by side, of which compiled drawing knows whether any is covered, and which it blends at once
+BLOCK = 32  # pixels side by side that compiled drawing blends at once if any is covered
 
 
 def stroke_pixels_estimate(start: Points, end: Points, width: float) -> float:
-    """About how many pixels stroke_coverage would look at."""
+    """An estimate of the pixels that stroke_coverage visits."""
     return float(np.abs(end - start).max(axis=1, initial=0.0).sum() + 2.0 * len(start)) * (1.42 * width + 2.0)
 
 

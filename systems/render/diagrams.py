@@ -19,15 +19,18 @@ from systems.render.supports import NO_SUPPORT, crowding
 from systems.render.symbols import ARROW_LENGTH, SUPPORT_DEPTH
 from systems.render.theme import Colour, faded
 
-SMALLEST_FORCE = 1e-4  # kN; less is drawn as none
+SMALLEST_FORCE = 1e-4  # kN; smaller forces are drawn as none
 _FEW_VALUES = 24  # up to which each carries its unit and keeps clear of rods
 _STEPS = (8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0)
 _TOO_FLAT, _ENLARGED = 0.05, 0.3  # of the room: loads (one point per kN) below which, up to which, to enlarge
 _SHORTEST_WITH_DIAGRAM = 6.0  # points
 _SHORTEST_WITH_VALUE = 24.0  # points; the values of shorter rods would only hide the structure
 _MANY_ARROWS = 200  # up to which all are drawn, though they may lie over each other
-_TOLD = 1.5  # by how much a value may be larger than one that the last picture tells without taking its place
-_ROD_VALUE, _ARROW_VALUE = "rods.axial_force", "particles.external_force"  # what labels stay in their places by
+_TOLD = 1.5  # factor by which a new value must be larger to replace one of the last picture
+_ROD_VALUE, _ARROW_VALUE = (
+    "rods.axial_force",
+    "particles.external_force",
+)  # key by which labels keep their places
 _SLIDES = np.array([0.0, 1.0, -1.0, 2.0, -2.0])  # along a rod, in sizes of a label: the middle first
 _BACKING = 0.86  # opacity behind a value
 
@@ -44,16 +47,16 @@ def scale_step(largest: float, scale: float, room: float) -> float:
     Changing all diagrams alike keeps them comparable; steps keep their scale steady while forces change.
     """
     decade = 10.0 ** math.floor(math.log10(room / (largest * scale)))
-    enough = room * (1.0 + 1e-9)  # lest round-off in the logarithm leave no step
+    enough = room * (1.0 + 1e-9)  # so that round-off in the logarithm leaves a step
     return next(decade * step for step in _STEPS if largest * scale * decade * step <= enough)
 
 
 def diagram_factor(largest: float, loads: float, scale: float, room: float) -> float:
-    """What all diagrams are multiplied with, so that they can be seen and leave the structure readable.
+    """The factor of all diagrams, so that they can be seen and leave the structure readable.
 
     largest: the largest axial force, kN; loads: the sum of what acts on the model, kN; scale: points per kN as
-    the person chose; room: points. 1 where that will do. The loads decide whether to enlarge, since they stand
-    still while the forces that they cause vibrate.
+    the person chose; room: points. 1 where that is readable. The loads decide whether to enlarge, since they
+    stay while the forces that they cause vibrate.
     """
     factor = 1.0
     if SMALLEST_FORCE < loads < _TOO_FLAT * room:
@@ -177,14 +180,14 @@ def _label_rods(
 
 
 def _sign_of(force: float) -> str:
-    """Which colour of the theme means this axial force."""
+    """The name of the colour of an axial force."""
     return "zero" if abs(force) <= SMALLEST_FORCE else "tension" if force > 0.0 else "compression"
 
 
 def _worth(sheet: Sheet, field: str, rows: Rows, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How much it matters that each value is written: its size, to two digits, lest tiny changes reorder labels.
+    """The importance of each value: its size to two digits, so that tiny changes do not reorder labels.
 
-    What the last picture tells counts more, so that labels do not come and go while forces vibrate.
+    Values of the last picture count more, so that labels do not come and go while forces vibrate.
     """
     size = np.maximum(np.abs(values), 1e-300)
     decade = 10.0 ** np.floor(np.log10(size))
@@ -228,7 +231,7 @@ def _places_by_rods(
 ) -> list[Points]:
     """Where the value of each rod may stand: in its diagram if it fits, else beyond, else behind the rod.
 
-    Among many rods it stands on its own one first, since beside it, it might be taken for another's.
+    Among many rods it stands on its own rod first, since beside it, it might be read as that of another rod.
     reach is how far a label extends from its middle along the normal, slide a step along the rod.
     """
     normal_x, normal_y = np.abs(normal).T

@@ -1,4 +1,4 @@
-"""Where the boxes and tiles of a form are, in pixels: the same for drawing and for picking."""
+"""Form layout: where boxes and tiles of a form are, in pixels, for drawing and for picking."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ EDGE = 16.0  # points around everything
 LOW = 330.0  # points: a viewport less high does without explanations
 
 TITLE, BOX, BELOW = 18.0, 26.0, 16.0  # points: title above a box, the box, what is said below it
-MESSAGE, MESSAGE_LINE = 12.0, 16.0  # points, size of its type and distance of its lines
+MESSAGE, MESSAGE_LINE = 12.0, 16.0  # points, size of type and distance of lines of a message
 SECTION = 28.0
 COLUMN_GAP = 14.0
 HEADING = 104.0  # points, where a low viewport has the box beside the heading
@@ -32,7 +32,7 @@ Row = str | list[Box] | list[Tile]
 
 @dataclass(frozen=True)
 class Place(Rectangle):
-    """A box, tile or section heading, and the rectangle that it takes (of a box: without its title)."""
+    """The rectangle of a box (without its title), tile or section heading."""
 
     item: Box | Tile | str
     left: float
@@ -43,7 +43,7 @@ class Place(Rectangle):
 
 @dataclass(frozen=True)
 class FormLayout:
-    """Where everything is.
+    """The places of all parts of a form.
 
     unit: pixels per point. left, right: of all that is written. header, heading_width: the middle of the
     heading's line, and the room for it.
@@ -77,7 +77,7 @@ class FormLayout:
 
 
 def beside(viewport: Viewport, unit: float, *, at_left: bool) -> tuple[Viewport | None, Viewport]:
-    """What is left of a viewport for the model (None: nothing), and the part that properties take."""
+    """The part of a viewport for the model (None: nothing), and the part for properties."""
     width = round(SIDE * unit)
     if viewport.width - width < LEAST_MODEL * unit:
         return None, viewport
@@ -89,7 +89,7 @@ def beside(viewport: Viewport, unit: float, *, at_left: bool) -> tuple[Viewport 
 
 
 def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
-    """Place everything that is shown now; rows that do not fit whole are scrolled away."""
+    """Place all visible rows; rows that do not fit whole are scrolled away."""
     u, v = unit, viewport
     width = min(v.width - 2 * EDGE * u, WIDEST * u)
     left = v.left + (v.width - width) / 2
@@ -113,7 +113,7 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
 
 
 def message_lines(form: Form, width: float, u: float) -> list[str]:
-    """What is wrong or asked, in as many lines as it takes."""
+    """The message of a form, in lines."""
     return wrapped(form.heading.message, width, max(round(MESSAGE * u), 7)) if form.heading.message else []
 
 
@@ -135,7 +135,7 @@ def _with_rows(form: Form, layout: FormLayout, fixed: list[Place]) -> FormLayout
         places += _placed(row, layout.left, top, width, height, u)
         top += height
         shown += 1
-    if shown > 1 and isinstance(rows[first + shown - 1], str):  # a heading of nothing that is seen
+    if shown > 1 and isinstance(rows[first + shown - 1], str):  # a heading without visible tiles
         places.pop()
     return replace(layout, first=first, shown=shown, count=len(rows), places=places)
 
@@ -180,7 +180,7 @@ def _box_rows(form: Form, width: float) -> Iterator[Row]:
 
 
 def _partner(box: Box) -> str:
-    """What boxes in the same row have in common: the vector that they belong to, or that they are single."""
+    """The key that boxes of one row share: the vector that they belong to, or that they are single."""
     table, name, *axis = box.target.split(".")
     return f"{table}.{name}" if axis else ""
 
@@ -208,7 +208,7 @@ def _height(row: Row, picture: float, u: float) -> float:
 
 
 def _picture_height(rows: Sequence[Row], width: float, room: float, u: float) -> float:
-    """How high the pictures of tiles are: lower than they might be where one more row is seen then."""
+    """Height of the pictures of tiles: reduced where one more row becomes visible."""
     sections = sum(isinstance(row, str) for row in rows)
     below, high = (CAPTION + TILE_GAP) * u, _tile_width(width, u) * PROPORTION
     for seen in range(len(rows) - sections, 0, -1):

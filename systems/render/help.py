@@ -30,7 +30,7 @@ class Drawn(Protocol):
 
 
 def help_pages(keys: list[tuple[str, str]], viewport: Viewport, unit: float) -> list[list[tuple[str, str]]]:
-    """What can be pressed and what it does, in lines, on as many pages as that takes in a viewport."""
+    """(key, meaning) in lines, on as many pages as a viewport needs."""
     lines = _joined(keys)
     for count in range(1, max(len(lines), 1) + 1):
         each = math.ceil(len(lines) / count)
@@ -41,7 +41,7 @@ def help_pages(keys: list[tuple[str, str]], viewport: Viewport, unit: float) -> 
 
 
 def draw_help(sheet: Drawn) -> list[Mark]:
-    """Keys and what they do, in as many columns as it takes; over everything else."""
+    """Draw keys and meanings in columns, over everything else."""
     if not sheet.view.keys:
         return []
     v = sheet.viewport
@@ -53,7 +53,7 @@ def draw_help(sheet: Drawn) -> list[Mark]:
 
 
 def _card(lines: list[tuple[str, str]], viewport: Viewport, unit: float) -> _Card:
-    """The largest that fits."""
+    """The card with the largest type that fits."""
     cards = (_Card(lines, viewport, unit, *size) for size in _SIZES)
     return next((card for card in cards if card.fits), _Card(lines, viewport, unit, *_SIZES[-1]))
 

@@ -26,7 +26,7 @@ def mixed(old, new, part):
     """A pixel of which `part` of 255 is replaced by another, each channel rounded to the nearest.
 
     Two channels at a time, 16 bits each. (v + 128 + ((v + 128) >> 8)) >> 8 is v / 255, rounded. All in 32 bits,
-    so that a processor mixes as many pixels at once as it can.
+    so that vector instructions mix many pixels at once.
     """
     there = np.uint32(part)
     rest = np.uint32(np.uint32(255) - there)
@@ -68,7 +68,10 @@ def cover_strokes(cover, touched, clip, start, end, width):
                 part = min((minor + 1) << _ONE, high) - max(minor << _ONE, low)
                 amount = np.uint8((part * share + (1 << (2 * _ONE - 1))) >> (2 * _ONE))
                 row, column = (major, minor) if steep else (minor, major)
-                at = np.uint64(row), np.uint64(column)  # a place that may be negative would be looked at twice
+                at = (
+                    np.uint64(row),
+                    np.uint64(column),
+                )  # unsigned: signed indices cost a check for negative ones
                 cover[at] = max(cover[at], amount)
                 touched[at[0], at[1] // _BLOCK] = 1
             low += rise

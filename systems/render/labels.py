@@ -1,4 +1,4 @@
-"""Labels: texts that look for a free place of their own, the important ones first."""
+"""Labels: texts placed where they are free, the important ones first."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from systems.render.marks import Mark, Panel, Points, Text
 from systems.render.theme import Colour
 from systems.render.typography import line_height, text_width
 
-FAINT, STRONG = 1, 2  # lines that a name does not cover; lines that a value covers only if it must
+FAINT, STRONG = 1, 2  # lines that names never cover; lines that values cover only in need
 _COVERED = {"cover": (STRONG,), "spare": (FAINT, STRONG), "avoid": (0,)}  # by each attempt, at most
 _MANY_LINES = 4000
 _CELL = 3.0  # points: how finely the picture is divided into free and taken
@@ -48,7 +48,7 @@ class Occupancy:
     def line(self, start: Points, end: Points, strength: int) -> None:
         """Note lines, FAINT or STRONG, from `start` to `end`, each (n, 2), inside or near the viewport.
 
-        Of very many, every so many: they leave no room between them in any case.
+        Of very many lines only a sample is noted: they leave no room between them in any case.
         """
         some = slice(None, None, len(start) // _MANY_LINES + 1)
         start, end = start[some], end[some]
@@ -79,7 +79,7 @@ class Occupancy:
         sums = np.zeros((height + 1, width + 1), dtype=np.int32)
         sums[1:, 1:] = self.taken | (self.lined > covering)
         np.cumsum(sums, axis=1, out=sums)
-        sums = np.ascontiguousarray(sums.T)  # summing numbers that lie side by side is several times quicker
+        sums = np.ascontiguousarray(sums.T)  # sums along contiguous memory are several times faster
         np.cumsum(sums, axis=1, out=sums)
         left, top, right, bottom = cells.T
         nothing: NDArray[np.bool_] = (
@@ -106,8 +106,8 @@ class Label(NamedTuple):
     """A text that is to be placed with its middle at one of `places` (k, 2), the best first.
 
     rank: labels of lower rank come first. backing: colour behind the text, or None. lines: whether it may
-    cover rods ("cover"), only if there is no other place ("spare"), or no line ever ("avoid"). key: what it
-    tells of what, if it is to stay where it was in the last picture.
+    cover rods ("cover"), only if there is no other place ("spare"), or no line ever ("avoid"). key: the
+    quantity and row, if the label is to stay where it was in the last picture.
     """
 
     text: str
@@ -130,8 +130,8 @@ def half_size(text: str, size: int, weight: str, unit: float) -> tuple[float, fl
 def place_labels(labels: Iterable[Label], occupancy: Occupancy, unit: float, placed: Placed) -> list[Mark]:
     """Marks of the labels that found a free place, in order of rank; the others are left out.
 
-    placed: where labels were in the last picture, which they leave only for a place where they cover less; it
-    is told where they are now.
+    placed: where labels were in the last picture; they leave that only for a place where they cover less. It is
+    updated.
     """
     ranked = sorted(labels, key=lambda label: label.rank)
     former = [placed.get(label.key, -1) if label.key else -1 for label in ranked]

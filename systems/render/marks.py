@@ -1,6 +1,6 @@
-"""Marks: what a picture consists of, in pixels, y down. Plain data, in painter's order.
+"""Marks: the parts of a picture, in pixels, y down, as plain data in painter's order.
 
-Those of which a picture holds hundreds singly are tuples, which are made sooner."""
+Marks of which a picture holds hundreds are tuples, which are faster to make."""
 
 from __future__ import annotations
 
@@ -129,5 +129,5 @@ class Picture:
 
     @property
     def texts(self) -> list[str]:
-        """All that is written, in order."""
+        """All texts, in order."""
         return [mark.text for mark in self.marks if isinstance(mark, Text)]

@@ -1,4 +1,4 @@
-"""Overlays: heading, status bar, problem banner, legend, scale bar, and what an empty model says."""
+"""Overlays: heading, status bar, problem banner, legend, scale bar, and the card of an empty model."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from systems.render.typography import line_height, shortened, text_width, wrappe
 
 _EDGE = 14.0  # points between overlays and the edges of the viewport
 _HEADING = 20.0  # points, size of its type
-_SMALL = 300.0  # points: in a viewport less high, what is not needed is left out
+_SMALL = 300.0  # points; lower viewports leave out optional overlays
 _FEW_LINES = 3  # of a notice
-_NOISE = 1e-6  # pixels; smaller displacements are not meant
+_NOISE = 1e-6  # pixels; smaller displacements count as none
 BAR = 28.0  # points, height of the status bar
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
 def draw_overlays(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
-    """What stands in fixed places, in painter's order, kept free of labels; and the top and bottom left."""
+    """Marks in fixed places, kept free of labels; and the height taken at the top and the bottom."""
     marks, bottom = _status_bar(sheet)
     heading, heading_end = _heading(sheet)
     legend, top = _legend(sheet, heading_end)
@@ -208,7 +208,7 @@ def _beside_panels(sheet: Sheet, said: str, size: int, around: float) -> tuple[V
 
 
 def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
-    """Why it stopped or what an action did, wrapped, above the status bar or at the top if that is freer."""
+    """The problem or the notice, wrapped, above the status bar or at the top if that is freer."""
     status, (top, bottom) = sheet.view.status, ends
     said = status.problem or status.notice
     if not said:
@@ -318,8 +318,7 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
 def draw_scale(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     """A round length to scale, and by how much displacements and diagrams are scaled.
 
-    At the bottom or at the top, wherever it hides nothing; where it would, only what a person must know,
-    or nothing at all.
+    At the bottom or at the top, where it hides nothing; else only the exaggeration, or nothing.
     """
     v, u, size = sheet.viewport, sheet.unit, sheet.font(11.0)
     longest = min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale
@@ -366,7 +365,7 @@ def _notes(sheet: Sheet) -> list[str]:
 
 
 def _displacements(sheet: Sheet) -> list[str]:
-    """By how much they are exaggerated; that they should be where a structure seems not to move at all."""
+    """The exaggeration of displacements, or a hint to exaggerate where a structure seems not to move."""
     model, scale = sheet.model, sheet.model.settings.displacement_scale
     if scale != 1.0:
         return [f"displacements ×{scale:g}"]

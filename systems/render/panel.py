@@ -30,7 +30,7 @@ from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Colour, Theme, faded
 from systems.render.typography import shortened, text_width, wrapped
 
-_TEXT = 13.0  # points, of what is in a box
+_TEXT = 13.0  # points, size of type in a box
 _PAD = 8.0  # points between a box's edge and its text
 _THUMBNAIL_MARGIN = 24.0  # points, room for supports
 _SMALLER = 0.6  # symbols in a thumbnail, compared with those in a model
@@ -75,7 +75,7 @@ class _Writer:
         return marks
 
     def footer(self) -> list[Mark]:
-        """What the selected box or tile is about, and the next possible step."""
+        """The explanation of the selected box or tile, and the next possible step."""
         layout, size, v = self.layout, self.font(12.0), self.layout.viewport
         width, bottom = layout.right - layout.left, v.top + v.height
         hint = _steps(self.view.status.hint, width, size)
@@ -94,7 +94,7 @@ class _Writer:
         return next((item.explanation for item in told if item is not None), "")
 
     def scroll_bar(self) -> list[Mark]:
-        """How much is scrolled away, if anything is."""
+        """The scroll bar, if some rows are not visible."""
         layout = self.layout
         if layout.shown >= layout.count:
             return []
@@ -232,7 +232,7 @@ def _turning(x: float, y: float, u: float, colour: Colour) -> Fills:
 
 
 def _window(text: str, caret: int, room: float, size: int) -> tuple[int, str]:
-    """As much of a text as fits so that the caret is seen, and how many characters before it are not."""
+    """The part of a text around the caret that fits, and the number of characters hidden before it."""
     start = 0
     while text_width(text[start:caret], size) > room:
         start += 1
@@ -253,7 +253,7 @@ def caret_at(place: Place, box: Box, x: float, unit: float) -> int:
 
 @lru_cache(maxsize=128)
 def thumbnail(model: Model, viewport: Viewport, unit: float, theme: Theme) -> tuple[Mark, ...]:
-    """A small picture of a model that does not change any more: walls, rods, supports, particles and arrows."""
+    """A small picture of a fixed model: walls, rods, supports, particles and arrows."""
     camera = Camera(viewport=viewport)
     camera.fit(drawn_places(model), _THUMBNAIL_MARGIN, unit=unit)
     sheet = measure(model, View(camera=camera, pixel_ratio=_SMALLER * unit), theme)

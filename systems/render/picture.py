@@ -1,10 +1,9 @@
-"""A model as a picture: what is drawn, where, in which order."""
+"""Picture: composes the marks of a model, form or toolbar in painter's order."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from components.form import Form
+from components.model import Model
 from components.toolbar import Toolbar
 from components.view import View, drawn_positions
 from systems.render.arrows import draw_loads, draw_velocities
@@ -23,9 +22,6 @@ from systems.render.theme import Theme
 from systems.render.toolbar import compose_toolbar
 from systems.render.tools import draw_flashes, draw_preview
 
-if TYPE_CHECKING:
-    from components.model import Model
-
 __all__ = ["compose", "drawn_positions"]
 
 
@@ -33,8 +29,8 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Pla
     """The model (or form, or toolbar) as seen in a view, as marks in pixels. Reads it, changes nothing.
 
     Forces are read only where a diagram shows them, yielding only where a rod has a strength, and neither
-    before they are known. placed: where labels were in the last picture of this model and view, and then are in
-    this one; they move, come and go as little as can be.
+    before they are known. placed: where labels were in the last picture of this model and view, updated to
+    this one; labels move, come and go as little as possible.
     """
     if isinstance(model, Form):
         return compose_form(model, view, theme)

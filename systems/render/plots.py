@@ -15,7 +15,7 @@ from systems.render.typography import text_width
 
 _TEXT = 10.0  # points
 _REACH = 30.0  # points from a curve, within which the pointer reads it
-_STEP = 2.0  # points along a curve between those of its samples that are drawn
+_STEP = 2.0  # points along a curve between drawn samples
 _TICKS = 4  # about so many on each axis
 
 Box = tuple[float, float, float, float]  # left, top, width, height in pixels
@@ -50,7 +50,7 @@ class _Drawing:
         return np.stack([at_x, self.bottom - (self.bottom - self.top) * up], axis=1)
 
     def marks(self, pointer: Vector | None) -> list[Mark]:
-        """Everything, in painter's order."""
+        """All marks of the plot, in painter's order."""
         marks = [*self._axes(), *self._titles()]
         for (_, x, y), colour in zip(self.plot.curves, self._cycled(), strict=False):
             marks += self._curve(self.pixels(x, y), colour)
@@ -77,7 +77,7 @@ class _Drawing:
         return marks
 
     def _titles(self) -> list[Mark]:
-        """What is on the axes; with several curves, their names in their colours."""
+        """The titles of the axes; with several curves, their names in their colours."""
         y, middle = self.top - 8.0 * self.unit, (self.left + self.right) / 2
         below = self.bottom + 22.0 * self.unit
         marks: list[Mark] = [
@@ -97,7 +97,7 @@ class _Drawing:
         whole = finite[1:] & finite[:-1]
         start, end = points[:-1][whole], points[1:][whole]
         length = np.maximum(np.hypot(*(end - start).T), 1e-9)[:, None]
-        overlap = (end - start) / length * (0.5 * self.unit)  # or the joints would show
+        overlap = (end - start) / length * (0.5 * self.unit)  # else the joints would show
         return [Strokes(start, end + overlap, 1.5 * self.unit, colour)] if len(start) else []
 
     def _reading(self, pointer: Vector) -> list[Mark]:
@@ -142,7 +142,7 @@ def _thinned(points: Points, step: float) -> Points:
 
 
 def _range(columns: list[NDArray[np.float64]]) -> Range:
-    """The least and the largest finite value; something wider than nothing."""
+    """The least and the largest finite value, widened if equal."""
     values = np.concatenate([*columns, np.empty(0)])
     values = values[np.isfinite(values)]
     if not len(values):

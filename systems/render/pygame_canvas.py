@@ -1,4 +1,4 @@
-"""Canvas: puts pictures on a pygame surface."""
+"""Canvas: draws pictures on a pygame surface."""
 
 from __future__ import annotations
 
@@ -31,17 +31,19 @@ _MANY = 300  # bars, discs; and 50 pixels of strokes for each: from there on the
 class Canvas:
     """Draws pictures; keeps the texts, symbols and panels it has rendered.
 
-    raster: gives what draws large pictures, or None as long as that is not compiled; meanwhile only some of
-        the many elements are drawn, and the picture is but a sketch. Without it they are drawn slowly, but all.
+    raster: returns the compiled drawing of large pictures, or None while it is being compiled; until then a
+        sketch with some of the elements is drawn. Without it all elements are drawn slowly.
     """
 
     def __init__(self, raster: Callable[[], Raster | None] | None = None) -> None:
-        self.sketch = False  # the last picture is
+        self.sketch = False  # the last picture is a sketch
         self._raster = raster
         if not pygame.font.get_init():
             pygame.font.init()
         self._cache: dict[Any, Any] = {}
-        self._former: dict[Any, Any] = {}  # forgotten, save for what is used again, when the cache is full
+        self._former: dict[
+            Any, Any
+        ] = {}  # the cache before; entries that are used again move to the new one, the others are dropped when that is full
         self._files = {
             weight: (files("assets") / "fonts" / name).read_bytes() for weight, name in WEIGHTS.items()
         }
@@ -232,7 +234,7 @@ def _rounded(size: tuple[int, int], mark: Panel) -> pygame.Surface:
 
 
 def _stretched(length: int, short: int) -> NDArray[np.intp]:
-    """For each of `length` places the one of `short` that it shows, the middle one as often as it takes."""
+    """For each of `length` places its place in `short`, the middle one repeated."""
     place = np.arange(length)
     return np.maximum(np.minimum(place, short // 2), place - (length - short))
 

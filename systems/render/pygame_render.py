@@ -34,7 +34,7 @@ class PygameRender(System):
         self._canvas = Canvas(raster)
         self._shown: Any = None
         self._placed: dict[str, Placed] = {}
-        self._sketch = False  # the last picture was one, since the drawing of large ones was not compiled yet
+        self._sketch = False  # the last picture was a sketch, before the drawing of large ones was compiled
 
     def process(self, frame: Any) -> None:
         """Draw every stage of the scene, unless the picture would be the same as the last."""
@@ -54,7 +54,7 @@ class PygameRender(System):
 
 
 def _looked_at(shown: Model | Form | Toolbar, view: View) -> str:
-    """What is shown, and from where: as long as this is the same, its labels stay where they are."""
+    """The model and the view of a stage: while they are the same, labels keep their places."""
     return f"{'' if isinstance(shown, Toolbar) else shown.context} {view.camera}"
 
 

@@ -13,7 +13,7 @@ from systems.render.marks import Bars, Discs, Strokes
 Pixels = NDArray[np.uint32]
 Clip = tuple[int, int, int, int]
 
-# What is compiled, and for which types: those of kernels.py.
+# The kernels of kernels.py that are compiled, with their types.
 _POINTS, _CLIP, _PIXELS = "float64[:, ::1]", "UniTuple(int64, 4)", "uint32[:, ::1]"
 _COVER = "uint8[:, ::1], uint8[:, ::1]"
 SIGNATURES = {
@@ -36,13 +36,13 @@ class Raster:
         self._prepare((0, 0))
 
     def _prepare(self, shape: tuple[int, int]) -> None:
-        """How much of each pixel is covered, and in which blocks of a row there are any; rows are of whole blocks."""
+        """Allocate the coverage of each pixel, and the flags of covered blocks; rows consist of whole blocks."""
         self._shape = shape
         self._touched = np.zeros((shape[0], -(-shape[1] // BLOCK)), dtype=np.uint8)
         self._cover = np.zeros((shape[0], BLOCK * self._touched.shape[1]), dtype=np.uint8)
 
     def strokes(self, pixels: Pixels, clip: Clip, mark: Strokes, colour: np.uint32) -> None:
-        """Each pixel takes the colour by what the stroke that covers most of it does."""
+        """Blend strokes; each pixel by the stroke that covers most of it."""
         if pixels.shape != self._shape:
             self._prepare(pixels.shape)
         ends = _contiguous(mark.start), _contiguous(mark.end)
@@ -51,12 +51,12 @@ class Raster:
         self._kernels.blend_cover(pixels, self._cover, self._touched, clip, colour, mark.colour[3])
 
     def bars(self, pixels: Pixels, clip: Clip, mark: Bars, colour: np.uint32) -> None:
-        """One rectangle over the other."""
+        """Blend rectangles, one over the other."""
         places = _contiguous(mark.start), _contiguous(mark.end), _contiguous(mark.rise)
         self._kernels.draw_bars(pixels, clip, *places, colour, mark.colour[3])
 
     def discs(self, pixels: Pixels, clip: Clip, mark: Discs, ink: np.uint32, hollow: np.uint32) -> None:
-        """One disc over the other."""
+        """Blend discs, one over the other."""
         places = _contiguous(mark.at), _contiguous(mark.radius)
         colours = ink, mark.ink[3], hollow, mark.hollow[3]
         self._kernels.draw_discs(pixels, clip, *places, mark.rim, *colours)
@@ -65,7 +65,7 @@ class Raster:
 def _around(clip: Clip, mark: Strokes) -> Clip:
     """The part of a clip that strokes can reach; a flat one is at most √2 times as high as it is wide."""
     reach = 0.75 * mark.width + 1.0
-    columns = [points[:, axis] for axis in (0, 1) for points in (mark.start, mark.end)]  # quicker than by rows
+    columns = [points[:, axis] for axis in (0, 1) for points in (mark.start, mark.end)]  # faster than by rows
     least, most = [column.min() - reach for column in columns], [column.max() + reach for column in columns]
     left, top = max(clip[0], int(min(least[:2]))), max(clip[1], int(min(least[2:])))
     right, bottom = min(clip[2], int(max(most[:2])) + 1), min(clip[3], int(max(most[2:])) + 1)

@@ -13,7 +13,7 @@ from systems.render.raster import SIGNATURES, Raster
 
 @cache
 def load_raster() -> Raster:
-    """The drawing; it takes some seconds if it has to be compiled."""
+    """The compiled drawing; compiling it takes some seconds."""
     return Raster(RASTER.load())
 
 

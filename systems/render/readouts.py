@@ -1,4 +1,4 @@
-"""Readouts: panels of names and values, one below the other where the view has them stand."""
+"""Readouts: panels of names and values, one below the other."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _PLOT, _LEAST_PLOT = 150.0, 84.0  # points, height of a plot with its axes, and 
 def draw_readouts(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     """The panels between `room`'s top and bottom; none where they are hidden.
 
-    Where there is not room for all, plots are lower, and of those that are there longest one panel tells the titles.
+    Where room is short, plots are lower, and the oldest panels are folded into one with their titles.
     """
     readouts = sheet.view.readouts if sheet.view.legend else ()
     place, u = sheet.view.panels, sheet.unit
@@ -70,7 +70,7 @@ def _height_of(sheet: Sheet, lines: Sequence[str]) -> float:
 
 
 def _titles(sheet: Sheet, lines: Sequence[str], box: Box) -> list[Mark]:
-    """A panel that only tells these titles."""
+    """A panel with titles only."""
     u, theme, (left, top, _, _) = sheet.unit, sheet.theme, box
     sheet.occupancy.block(*box)
     first = top + (_PAD * u + _line(sheet)) / 2

@@ -15,7 +15,7 @@ _MOVES_FROM = 0.5  # points
 
 
 def draw_shape(sheet: Sheet) -> None:
-    """What of the structure the shape moves, displaced by it from where it was found."""
+    """The moving part of the structure, displaced by the shape from the state that the shape is about."""
     shape, position = sheet.view.shape, sheet.model.particles.position
     if shape is None or shape.displacement.shape != position.shape:
         return

@@ -19,7 +19,7 @@ from systems.render.theme import Colour, Theme
 Rows = NDArray[np.intp]
 
 FEW = 30  # elements, up to which each shows its name
-MANY = 2000  # rods, above which what cannot be seen singly is left out
+MANY = 2000  # rods, above which details of single elements are left out
 
 # Directions by quarter turns clockwise, in pixels: right, down, left, up.
 DIRECTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
@@ -27,14 +27,14 @@ DIRECTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 
 @dataclass
 class Sheet:
-    """What the drawing functions share.
+    """The data that the drawing functions share.
 
     unit: pixels per point. centres: particles in pixels, shape (n, 2). radii: drawn radii in pixels (n,).
     ends: rows of the particles at the rods' ends (m, 2). rods: rows of the rods that can be seen; start,
     end: their visible parts in pixels, aligned with `rods`. particles: rows of those that can be seen.
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
     placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
-    notes: what a person must know of scales.
+    notes: scales to be shown.
     """
 
     model: Model

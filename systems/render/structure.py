@@ -19,7 +19,7 @@ _CLOSEST_LINES = 8.0  # points between grid lines
 _CABLE = 0.5  # width of a cable, of that of another rod
 _DASH = 5.0  # points
 _GHOST_FROM = 4.0  # points of displacement
-_LARGEST_FILLED = 10_000.0  # pixels, well within 16 bits, which is what polygons are filled with
+_LARGEST_FILLED = 10_000.0  # pixels, well within the 16 bits of filled polygons
 
 
 def draw_grid(sheet: Sheet) -> None:
@@ -63,7 +63,7 @@ def _lines(sheet: Sheet, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDAr
 
 
 def draw_ghost(sheet: Sheet) -> None:
-    """The undeformed rods, faint and dashed, where the drawn ones have visibly left them."""
+    """The undeformed rods, faint and dashed, where rods have visibly moved."""
     if not 0 < sheet.ends.shape[0] <= MANY:
         return
     original = sheet.view.camera.to_pixels(sheet.model.particles.position)
@@ -78,7 +78,7 @@ def draw_ghost(sheet: Sheet) -> None:
 
 
 def draw_halos(sheet: Sheet) -> None:
-    """A soft glow around what is selected, unless that is very much, and around what a click would hit."""
+    """A soft glow around selected elements, unless they are very many, and around the one that a click would hit."""
     theme, u = sheet.theme, sheet.unit
     for tag, colour, opacity in ((Selected, theme.selected, 0.16), (Hovered, theme.hover, 0.22)):
         glow = faded(colour, opacity)
@@ -170,13 +170,13 @@ def _draw_large_circles(
     if rim:
         first, last = corners.reshape(-1, 2), np.roll(corners, -1, axis=1).reshape(-1, 2)
         low, high = bounds(sheet.viewport)
-        overlap = 0.5 * (last - first) / np.hypot(*(last - first).T)[:, None]  # a pixel, so that joints close
+        overlap = 0.5 * (last - first) / np.hypot(*(last - first).T)[:, None]  # pixel, so that joints close
         start, end, _ = clip_segments(first - overlap, last + overlap, low - rim, high + rim)
         sheet.marks.append(Strokes(start, end, rim, ink))
 
 
 def label_names(sheet: Sheet) -> None:
-    """Names of the selected elements, and of all, where there are few; of what a click would hit always."""
+    """Names of selected elements, of all where there are few, and of the one that a click would hit."""
     all_of_them = sheet.model.particles.count + sheet.model.rods.count <= FEW
     for table, rows in (("particles", sheet.particles), ("rods", sheet.rods)):
         selected = sheet.tagged(Selected, table)

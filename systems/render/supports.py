@@ -1,4 +1,4 @@
-"""Supports, and on which sides of a particle there is room."""
+"""Supports: their symbols, on the sides of particles with most room."""
 
 from __future__ import annotations
 

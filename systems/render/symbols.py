@@ -21,7 +21,7 @@ Parts = list[tuple[str, Polygon]]  # ("ink" or "hollow", corners (k, 2)), in pai
 ARROW_LENGTH = 20.0  # points
 SUPPORT_DEPTH = 25.0  # points from the particle's rim to the far side of the ground
 RIM = 1.75  # points
-LARGEST_STAMP = 64.0  # points, the greatest radius of a circle worth stamping
+LARGEST_STAMP = 64.0  # points, greatest radius of a circle drawn as a stamp
 _HALF_WIDTH, _HEIGHT = 9.5, 16.0  # points, of a support's triangle
 _GROUND = 13.0  # points, half the length of the ground under it
 

@@ -1,4 +1,4 @@
-"""The toolbar as marks, what the button under the pointer does, and the help: over everything else."""
+"""Toolbar: its marks, the tip of the button under the pointer, and the help, over everything else."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _RADIUS = 5.0  # points, of a button's corners
 
 
 def compose_toolbar(toolbar: Toolbar, view: View, theme: Theme) -> Picture:
-    """The toolbar in the strip that a view leaves for it; without a background, since it lies over the rest."""
+    """The toolbar in its strip of a view; without a background, since it lies over the picture."""
     writer = _Writer(toolbar, view, theme)
     marks = [*writer.strip(), *draw_help(writer), *writer.tip()]
     return Picture(view.camera.viewport, None, marks)
@@ -76,7 +76,7 @@ class _Writer:
         return Panel(button.left + gap, button.top + gap, width, height, _RADIUS * self.unit, colour)
 
     def tip(self) -> list[Mark]:
-        """What the button under the pointer does, and its key, beside it."""
+        """The title and the key of the button under the pointer, beside the button."""
         button = self.hovered
         if button is None:
             return []

@@ -1,4 +1,4 @@
-"""Tools: what is being drawn or dragged, over the picture of the model."""
+"""Tools: previews of drawings and drags, over the picture of the model."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Drawn = Callable[[Sheet, Pixel, Pixel], list[Mark]]
 
 
 def draw_flashes(sheet: Sheet) -> list[Mark]:
-    """Where particles collided just now."""
+    """Flashes where particles collided just now."""
     at = sheet.view.camera.to_pixels(sheet.view.flashes)
     at = at[np.isfinite(at).all(axis=1)]
     if len(at) == 0:
@@ -33,7 +33,7 @@ def draw_flashes(sheet: Sheet) -> list[Mark]:
 
 
 def draw_preview(sheet: Sheet) -> list[Mark]:
-    """The rod, arrow, spring or box that a person draws just now, with its value at the end."""
+    """The rod, arrow, spring, support or box of a gesture, with its value at the end."""
     preview = sheet.view.preview
     if preview is None:
         return []

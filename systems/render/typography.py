@@ -1,4 +1,4 @@
-"""Typography: how wide and high a text is, without opening a font."""
+"""Typography: width and height of texts, without opening a font."""
 
 from __future__ import annotations
 

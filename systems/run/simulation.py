@@ -362,9 +362,9 @@ class Simulation:
         """The model as it is at a time (s) within the next step, inside the `with`; then as it was before."""
         self._arm()
         before = self.present()
-        while is_before(self.model.clock.time, target):
-            if self._stepper.land(target) is not StopReason.EVENT:
-                break
+        reason = StopReason.EVENT
+        while target > self.model.clock.time and reason is StopReason.EVENT:
+            reason = self._stepper.land(target)
         try:
             yield
         finally:

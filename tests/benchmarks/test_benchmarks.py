@@ -81,7 +81,7 @@ def test_ratios_that_do_not_hold_are_told() -> None:
 
 def test_every_part_of_a_frame_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     rows = {row["part"]: row["ms"] for row in drawing._frame(300, count=2)}
-    assert {"render.pygame", "input.pygame", "edit.hover", "steps", "whole frame"} <= set(rows)
+    assert {"render.pygame", "input.pygame", "edit.hover", "run.time", "whole frame"} <= set(rows)
     assert sum(rows.values()) - rows["whole frame"] <= rows["whole frame"]
 
 

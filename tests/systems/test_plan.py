@@ -193,6 +193,7 @@ def test_frames_of_a_scene_that_wants_physics_let_time_pass_as_in_a_simulation(
 ) -> None:
     session = arcade(BALL, Lift())
     go(session, "arcade")
+    assert session.busy  # so that a window draws frame after frame
     for _ in range(30):
         session.frame(1.0 / 60.0)
     assert session.time > 0.0
@@ -206,6 +207,7 @@ def test_in_a_scene_that_names_no_systems_time_stands_still(arcade: Callable[...
     go(session, "still")
     session.frame(1.0)
     assert session.time == 0.0
+    assert not session.busy
     assert [system.name for system in session.plan("still").phases[Phase.STEP]] == []
     assert "edit.hover" not in session.plan("still").left_out  # hovering is of windows
 

@@ -9,7 +9,7 @@ from game.editor.scenes import Scene
 from systems.base import Phase, System
 
 if TYPE_CHECKING:
-    from game import Session
+    from game import Context
     from game.mods import App
 
 SECONDS = 3.0
@@ -20,13 +20,13 @@ class CountDown(Scene):
     sources = ("pause",)
     targets = ("pause", "simulation")
 
-    def enter(self, session: Session) -> None:
+    def enter(self, session: Context) -> None:
         self.left = SECONDS
 
-    def busy(self, session: Session) -> bool:
+    def busy(self, session: Context) -> bool:
         return True
 
-    def hint(self, session: Session) -> str:
+    def hint(self, session: Context) -> str:
         return "Space begin now     + a second more     Esc back"
 
 

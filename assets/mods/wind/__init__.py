@@ -11,7 +11,7 @@ from components import Component, Environment, Field, Model, Particle, Readout, 
 from systems.base import Law
 
 if TYPE_CHECKING:
-    from game import Session
+    from game import Context
     from game.mods import App
 
 
@@ -47,7 +47,7 @@ class Push(Law):
         return bool(model.particles.wind_area.any())
 
 
-def panel(session: Session) -> Readout:
+def panel(session: Context) -> Readout:
     speed = math.hypot(*session.environment.wind_velocity)
     return Readout("Wind", (("speed", f"{speed:.3g} m/s"),))
 

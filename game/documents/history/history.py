@@ -44,7 +44,7 @@ class History:
     # --- edits ---------------------------------------------------------------------------------------
 
     def _before_change(self) -> None:
-        # A transaction consists of several changes, of which only the first finds all edits accounted for.
+        # Of the changes of a transaction only the first finds all earlier edits accounted for.
         if self._clock is None or self._simulation.armed:
             self._clock = self._simulation.checkpoint("clock")
         self._simulation.before_change()
@@ -68,7 +68,7 @@ class History:
 
     @contextmanager
     def as_one(self, key: Hashable) -> Iterator[None]:
-        """What is edited inside is one entry together with the edits before it that had the same key."""
+        """Edits inside become one entry, together with the edits just before that have the same key."""
         outer, self._key = self._key, key
         try:
             yield
@@ -90,12 +90,12 @@ class History:
             self._run_revision = self._model.newest(Role.STATE)
 
     def end_run(self) -> None:
-        """Time stops; what passed since begin_run is one entry, if anything did."""
+        """Time stops; the run since begin_run becomes one entry, if time has passed."""
         run, self._run = self._run, None
         if run is None or self._add_run(run) or self._simulation.halted:
-            return  # also if it diverged at once: that it did is not forgotten
+            return  # halted: a run that diverged at once stays so
         if self._model.newest(Role.STATE) != self._run_revision:
-            self._simulation.resume(run.before)  # it only got ready to run
+            self._simulation.resume(run.before)  # it only got ready
 
     def _add_run(self, run: Run) -> bool:
         """Enter a run in the log; False if no time passed in it."""
@@ -126,7 +126,7 @@ class History:
             pass
 
     def forget_undone(self) -> None:
-        """What was taken back cannot be repeated any more, as after an edit."""
+        """Forget what could be repeated, as an edit does."""
         self._undone.clear()
 
     def undo(self) -> str:
@@ -148,7 +148,7 @@ class History:
             self._simulation.resume(entry.before)
             title = "run"
         else:
-            # Where a run went before that no time passed in, but that moved discs apart, all of the state counts.
+            # The whole state counts if a run without time went before that only moved overlapping discs apart.
             now = self._simulation.checkpoint(*(() if entry.clock.whole else ("clock",)))
             target.push(Edit(self._model.apply(entry.inverse), now, entry.key))
             self._simulation.resume(entry.clock)

@@ -29,7 +29,7 @@ class Timeline:
         self.clear()
 
     def clear(self) -> None:
-        """Something was edited: what ran before cannot be run again as it was."""
+        """Forget all checkpoints, since after an edit earlier steps cannot be run again."""
         self._checkpoints: dict[int, Checkpoint] = {}
         self._hands: list[tuple[int, Hand | None]] = []  # the step at which the hand changed, and to what
         self._interval = FIRST_INTERVAL
@@ -52,7 +52,7 @@ class Timeline:
     # --- recording -------------------------------------------------------------------------------------
 
     def begin(self) -> None:
-        """Time is about to pass: after going back, what the hand did later does not happen again."""
+        """Time is about to pass; after going back, later changes of the hand are forgotten."""
         if self._went_back:
             self._went_back = False
             if any(at >= self._now for at, _ in self._hands):

@@ -49,14 +49,8 @@ def _pick_unknown(context: Context, pixel: Vector) -> None:
         _work(context, "Releasing it and solving anew", lambda: guide.pick(hit))
 
 
-@action("release x")
-def _release_x(context: Context, pixel: Vector) -> None:
-    _pick_axis(context, 0)
-
-
-@action("release y")
-def _release_y(context: Context, pixel: Vector) -> None:
-    _pick_axis(context, 1)
+action("release x")(lambda context, pixel: _pick_axis(context, 0))
+action("release y")(lambda context, pixel: _pick_axis(context, 1))
 
 
 @action("release another")

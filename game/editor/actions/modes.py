@@ -8,17 +8,29 @@ from dataclasses import replace
 from components.field import Vector
 from game.documents.models import ModelError
 from game.documents.open_documents import stamp_of
-from game.editor.context import Context, SceneError, action
+from game.editor.context import Action, Context, SceneError, action
 from game.editor.scenes.form import FormScene
 from game.editor.scenes.properties import Properties
 from systems.edit import Refusal
 from systems.forms import typing
 
+_MOVES: dict[str, Action] = {
+    "pause": lambda context, pixel: context.scenes.request("pause"),
+    "back": lambda context, pixel: context.scenes.request("pause"),
+    "toggle run": lambda context, pixel: context.scenes.request(
+        "pause" if context.scene == "simulation" else "simulation"
+    ),
+    "save": lambda context, pixel: _to_pause_and(context, "save"),
+    "load": lambda context, pixel: _to_pause_and(context, "load"),
+    "new": lambda context, pixel: context.open_here(None),
+}
+for _name, _move in _MOVES.items():
+    action(_name)(_move)
 
-@action("pause")
-@action("back")
-def _pause(context: Context, pixel: Vector) -> None:
-    context.scenes.request("pause")
+
+def _to_pause_and(context: Context, scene: str) -> None:
+    """Go to a scene that is entered from pause."""
+    context.scenes.request(*(("pause", scene) if context.scene == "simulation" else (scene,)))
 
 
 @action("escape", while_drawing=True)
@@ -34,11 +46,6 @@ def _escape(context: Context, pixel: Vector) -> None:
         context.scenes.request("simulation")
 
 
-@action("toggle run")
-def _toggle_run(context: Context, pixel: Vector) -> None:
-    context.scenes.request("pause" if context.scene == "simulation" else "simulation")
-
-
 @action("force method")
 def _force_method(context: Context, pixel: Vector) -> None:
     if context.model.particles.count == 0:
@@ -47,20 +54,6 @@ def _force_method(context: Context, pixel: Vector) -> None:
 
 
 # --- files -----------------------------------------------------------------------------------------------
-
-
-def _to_pause_and(context: Context, scene: str) -> None:
-    context.scenes.request(*(("pause", scene) if context.scene == "simulation" else (scene,)))
-
-
-@action("save")
-def _save(context: Context, pixel: Vector) -> None:
-    _to_pause_and(context, "save")
-
-
-@action("load")
-def _load(context: Context, pixel: Vector) -> None:
-    _to_pause_and(context, "load")
 
 
 @action("save again")
@@ -81,11 +74,6 @@ def _save_again(context: Context, pixel: Vector) -> None:
         context.save_as(file.path)
     except ModelError as error:
         context.notice = str(error)
-
-
-@action("new")
-def _new(context: Context, pixel: Vector) -> None:
-    context.open_here(None)
 
 
 @action("properties")

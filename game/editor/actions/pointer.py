@@ -7,7 +7,8 @@ from components.particle import Particle
 from components.rod import Rod
 from components.tags import DiagramShown
 from game.editor.context import ACTIONS, Context, action
-from game.editor.gestures import TOOLS, BoxSelect, Drawing, DrawSupport, Move, MovePoint, PullParticle
+from game.editor.gestures.drawing import TOOLS, Drawing, DrawSupport
+from game.editor.gestures.moving import BoxSelect, Move, MovePoint, PullParticle
 from systems.edit import Refusal
 from systems.edit.picking import pick, pick_line, pick_particle, pick_point
 from systems.edit.selecting import everything

@@ -8,13 +8,13 @@ from game.editor.context import Action, Context, action
 from systems.edit import Refusal
 
 PACE_STEP = 2.0
-FAR = 0.2  # s shown, by which time is skipped forward or back
-MOST_WORK = 1_000_000  # steps × elements that one skip takes, some 20 ms
-MANY = 2000  # elements of which finding the pace that suits them would take longer
+FAR = 0.2  # s shown that one press skips
+MOST_WORK = 1_000_000  # steps × elements of one skip, some 20 ms
+MANY = 2000  # elements; the pace that suits larger models takes too long to find
 
 
 def _arrow(direction: Vector, steps: int, *, far: bool) -> Action:
-    """An arrow key moves what is selected; with nothing selected, to the right is forward in time."""
+    """The action of an arrow key: move the selected elements; with none selected, right is forward in time."""
 
     def act(context: Context, pixel: Vector) -> None:
         if nudge(context, direction, far=far) or steps == 0:
@@ -35,7 +35,7 @@ for _name, _direction, _steps in (
 
 
 def _far(context: Context) -> int:
-    """How many steps to skip; fewer in large models, so that one does not wait."""
+    """Steps of one skip; fewer in large models, to keep the wait short."""
     model = context.model
     elements, size = model.particles.count + model.rods.count + 1, model.clock.step_size
     most = max(MOST_WORK // elements, 1)
@@ -54,14 +54,10 @@ def _step(context: Context, steps: int) -> None:
         context.notice = context.simulation.message
 
 
-@action("step")
-def _step_forward(context: Context, pixel: Vector) -> None:
-    _step(context, 1)
-
-
-@action("step back")
-def _step_back(context: Context, pixel: Vector) -> None:
-    _step(context, -1)
+action("step")(lambda context, pixel: _step(context, 1))
+action("step back")(lambda context, pixel: _step(context, -1))
+action("faster", while_drawing=True)(lambda context, pixel: context.clock.faster(PACE_STEP))
+action("slower", while_drawing=True)(lambda context, pixel: context.clock.faster(1.0 / PACE_STEP))
 
 
 @action("restart")
@@ -70,16 +66,6 @@ def _restart(context: Context, pixel: Vector) -> None:
         raise Refusal("This is the beginning: no time has passed. Ctrl+Z takes back edits and settling.")
     context.restart()
     context.notice = "Back at the beginning; all edits are kept."
-
-
-@action("faster", while_drawing=True)
-def _faster(context: Context, pixel: Vector) -> None:
-    context.clock.faster(PACE_STEP)
-
-
-@action("slower", while_drawing=True)
-def _slower(context: Context, pixel: Vector) -> None:
-    context.clock.faster(1.0 / PACE_STEP)
 
 
 @action("natural pace", while_drawing=True)
@@ -101,6 +87,6 @@ def _redo(context: Context, pixel: Vector) -> None:
 
 @action("settle")
 def _settle(context: Context, pixel: Vector) -> None:
-    """To the static equilibrium under the full load, without waiting."""
+    """Go to the static equilibrium under the full load."""
     context.settle()
     context.view.follow(context.model)

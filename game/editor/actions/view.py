@@ -12,40 +12,29 @@ from systems.render.theme import load_theme
 ZOOM_STEP = 1.2
 THEMES = ("light", "dark", "colour-blind", "colour-blind-dark")  # in the order in which one follows another
 
-
-@action("fit", while_drawing=True)
-def _fit(context: Context, pixel: Vector) -> None:
-    context.scenes.active.fit(context)
-
-
-@action("zoom in", while_drawing=True)
-def _zoom_in(context: Context, pixel: Vector) -> None:
-    context.scenes.active.zoom(context, ZOOM_STEP, pixel)
-
-
-@action("zoom out", while_drawing=True)
-def _zoom_out(context: Context, pixel: Vector) -> None:
-    context.scenes.active.zoom(context, 1.0 / ZOOM_STEP, pixel)
+# Actions of the scene; pan is given how far the pointer was dragged, in place of where it is.
+_SCENE: dict[str, Action] = {
+    "fit": lambda context, pixel: context.scenes.active.fit(context),
+    "zoom in": lambda context, pixel: context.scenes.active.zoom(context, ZOOM_STEP, pixel),
+    "zoom out": lambda context, pixel: context.scenes.active.zoom(context, 1.0 / ZOOM_STEP, pixel),
+    "pan": lambda context, dragged: context.scenes.active.pan(context, dragged),
+}
+for _name, _act in _SCENE.items():
+    action(_name, while_drawing=True)(_act)
 
 
-@action("toggle legend", while_drawing=True)
-def _toggle_legend(context: Context, pixel: Vector) -> None:
-    context.view.legend = not context.view.legend
+def _toggle(shown: str) -> Action:
+    """Show something in the view, or hide it."""
+    return lambda context, pixel: setattr(context.view, shown, not getattr(context.view, shown))
 
 
-@action("toggle theory", while_drawing=True)
-def _toggle_theory(context: Context, pixel: Vector) -> None:
-    context.view.theory = not context.view.theory
-
-
-@action("toggle energy", while_drawing=True)
-def _toggle_energy(context: Context, pixel: Vector) -> None:
-    context.view.energy = not context.view.energy
+for _shown in ("legend", "theory", "energy"):
+    action(f"toggle {_shown}", while_drawing=True)(_toggle(_shown))
 
 
 @action("next shape", while_drawing=True)
 def _next_shape(context: Context, pixel: Vector) -> None:
-    """Mechanisms, then natural modes, then none."""
+    """Show the next mechanism or natural mode; after the last, none."""
     try:
         context.document.shapes.next()
     except NoShape as error:
@@ -55,7 +44,7 @@ def _next_shape(context: Context, pixel: Vector) -> None:
 
 @action("next theme", while_drawing=True)
 def _next_theme(context: Context, pixel: Vector) -> None:
-    """The one after the present one."""
+    """The theme after the present one."""
     view = context.view
     after = (*THEMES[THEMES.index(view.theme) + 1 :], THEMES[0]) if view.theme in THEMES else THEMES
     view.theme = after[0]
@@ -64,19 +53,13 @@ def _next_theme(context: Context, pixel: Vector) -> None:
 
 @action("toggle help", while_drawing=True)
 def _toggle_help(context: Context, pixel: Vector) -> None:
-    """The next page; after the last, none."""
+    """Show the next page of keys; after the last, none."""
     context.view.help = (context.view.help + 1) % (len(pages_of_help(context)) + 1)
 
 
 @action("close help", while_drawing=True)
 def _close_help(context: Context, pixel: Vector) -> None:
     context.view.help = 0
-
-
-@action("pan", while_drawing=True)
-def _pan(context: Context, pixel: Vector) -> None:
-    """Here `pixel` is how far the pointer was dragged."""
-    context.scenes.active.pan(context, pixel)
 
 
 @action("toggle full screen", while_drawing=True)

@@ -5,11 +5,10 @@ from collections.abc import Callable
 from game.editor.context import PHYSICS, Scene, SceneError, Scenes, Stage
 from game.editor.scenes.files import Pictures
 from game.editor.scenes.force_method import ForceMethod, Sets
+from game.editor.scenes.live import Pause, Simulation
 from game.editor.scenes.load import Load
-from game.editor.scenes.pause import Pause
 from game.editor.scenes.properties import Properties
 from game.editor.scenes.save import Save
-from game.editor.scenes.simulation import Simulation
 from systems.base import System
 
 __all__ = ["PHYSICS", "SCENES", "Scene", "SceneError", "Scenes", "Stage", "all_scenes", "scene_systems"]
@@ -18,10 +17,10 @@ SCENES: list[Callable[[], Scene]] = []  # that mods add; made anew for every ses
 
 
 def all_scenes() -> list[Scene]:
-    """The six modes, the first of which the program starts in, and those of mods."""
+    """The six modes of Pinjoint, beginning with the one that the program starts in, and the modes of mods."""
     return [Pause(), Simulation(), Properties(), Save(), Load(), ForceMethod(), *(scene() for scene in SCENES)]
 
 
 def scene_systems() -> list[System]:
-    """The systems that some of the modes bring."""
+    """The systems that belong to single modes."""
     return [Pictures(), Sets()]

@@ -1,4 +1,4 @@
-"""Files: what save and load have in common: a box for the name, and pictures of what there is."""
+"""File scenes, the base of save and load: a box for the name, and tiles with pictures of models."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from systems.forms import typing
 from systems.render.form_layout import tile_columns
 
 SAVED = "Saved models"
-LARGEST_PICTURED = 4 * 2**20  # bytes of a file that is read for its picture
-READING = 0.012  # s of each frame, or one picture if that takes longer
+LARGEST_PICTURED = 4 * 2**20  # bytes; larger files get no picture
+READING = 0.012  # s of each frame spent on reading pictures; one picture at least
 
 
 class FileScene(FormScene):
@@ -49,7 +49,7 @@ class FileScene(FormScene):
         return self.form.boxes[0]
 
     def say(self, message: str) -> None:
-        """Show what is wrong, or asked."""
+        """Show a problem or a question in the heading."""
         self.form.heading.message = message
 
     # --- typing and choosing -----------------------------------------------------------------------
@@ -74,7 +74,7 @@ class FileScene(FormScene):
             self.reveal(context, tile)
 
     def _neighbour(self, context: Context, direction: str) -> Tile | None:
-        """The tile next to the chosen one; the first that is seen if none is chosen yet."""
+        """The tile next to the chosen one in a direction; the first visible tile if none is chosen yet."""
         layout = self.layout(context)
         columns = tile_columns((layout.right - layout.left) / layout.unit)
         tiles = [tile for tile in self.form.tiles if not tile.hidden]
@@ -85,7 +85,7 @@ class FileScene(FormScene):
         return tiles[min(max(at, 0), len(tiles) - 1)]
 
     def next_box(self, context: Context, by: int) -> None:
-        """Tab: there is one box only, so it selects or accepts that."""
+        """Tab: select the only box, or accept it if it is selected."""
         typing.select(self.form, self.box if self.form.selected is None else None)
 
     # --- pictures ----------------------------------------------------------------------------------
@@ -94,7 +94,7 @@ class FileScene(FormScene):
         return self._next_unread(context) is not None
 
     def read_pictures(self, context: Context) -> None:
-        """Read the next pictures that are looked for, few in a frame so that typing stays fluent."""
+        """Read the next missing pictures among the visible tiles, few in a frame so that typing stays fluent."""
         until = time.perf_counter() + READING
         while (tile := self._next_unread(context)) is not None:
             self._unread.remove(tile)
@@ -110,7 +110,7 @@ class FileScene(FormScene):
 
 
 class Pictures(System):
-    """Reads the pictures of models to choose from."""
+    """Reads the pictures of the models that save and load offer."""
 
     name = "files.pictures"
     phase = Phase.EVENTS
@@ -120,7 +120,7 @@ class Pictures(System):
     headless = False
 
     def process(self, frame: Any) -> None:
-        """Read a few of them."""
+        """Read a few pictures."""
         scene = frame.session.scenes.active
         if isinstance(scene, FileScene):
             scene.read_pictures(frame.session)

@@ -21,8 +21,8 @@ if TYPE_CHECKING:  # it imports scipy
     from game.force_method.guide import Guide, Mechanism, Set
 
 WIDE = 1.1  # width / height from which the sets stand side by side
-MOST_OF_HEIGHT = 0.45  # that the working takes; more is scrolled
-LARGE = 500  # rods beyond which a picture says what is being worked on before it is
+MOST_OF_HEIGHT = 0.45  # of the window that the equations and the table take at most; the rest is scrolled
+LARGE = 500  # rods; work on larger structures is announced in a picture first
 LOW = 1.8  # width / height of a place from which a structure stands beside its caption
 LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; below or beside its caption
 CAPTION, SCALE, MARGIN = 66.0, 28.0, 40.0  # points above, below and at most about a structure in its set
@@ -30,7 +30,7 @@ CAPTION, SCALE, MARGIN = 66.0, 28.0, 40.0  # points above, below and at most abo
 
 @dataclass
 class _Work:
-    """What takes a while, and what is said of it; `said` once a frame has shown that."""
+    """Work that takes a while. text: its announcement. said: a frame has shown the announcement."""
 
     text: str
     do: Callable[[], object]
@@ -38,7 +38,7 @@ class _Work:
 
 
 class ForceMethod(Scene):
-    """The seven parts of the force method. `shown_guide` has not done yet what is only announced."""
+    """The seven parts of the force method. shown_guide: the guide as pictures show it, announced work not yet done."""
 
     name = "force method"
 
@@ -46,7 +46,7 @@ class ForceMethod(Scene):
         self.shown_guide: Guide | None = None
         self._work: _Work | None = None
         self._problem = ""
-        self._mechanism: Mechanism | None = None  # what the whole structure is, if it cannot be solved
+        self._mechanism: Mechanism | None = None  # the whole structure, if it cannot be solved
         self._page, self._page_of, self._first = Page(), -1, 0
         self._blank = Model()
         self._places = [View(page=Page(), legend=False) for _ in range(3)]
@@ -54,12 +54,12 @@ class ForceMethod(Scene):
 
     @property
     def message(self) -> str:
-        """What is expected, or why the structure cannot be solved."""
+        """The next task, or why the structure cannot be solved."""
         self.finish()
-        return self._told
+        return self._said
 
     @property
-    def _told(self) -> str:
+    def _said(self) -> str:
         return words.message(self.shown_guide) if self.shown_guide else self._problem
 
     def enter(self, context: Context) -> None:
@@ -88,7 +88,7 @@ class ForceMethod(Scene):
 
     @property
     def guide(self) -> Guide | None:
-        """Where the person is, all work done; None if the structure cannot be solved."""
+        """The guide with all announced work done; None if the structure cannot be solved."""
         self.finish()
         return self.shown_guide
 
@@ -98,7 +98,7 @@ class ForceMethod(Scene):
             work.do()
 
     def work(self, context: Context, text: str, do: Callable[[], object]) -> None:
-        """Do something: if it may take a while, once a picture has said so, or when somebody asks for the guide."""
+        """Do work at once; in large structures, once a picture has announced it or the guide is asked for."""
         if context.model.rods.count <= LARGE:
             do()
         else:
@@ -140,9 +140,9 @@ class ForceMethod(Scene):
         return [(self._blank, self._head), *self._lay_out(context), (self._blank, self._foot)]
 
     def _lay_out(self, context: Context) -> list[tuple[Model, View]]:
-        """Place everything in the window; returns what stands in the middle."""
+        """Place message, sets and equations in the window; returns the stages of the sets."""
         guide, ratio, whole = self.shown_guide, context.view.pixel_ratio, context.view.canvas
-        self._head.heading = context.notice or self._told
+        self._head.heading = context.notice or self._said
         part = f"Part {guide.part} of {PARTS}" if guide else "Not possible"
         if self._work is not None:
             self._head.heading, part = self._work.text, "Working"
@@ -159,7 +159,7 @@ class ForceMethod(Scene):
         return self._sets(middle, ratio)
 
     def _working(self) -> Page:
-        """The equations and the table; made anew in every part only, since a table may be long."""
+        """The equations and the table; made once in every part, since a table may be long."""
         guide = self.shown_guide
         if guide is None:
             return Page()
@@ -200,7 +200,7 @@ class ForceMethod(Scene):
     # --- looking closer: all sets alike ----------------------------------------------------------------
 
     def cameras(self, context: Context) -> list[Camera]:
-        """Those of the sets; what one shows, the others do."""
+        """The cameras of the sets, which zoom and pan together."""
         return [view.camera for _, view in self._lay_out(context)]
 
     def zoom(self, context: Context, factor: float, pixel: Vector) -> None:
@@ -237,7 +237,7 @@ class Sets(System):
     writes = ("sets",)
 
     def process(self, frame: Any) -> None:
-        """Move them."""
+        """Let their time pass."""
         scene = frame.session.scenes.active
         if isinstance(scene, ForceMethod):
             scene.advance(frame.session, frame.elapsed)
@@ -257,7 +257,7 @@ def _fit(model: Model, view: View) -> None:
 
 
 def _readable(place: Viewport, ratio: float) -> bool:
-    """Whether a set has enough room beside or above others; else only the newest is shown, or what is picked from."""
+    """True if a set has enough room beside or above others; else only one set is shown."""
     height = LEAST_LOW if _is_low(place) else LEAST_HEIGHT
     return place.width >= LEAST_WIDTH * ratio and place.height >= height * ratio
 

@@ -1,4 +1,4 @@
-"""Form scene: what properties, save and load have in common: boxes to type into, tiles to choose from."""
+"""Form scenes, the base of properties, save and load: boxes to type into, tiles to choose from."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from systems.render.panel import caret_at
 
 
 class FormScene(Scene):
-    """A mode with a form, which it makes on entering and which is gone on leaving."""
+    """A mode with a form, which is made on entering and dropped on leaving."""
 
     targets: ClassVar[tuple[str, ...]] = ("pause",)
 
@@ -37,7 +37,7 @@ class FormScene(Scene):
     def exit(self, context: Context) -> None:
         self.form = Form("")
 
-    # --- what a kind of form decides ---------------------------------------------------------------
+    # --- for subclasses -------------------------------------------------------------------------
 
     def make_form(self, context: Context) -> Form:
         """The boxes and tiles to begin with."""
@@ -159,17 +159,17 @@ class FormScene(Scene):
         raise LookupError(missing("boxes", title, titles))
 
     def scroll(self, context: Context, rows: int) -> None:
-        """Let so many rows go by."""
+        """Scroll by a number of rows."""
         heading = self.form.heading
         heading.first = max(self.layout(context).first + rows, 0)
         heading.first = self.layout(context).first
 
     def page(self, context: Context, by: int) -> None:
-        """Let all rows that are seen but one go by."""
+        """Scroll by all visible rows but one."""
         self.scroll(context, by * max(self.layout(context).shown - 1, 1))
 
     def reveal(self, context: Context, item: Box | Tile) -> None:
-        """Scroll until a box or tile is seen, with the heading of its section if it is the first there."""
+        """Scroll until a box or tile is visible, with the heading of its section if it is the first of that."""
         layout, heading = self.layout(context), self.form.heading
         if layout.place_of(item) is not None:
             return
@@ -179,7 +179,7 @@ class FormScene(Scene):
             heading.first += 1
 
     def _reveal_selected(self, context: Context) -> None:
-        """What is typed into is seen."""
+        """Scroll to the selected box."""
         if self.form.selected is not None:
             self.reveal(context, self.form.selected)
 

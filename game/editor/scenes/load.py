@@ -17,15 +17,15 @@ NEW = "New, empty model"
 LESSONS = "Begin here"
 EXAMPLES = "Examples"
 LEFT_BEHIND = "Unsaved work, recovered"
-DISCARD = "discard what was recovered"  # what a tile stands for that opens nothing
-# Of the examples, those to look at first; the others follow in alphabetical order.
+DISCARD = "discard what was recovered"  # the source of the tile that discards recovered work
+# The first examples; the others follow in alphabetical order.
 FIRST = ("isostatic", "hyperstatic", "pendulum", "collision_iii", "warren_bridge", "hyperstatic_yield", "tower")
 
 
 class Load(FileScene):
     """Opening a model by its name or its picture.
 
-    welcome: the program was just started; it says what it is.
+    welcome: the program was just started; the heading says what it is.
     """
 
     name = "load"
@@ -34,7 +34,7 @@ class Load(FileScene):
     def __init__(self) -> None:
         super().__init__()
         self.welcome = False
-        self._asked = False  # whether what was recovered is to be discarded
+        self._asked = False  # the person chose once to discard the recovered work
 
     def make_form(self, context: Context) -> Form:
         self._asked = False
@@ -62,7 +62,7 @@ class Load(FileScene):
         self._take(context, tile)
 
     def _take(self, context: Context, tile: Tile) -> None:
-        """Open what a tile stands for, or, asked twice, discard what was recovered."""
+        """Open the source of a tile; the tile "Discard", chosen twice, discards the recovered work."""
         if tile.source is not DISCARD:
             self._open(context, tile.source)
         elif self._asked and context.autosave is not None:
@@ -76,7 +76,7 @@ class Load(FileScene):
             )
 
     def accept(self, context: Context) -> None:
-        """Return: open the chosen tile, the model whose name was typed, or the only one that is left to choose."""
+        """Return: open the chosen tile, else the model whose name was typed, else the only visible tile."""
         name, chosen = self.box.text.strip(), self.form.chosen
         left = [tile for tile in self.form.tiles if not tile.hidden]
         if chosen is not None:

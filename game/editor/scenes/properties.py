@@ -1,4 +1,4 @@
-"""Properties: what elements are, as boxes to type into."""
+"""Properties: the Fields of elements, as boxes to type into."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from systems.render.form_layout import beside
 
 
 class Properties(FormScene):
-    """What the selected elements are, or the environment. Leaving applies all boxes at once."""
+    """The Fields of the selected elements, or of the environment. Leaving applies all boxes at once."""
 
     name = "properties"
     heading = "Properties"
@@ -90,14 +90,14 @@ class Properties(FormScene):
         """The model beside the boxes."""
         rest, view = self._split(context)[0], context.view
         camera = view.camera
-        if rest is not None:  # what was seen in the whole window still is
+        if rest is not None:  # the same part of the model as in the whole window
             scale = camera.scale * rest.width / camera.viewport.width
             camera = replace(camera, viewport=rest, scale=scale)
         status = replace(view.status, hint="")
         return context.model, replace(view, camera=camera, keys=[], status=status, toolbar=Toolbar())
 
     def click_beside(self, context: Context, pixel: Vector) -> None:
-        """A click on another element shows that one's properties, once these are applied."""
+        """A click on another element applies these boxes and shows those of that element."""
         if not typing.accept(self.form) or self.viewport(context).contains(pixel):
             return
         hit = pick(*self.focus(context), pixel)

@@ -10,7 +10,7 @@ from systems.forms import typing
 
 
 class Save(FileScene):
-    """Saving under a name; what has the name already is only replaced when asked twice."""
+    """Saving under a name; a model of that name is replaced only when Return is pressed twice."""
 
     name = "save"
     heading = "Save"
@@ -26,7 +26,7 @@ class Save(FileScene):
         return form
 
     def choose(self, context: Context, tile: Tile) -> None:
-        """A tile's name may be used again, or changed a little."""
+        """Take the name of a tile, to use it again or change it a little."""
         self.form.choose(None)
         typing.select(self.form, self.box)
         typing.put(self.form, self.box, tile.file)

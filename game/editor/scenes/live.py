@@ -1,4 +1,4 @@
-"""Pause: the hub, where a person looks, selects and edits."""
+"""Pause and simulation: the scenes of the model itself, in which time stands still or passes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from game.editor.context import Context, Scene
 
 
 class Pause(Scene):
-    """Time stands still."""
+    """Time stands still; the hub, where a person looks, selects and edits."""
 
     name = "pause"
     heading = "Pause"
@@ -26,3 +26,13 @@ class Pause(Scene):
         if kinds:
             return "Return properties     I its forces     Esc deselect     F1 keys"
         return "Space run     click select     I forces     wheel zoom     F1 keys"
+
+
+class Simulation(Scene):
+    """Time passes, and the picture follows."""
+
+    name = "simulation"
+    targets = ("pause",)
+
+    def hint(self, context: Context) -> str:
+        return "Space pause     + − speed     I forces     R restart     F1 keys"
