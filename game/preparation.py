@@ -126,7 +126,7 @@ class Preparation(System):
         return others if waited is None else waited
 
     def _waits_for_meetings(self, simulation: Simulation) -> float | None:
-        """The same for what happens where particles of structures meet; some come to rest on others."""
+        """Seconds since the programs were wanted by which particles of structures meet and rest on others, or None."""
         if not _may_meet(simulation):
             return None
         waited = self._waits_for_units((DRIVEN,))
@@ -138,7 +138,7 @@ class Preparation(System):
         return resting if waited is None else waited
 
     def raster(self) -> Raster | None:
-        """What draws large pictures, as soon as it is compiled."""
+        """The raster of large pictures, as soon as it is compiled."""
         return load_raster() if self._waits_for_units((RASTER,)) is None else None
 
     def _waits_for_units(self, units: Units) -> float | None:

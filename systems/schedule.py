@@ -151,7 +151,7 @@ class Schedule:
 
     @staticmethod
     def inactive(system: System, scene: str) -> str:
-        """That a system is not active in a scene, and where it is."""
+        """The reason why a system is not active in a scene: where it is."""
         return f"not active in {scene}, only in {', '.join(system.scenes or ())}"
 
     def plan(self, scene: str, model: Model) -> Plan:

@@ -111,7 +111,7 @@ class Batch:
         self.alone[np.intersect1d(variant[rest], variants)] = True
 
     def _limits(self) -> list[Limits]:
-        """What the state last observed allows each variant."""
+        """The limits of each variant in the state last observed."""
         model, drag = self.model.as_model(), self.model.single("environment.drag")
         frequency, decay = spectra(model, self.model.rods.axial_force, drag)
         return [

@@ -46,7 +46,7 @@ class BatchProgram:
         self._module = compile_module(self._source(), self._entries)
 
     def _scratch(self, entry: str) -> dict[str, tuple[int, ...]]:
-        """What of this an entry writes; the forces that are observed are kept for each variant."""
+        """Shapes of the arrays that an entry writes and nobody reads; observed forces are kept for each variant."""
         kept = _KEPT.get(entry, ())
         return {name: shape for name, shape in self._scratch_shapes.items() if name not in kept}
 
@@ -70,7 +70,7 @@ class BatchProgram:
         return "\n".join(lines)
 
     def columns(self, model: BatchedModel) -> dict[str, Column]:
-        """What the compiled functions end with, by name."""
+        """The columns that the compiled functions end with, by name."""
         made: dict[str, Column] = {}
         for name, bound in self._columns.items():
             table, _, column = name.partition("_")

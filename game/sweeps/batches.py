@@ -71,7 +71,7 @@ class Batches:
     # --- the variants ---------------------------------------------------------------------------------
 
     def records(self, numbers: Sequence[int]) -> dict[int, list[Record]]:
-        """What these variants come to, without those that need a run of their own."""
+        """Records of these variants by number, without those that need a run of their own."""
         if self._base is None:
             return {}
         found: dict[int, list[Record]] = {}
@@ -166,7 +166,7 @@ class Batches:
         return found
 
     def _measured(self, batch: Batch) -> list[tuple[Any, ...]]:
-        """What is recorded of the present state of each variant: time, no load factor, measures."""
+        """The record of each variant in its present state: time, no load factor, measures."""
         batch.observe()
         energy, residual = batch.energy.as_dict(), batch.residual
         batch.alone |= ~_finite(batch, energy, residual)
@@ -187,7 +187,7 @@ class Batches:
 
 
 def _kind(value: Value) -> Hashable:
-    """What about a value decides which systems a model needs: zero, its sign, or itself if it is no number."""
+    """The part of a value that decides which systems a model needs: its sign, or itself if it is no number."""
     if value is None or isinstance(value, bool | str):
         return value
     return "+" if value > 0.0 else "-" if value < 0.0 else "0"

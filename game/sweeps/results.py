@@ -57,7 +57,7 @@ class Results:
         return np.array(column, dtype=float if numbers else None)
 
     def counts(self) -> dict[str, int]:
-        """How many variants ended with each status."""
+        """Number of variants that ended with each status."""
         last = dict(zip(self.columns["variant"], self.columns["status"], strict=True))
         return dict(sorted(Counter(last.values()).items()))
 

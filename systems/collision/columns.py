@@ -59,7 +59,7 @@ FLIGHT = [Disc.UX, Disc.UY, Disc.VX, Disc.VY, Disc.AX, Disc.AY, Disc.EPOCH, Disc
 
 
 class PairKind(IntEnum):
-    """What a step of an integrator does about a pair of particles, as at the start of the step."""
+    """How a step of an integrator treats a pair of particles, by the state at the start of the step."""
 
     WATCHED = 0  # an impact ends the step
     LEFT_ALONE = 1  # nodes that overlap; they collide once they have separated
@@ -139,14 +139,14 @@ class Constraints(NamedTuple):
         return cls(first, partners, *contacts).cleared(size, counts)
 
     def cleared(self, size: int, counts: Integers) -> Constraints:
-        """The same without persistent contacts, with room for `size` entries."""
+        """These constraints without persistent contacts, with room for `size` entries."""
         counts[Count.SPARE], counts[Count.SPARES] = NONE, 0
         none = np.full_like(self.first_persistent, NONE)
         emptied = self._replace(first_persistent=none, persistent=self.persistent[:0], forces=self.forces[:0])
         return emptied.enlarged(size, counts)
 
     def enlarged(self, size: int, counts: Integers) -> Constraints:
-        """The same with room for `size` entries; new unused entries are chained before the old ones."""
+        """These constraints with room for `size` entries; new unused entries are chained before the old ones."""
         old = len(self.persistent)
         persistent, forces = np.zeros((size, 2), dtype=np.int64), np.zeros(size)
         persistent[:old], forces[:old] = self.persistent, self.forces

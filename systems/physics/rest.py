@@ -35,7 +35,7 @@ class RestMeasure:
     @classmethod
     @_BEYOND
     def of(cls, model: Model, unbalanced: Array) -> RestMeasure:
-        """That of the state last observed. unbalanced: force on each particle without dampers and drag (kN)."""
+        """The measure of the state last observed. unbalanced: force on each particle without dampers and drag (kN)."""
         particles, rods = model.particles, model.rods
         pull, flexibility = np.abs(rods.axial_force), rods.rest_length / rods.stiffness
         moved = np.abs(particles.displacement).max(axis=1, initial=0.0)

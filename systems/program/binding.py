@@ -92,7 +92,7 @@ class Bound:
 
     @property
     def purpose(self) -> str:
-        """What the kernel is called for: a key of PROVIDED_TO."""
+        """The purpose of the kernel: a key of PROVIDED_TO."""
         if isinstance(self.system, Event):
             return f"event of {self.each}"
         return (self.each or "commit") if self.kernel == "kernel" else self.kernel
@@ -278,7 +278,7 @@ def explain(bound: Iterable[Bound], integrator: Integrator, model: Model, error:
 
 
 def problem_of(b: Bound, model: Model) -> str:
-    """What is wrong with a kernel, compiled by itself, or ""."""
+    """The fault of a kernel, compiled by itself, as a sentence; "" if there is none."""
     try:
         made = _result_type(b, model)
     except Exception as failure:  # numba raises many kinds

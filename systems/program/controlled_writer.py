@@ -1,4 +1,4 @@
-"""What a step program holds besides for integrators that control their steps; see templates/runge_kutta.py."""
+"""Step programs of integrators that control their steps: powers, events, tangents; see templates/runge_kutta.py."""
 
 from __future__ import annotations
 

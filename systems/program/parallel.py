@@ -28,7 +28,7 @@ _home = os.getpid()
 
 
 def cores() -> int:
-    """How many cores a computation may use: what PINJOINT_CORES says, else as many as this process may.
+    """Number of cores that a computation may use: by PINJOINT_CORES, else as many as this process may.
 
     One in a process that was forked, for the threads of its parent are not there.
     """
@@ -87,13 +87,13 @@ class BlockProgram(ReorderedProgram):
         return None if path.startswith("block.") else super()._column(path)
 
     def _loads(self, prefix: str, ordered: Mapping[str, Any]) -> dict[str, Any]:
-        """The same, and the first load of each block."""
+        """The arrays of a law of loads in order, and the first load of each block."""
         loads = super()._loads(prefix, ordered)
         first = np.searchsorted(loads[f"{prefix}_on"], self.layout.first_particle)
         return loads | {f"block_{prefix}": first}
 
     def _cores(self) -> int:
-        """How many cores are worth using; results do not depend on it."""
+        """Number of cores that are worth using; results do not depend on it."""
         os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # else idle threads spin for milliseconds
         os.environ.setdefault("GOMP_SPINCOUNT", _SPINS)
         import numba

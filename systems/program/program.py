@@ -185,7 +185,7 @@ class Program:
         return self._unbalanced
 
     def _rows(self, table: str) -> int:
-        """How many elements of a table it holds."""
+        """Number of elements of a table that the program holds."""
         return self.model.tables[table].count
 
     def _column(self, path: str) -> Any:

@@ -415,16 +415,16 @@ class Writer:
         return [*self._particles(self.integrator.ends), *self._gains("resist", RESISTED)]
 
     def _finish(self) -> list[str]:
-        """What the last of many steps leaves to do."""
+        """The lines after the last of many steps."""
         return []
 
     def _particles(self, where: str, span: str = EVERY) -> list[str]:
-        """What the integrator does with every particle."""
+        """A loop in which the integrator moves every particle."""
         lines = fragment(find(where, self.integrator), total_force=fragment(fixed_steps.total_force))
         return [f"for i in range({span}):", *indented(lines)] if lines else []
 
     def _gains(self, resist: str, given: str) -> list[str]:
-        """What each account gains in the step that ends here."""
+        """The lines by which each account gains in the step that ends here."""
         if not self.powers:
             return []
         powers = fragment(fixed_steps.powers, accounts=str(len(ACCOUNTS)))
@@ -433,7 +433,7 @@ class Writer:
     # --- events -----------------------------------------------------------------------------------
 
     def _happened(self) -> list[str]:
-        """What tells at the end of a step whether the quantity of an event changed sign."""
+        """The function that tells at the end of a step whether the quantity of an event changed sign."""
         lines: dict[str, list[str]] = {"rods": [], "particles": []}
         for place, b in enumerate(self.events):
             lines[b.each] += [
@@ -445,7 +445,7 @@ class Writer:
         return [pasted(events.happened, "compiled", **self._each_row(lines))] if self.events else []
 
     def _turned(self, place: int) -> str:
-        """Whether the quantity of an event, `gap` on the side that it was on, changed sign in the step."""
+        """The condition that the quantity of an event, `gap` on the side that it was on, changed sign in the step."""
         return "gap < 0.0"
 
     def _needed_force(self, b: Bound) -> list[str]:

@@ -32,7 +32,7 @@ class MeasuredError:
 
 
 def work(simulation: Simulation) -> int:
-    """How many times the run evaluated the force of a rod, which running it again takes at least."""
+    """Number of evaluations of a rod's force in the run; running it again takes at least as many."""
     stages: int = simulation.integrator.constants.get("STAGES", 1)
     return simulation.model.clock.steps * max(simulation.model.rods.count, 1) * stages
 

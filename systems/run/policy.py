@@ -44,7 +44,7 @@ class Limits:
 
     @classmethod
     def of(cls, integrator: Integrator, frequency: float, decay: float) -> Limits:
-        """Those of an integrator; infinite where nothing swings or decays."""
+        """The limits of an integrator; infinite where nothing swings or decays."""
         limited = frequency > 0.0 or decay > 0.0
         return cls(frequency, decay, integrator.stable_step(frequency, decay) if limited else math.inf)
 
@@ -149,5 +149,5 @@ def residual(measures: Column) -> Column:
 
 
 def at_rest_since(time: float) -> str:
-    """What to say of a model that came to rest at this time (s)."""
+    """The message of a model that came to rest at this time (s)."""
     return f"At rest since t = {time:.6g} s."

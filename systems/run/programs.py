@@ -66,7 +66,7 @@ class Programs:
 
     @contextmanager
     def in_scene(self, scene: str) -> Iterator[None]:
-        """What is asked inside is answered as if the systems of this scene acted."""
+        """Questions inside the `with` are answered as if the systems of this scene acted."""
         integrator, before = self._integrator, self.scene
         self._integrator, self.scene = None, scene
         try:
@@ -109,12 +109,12 @@ class Programs:
 
     @property
     def dynamics(self) -> Dynamics:
-        """What moves the model, bound to it as it is now."""
+        """The program or flight that moves the model, bound to it as it is now."""
         return self._bound or self.bind()
 
     @property
     def compiled(self) -> Program:
-        """The same as a compiled program; exact flight has none."""
+        """The compiled program that moves the model; exact flight has none."""
         program = self.dynamics
         assert isinstance(program, Program)
         return program

@@ -94,7 +94,7 @@ class Simulation:
         self.forget()  # a saved run goes on with the step size it had
 
     def _sources(self) -> tuple[str, ...]:
-        """What the derived columns follow from."""
+        """The columns that the derived ones follow from."""
         tables = ["particles", "rods", "loads", "environment", "settings", "clock"]
         tables += [kind.table for kind in ADDED.values() if kind.table in self.model.tables]
         return tuple(
@@ -123,17 +123,17 @@ class Simulation:
 
     @property
     def integrator(self) -> Integrator:
-        """What advances time: an integrator, or exact flight."""
+        """The integrator that advances time, or exact flight."""
         return self.programs.integrator
 
     @property
     def program(self) -> Dynamics:
-        """What moves the model, bound to it as it is now."""
+        """The program or flight that moves the model, bound to it as it is now."""
         return self.programs.dynamics
 
     @property
     def _stepper(self) -> Flight | DrivenCollisions | ProgramSteps:
-        """What takes the steps: exact flight, or those of a program, ended at impacts if any may come."""
+        """The stepper: exact flight, or the steps of a program, ended at impacts if any may come."""
         if isinstance(self.program, Flight):
             return self.program
         return self._driven_collisions if self.programs.collides else self._steps
@@ -372,7 +372,7 @@ class Simulation:
 
     @contextmanager
     def aside(self, beginning: Snapshot) -> Iterator[None]:
-        """What is run inside starts from another state, and is taken back as if it had not been."""
+        """A run inside the `with` starts from another state, and is taken back as if it had not been."""
         before, announces = self.checkpoint(), self._announces
         self._announces = False  # what happened is known
         said = self.reason, self.message, self.note, self.armed_revision
@@ -392,7 +392,7 @@ class Simulation:
         self.program.observe()
 
     def _measured(self) -> Column:
-        """What the program measures in the present state."""
+        """The measures of the present state."""
         self.observe()
         return self.program.measures
 
@@ -414,7 +414,7 @@ class Simulation:
 
 
 def _why_not_at_rest(program: Dynamics, limit: float) -> str:
-    """What to say of a run that did not come to rest by the time `limit` (s)."""
+    """The message of a run that did not come to rest by the time `limit` (s)."""
     message = f"Not at rest within {limit:g} s of simulated time."
     if program.lasting:
         return f"{message} {program.lasting} changes with time, so it never will be; run to a time instead."

@@ -132,7 +132,7 @@ class Sleep:
         self._bound = None
 
     def part(self, program: Program) -> Program:
-        """What takes the steps of a program: itself, or while some sleep one of those that are awake."""
+        """The program that takes the steps: the given one, or while some sleep its part that is awake."""
         if not self.any_asleep:
             return program
         asleep = self.model.particles.asleep

@@ -97,7 +97,7 @@ class StepSize:
             self._model.writable("clock.step_limit")[0] = self._policy.limit(self.look_up())
 
     def remedy(self, size: float | None) -> str:
-        """What to do about a run that is unstable with steps of this size (s), None: automatic."""
+        """The remedy for a run that is unstable with steps of this size (s), None: automatic."""
         integrator = self._programs.integrator
         name = integrator.name.rpartition(".")[2]
         if self.stable == 0.0:

@@ -42,10 +42,10 @@ class Steps(Protocol):
 
     @property
     def program(self) -> Program:
-        """What takes the next steps."""
+        """The program that takes the next steps."""
 
     def rebound(self) -> Program:
-        """What takes the next steps, now that an impact changed the plan."""
+        """The program that takes the next steps, now that an impact changed the plan."""
 
     def land(self, target: float) -> StopReason:
         """Take the last, short step, to exactly the time `target` (s)."""

@@ -76,7 +76,7 @@ class Flight:
         return bool(least < 1.0)
 
     def take_events(self) -> list[tuple[Event, list[Handle], list[Handle]]]:
-        """None: a plan with events has a step program."""
+        """Nothing: a plan with events has a step program."""
         return []
 
     def bind(self) -> None:
