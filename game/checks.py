@@ -1,4 +1,4 @@
-"""check_system: one line in a test that runs any system through what is expected of it."""
+"""check_system: one line in a test that checks any system for the contract of systems."""
 
 from __future__ import annotations
 
@@ -65,12 +65,12 @@ Source = Any  # a model's name or document, or a function that returns a Model
 
 
 class SystemCheckError(AssertionError):
-    """A system that does not do what it declares; the message says what it did, on which model."""
+    """A system that breaks its declarations; the message says how."""
 
 
 @dataclass(frozen=True)
 class Checked:
-    """What a system was found to be: on how many models it was needed, and what it costs.
+    """A checked system: the number of models that need it, and its cost.
 
     cost: ns for one element in one step (a law, a commit) or one frame.
     """
@@ -83,8 +83,8 @@ class Checked:
 def check_system(system: Callable[[], System], models: Iterable[Source] = MODELS) -> Checked:
     """Run a system, given by its class, on several models. Raises SystemCheckError, which names what is wrong.
 
-    It may change only what it declares (all else stays bit-identical), must give finite numbers, the same
-    ones every time and in whatever order systems are registered, and must be needed by one of the models.
+    The system may change only the columns that it declares, must give finite numbers, the same ones every time and
+    in any order of registration, and must be needed by one of the models.
 
     >>> from systems.physics.system import Drag
     >>> check_system(Drag).name
@@ -104,12 +104,11 @@ def check_system(system: Callable[[], System], models: Iterable[Source] = MODELS
 
 
 def _model(source: Source) -> Model:
-    made: Model = source() if callable(source) else models.load(source)
-    return made
+    return source() if callable(source) else models.load(source)
 
 
 def _is_needed(system: Callable[[], System], source: Source) -> bool:
-    """Whether a model needs the system; asking changes nothing and always gets the same answer."""
+    """Whether a model needs the system; checks that needs() changes nothing and always answers alike."""
     model = _model(source)
     before = _columns(model)
     answers = {bool(system().needs(model)) for _ in range(2)}
@@ -120,7 +119,7 @@ def _is_needed(system: Callable[[], System], source: Source) -> bool:
 
 
 def _drives(system: Callable[[], System], source: Source) -> bool:
-    """Whether a model's steps are taken by the integrator once it is chosen: bodies in free flight need none."""
+    """Whether the integrator takes the steps of a model once it is chosen: bodies in free flight need none."""
     made = system()
     simulation = Simulation(_model(source), Schedule(_all_with(made)))
     with _driven_by(made, simulation):
@@ -128,7 +127,7 @@ def _drives(system: Callable[[], System], source: Source) -> bool:
 
 
 def _columns(model: Model) -> dict[str, Column]:
-    """Copies of what a person or time made."""
+    """Copies of all columns of document and state."""
     return {
         f"{table.name}.{field.name}": table.column(field.name).copy()
         for table in model.tables.values()
@@ -149,7 +148,7 @@ def _compare(
 
 
 def _all_with(system: System) -> list[System]:
-    """The systems of the program, this one among them once."""
+    """The systems of the program with this one in place of any of its name."""
     return [*(other for other in all_systems() if other.name != system.name), system]
 
 
@@ -158,10 +157,9 @@ def _check_steps(system: Callable[[], System], source: Source) -> float:
     assert isinstance(made, StepSystem)
     first = _run(made, source, backwards=False)
     before, after = _columns(_model(source)), _columns(first)
-    steps = (other for other in _all_with(made) if isinstance(other, StepSystem))
-    written = (column for other in steps for column in other.writes)  # by what runs beside it
-    allowed = {"particles.displacement", "particles.velocity", "particles.asleep", "clock"}
-    allowed |= {*written, *made.adds}
+    beside = (other for other in _all_with(made) if isinstance(other, StepSystem))
+    allowed = {"particles.displacement", "particles.velocity", "particles.asleep", "clock", *made.adds}
+    allowed |= {column for other in beside for column in other.writes}
     if isinstance(made, Integrator):
         allowed.add("settings.integrator")
     _compare(made.name, before, after, allowed, "running it changed")
@@ -190,29 +188,29 @@ def _run(system: System, source: Source, *, backwards: bool) -> Model:
 
 @contextmanager
 def _driven_by(system: System, simulation: Simulation) -> Iterator[None]:
-    """If it is an integrator, let it be the one that takes the steps."""
+    """While inside, an integrator takes the steps of the simulation; other systems change nothing."""
     if not isinstance(system, Integrator):
         yield
         return
-    key = system.key
-    former = INTEGRATORS.get(key)
+    former = INTEGRATORS.get(system.key)
     register_integrator(system)
     try:
-        simulation.model.settings.integrator = key
+        simulation.model.settings.integrator = system.key
         yield
     finally:
         if former is None:
-            remove_integrator(key)
+            remove_integrator(system.key)
         else:
             register_integrator(former)
 
 
 def _check_finite(name: str, model: Model) -> None:
-    for column, values in _columns(model).items():
-        if model.tables[column.partition(".")[0]].fields[column.partition(".")[2]].role is not Role.STATE:
-            continue
-        if values.dtype == np.float64 and not np.isfinite(values).all():
-            raise SystemCheckError(f"{name}: after {STEPS} steps with it, {column} is not finite.")
+    for table in model.tables.values():
+        for field in table.fields_in(Role.STATE):
+            if field.dtype is float and not np.isfinite(table.column(field.name)).all():
+                raise SystemCheckError(
+                    f"{name}: after {STEPS} steps with it, {table.name}.{field.name} is not finite."
+                )
 
 
 def _check_alike(name: str, one: Mapping[str, Column], other: Mapping[str, Column], did: str) -> None:
@@ -227,9 +225,7 @@ def _check_alike(name: str, one: Mapping[str, Column], other: Mapping[str, Colum
 def _check_frames(system: Callable[[], System], source: Source) -> float:
     made, session = system(), Session(_model(source))
     before = _columns(session.model)
-    started = time.perf_counter()
-    _frames(made, session)
-    seconds = time.perf_counter() - started
+    seconds = _frames(made, session)
     after = _columns(session.model)
     _compare(made.name, before, after, set(made.writes) | set(made.adds), "a frame of it changed")
     _check_finite(made.name, session.model)
@@ -239,10 +235,13 @@ def _check_frames(system: Callable[[], System], source: Source) -> float:
     return 1e9 * seconds / FRAMES / max(session.particles.count + session.rods.count, 1)
 
 
-def _frames(system: System, session: Session) -> None:
+def _frames(system: System, session: Session) -> float:
+    """Run a system for FRAMES frames; returns the seconds that it took."""
+    started = time.perf_counter()
     for _ in range(FRAMES):
         session.model.activate()
         try:
             system.process(Frame(session, FRAME))
         except Exception as error:
             raise SystemCheckError(f"{system.name} raises {type(error).__name__}: {error}") from error
+    return time.perf_counter() - started

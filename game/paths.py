@@ -1,7 +1,7 @@
-"""Paths: what texts such as particles.B.force.x name, on the command line, in sweeps, in scripts and in plots.
+"""Paths: texts such as particles.B.force.x that name facts, on the command line, in sweeps, scripts and plots.
 
-`locate` reads the path of a fact of elements; `apply_override` sets such facts, `quantity` reads numbers of
-a session, which may also be its time or an energy.
+`locate` reads the path of a fact of elements; `apply_override` sets such facts, `quantity` reads numbers of a session,
+its time and its energies among them.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ _FLAGS = {"true": True, "false": False}
 
 
 class PathError(LookupError):
-    """A path that names nothing, or that cannot have a value; the message says why and what to write."""
+    """A path that names nothing or cannot have a value; the message gives the reason and the remedy."""
 
 
 @dataclass(frozen=True)
 class Target:
-    """What a path names: one fact of the elements of a table, or its component along an axis.
+    """The target of a path: one fact of elements of a table, or its component along an axis.
 
-    handles: the elements; element: their name in the path, "*" for all, "" where there is one only.
+    handles: the elements; element: their name in the path, "*" for all, "" in a table with a single element.
     key: the name of the fact in the path. axis: "x", "y" or "" for the whole.
     """
 
@@ -136,7 +136,7 @@ def _known(name: str, names: Collection[str], what: str) -> str:
 
 
 def _element(table: Table[Any], rest: str, known: Container[str]) -> tuple[str, str]:
-    """The name of the element that `rest` begins with ("" where there is one only), and what follows it."""
+    """The name of the element at the beginning of `rest` ("" in a table with a single one), and the text after it."""
     if table.kind.single:
         return "", rest
     cuts = [index for index, character in enumerate(rest) if character == "."]
@@ -189,7 +189,7 @@ def apply_override(model: Model, override: str) -> None:
 
 
 def read_value(target: Target, text: str) -> Any:
-    """The value that a text means for a fact; the text itself if it means none, which the field then refuses."""
+    """The value that a text means for a target; the text itself if it means none, which the field then refuses."""
     whole = target.field.shape and not target.axis
     return _vector(target.field, text) if whole else _scalar(target.field, text)
 
@@ -227,7 +227,7 @@ def _scalar(field: Field[Any], text: str) -> Any:
 
 
 class Readable(Protocol):
-    """A session, as far as quantities read it."""
+    """The part of a session that quantities read."""
 
     @property
     def model(self) -> Model: ...
@@ -241,8 +241,7 @@ class Readable(Protocol):
 class Quantity:
     """A number that can be read at any moment.
 
-    path: as a person writes it. name: the fact and the element. unit: that on screen. read: the value in that
-    unit; NaN while the element is deleted.
+    name: fact and element. unit: that on screen. read: the value in this unit; NaN while the element is deleted.
     """
 
     path: str

@@ -15,10 +15,8 @@ from game.documents.models import replace
 from game.session import Session
 from systems.render.labels import Placed
 
-FRAME = 0.05  # s shown by each picture; viewers of GIFs slow down what is quicker
-LONGEST = (
-    12.0  # s shown at most; a longer run to a time is shown faster, one until rest only in part and its end
-)
+FRAME = 0.05  # s for which each picture is shown; viewers of GIFs slow down quicker ones
+LONGEST = 12.0  # s shown; a longer run to a time is shown faster, one until rest in part and at its end
 HELD = 1.5  # s for which the last picture stays
 COLOURS = 128
 
@@ -26,7 +24,7 @@ COLOURS = 128
 def render_gif(
     session: Session, path: str, size: tuple[int, int], theme: str, *, until: float | None, limit: float
 ) -> str:
-    """Run to a time (s; None: until at rest) and write the pictures of the run as a GIF; returns how it ended.
+    """Run to a time (s; None: until at rest) and write the pictures of the run as a GIF; returns the status.
 
     Raises OSError if the file cannot be written.
     """
@@ -35,8 +33,11 @@ def render_gif(
     from game.app import picture
 
     status, moments = _run(session, until, limit)
-    around = np.concatenate([_drawn_at(session, moment) for moment in moments])
-    images = []
+    places = []
+    for moment in moments:
+        moment.restore(session.model)
+        places.append(drawn_places(session.model))
+    around, images = np.concatenate(places), []
     placed: Placed = {}
     for moment in moments:
         moment.restore(session.model)
@@ -50,7 +51,7 @@ def render_gif(
 
 
 def _run(session: Session, until: float | None, limit: float) -> tuple[str, list[Snapshot]]:
-    """The status at the end of the run, and the states that pictures show."""
+    """The status at the end of the run, and the states of the pictures."""
     moments = [Snapshot.take(session.model)]
     status = "time reached"
     for begin, end in pairwise(_times(session, until, limit)):
@@ -74,9 +75,3 @@ def _times(session: Session, until: float | None, limit: float) -> Iterator[floa
         count = max(min(most, math.ceil((until - begin) / step)), 1)
         step = (until - begin) / count
     yield from (begin + number * step for number in range(count + 1))
-
-
-def _drawn_at(session: Session, moment: Snapshot) -> np.ndarray:
-    """The places at which particles are drawn in a state (m), shape (n, 2)."""
-    moment.restore(session.model)
-    return drawn_places(session.model)

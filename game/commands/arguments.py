@@ -1,4 +1,4 @@
-"""Arguments: the values that words of a command line mean, or one sentence that refuses a word."""
+"""Arguments: the values of words on a command line, or one sentence that refuses a word."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class UsageError(Exception):
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that says what is wrong in one sentence; the value of an option may begin with a minus: -1,2."""
+    """A parser that refuses in one sentence; values of options may begin with a minus: -1,2."""
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)

@@ -12,7 +12,7 @@ from typing import Any
 
 from game.commands.arguments import Parser, UsageError
 from game.commands.options import ANSWERED
-from game.commands.output import Row, add_format, aligned, formatted, write
+from game.commands.output import Row, add_format, aligned, formatted, write, writing
 
 CHECKOUT = Path(__file__).resolve().parents[2]
 NAMES = ("speed", "accuracy", "stability", "drawing", "editing", "mods", "collisions", "sweeps", "start")
@@ -40,10 +40,8 @@ def command(words: Sequence[str]) -> int:
             print(f"== {name} ==\n{as_text(tables)}")
         measured[name] = tables
         if options.output:
-            try:
+            with writing(options.output, "--output"):
                 write_files(name, tables, Path(options.output))
-            except OSError as error:
-                raise UsageError(f"{options.output} cannot be written: {error.strerror}.") from None
     if options.format != "table":
         write(formatted(options.format, _finite(measured), _rows), None)
     return ANSWERED

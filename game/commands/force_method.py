@@ -39,9 +39,9 @@ def command(words: Sequence[str]) -> int:
 
 
 def _solved(model: Model, release: str | None) -> dict[str, Any]:
-    """Displacements (m, m/kN) and hyperstatic forces (kN), with the exact forces beside them.
+    """Displacements (m, m/kN), hyperstatic forces and their exact values (kN).
 
-    release: "AC" or "A.y"; None: as many unknowns as make the structure isostatic, in lists and a matrix.
+    release: "AC" or "A.y"; None: unknowns whose release leaves an isostatic structure, in lists and a matrix.
     Raises ForceMethodError.
     """
     from game.force_method.guide import exact_forces
@@ -50,27 +50,22 @@ def _solved(model: Model, release: str | None) -> dict[str, Any]:
     unknowns = redundants(model) if release is None else [find_unknown(model, release)]
     solution = solve(model, unknowns)
     exact = exact_forces(model, unknowns)
-    if release is not None:
-        return {
-            "released": release,
-            "delta_real": float(solution.delta_real[0]),
-            "delta_base": float(solution.delta_base[0]),
-            "delta_unit": float(solution.delta_unit[0, 0]),
-            "force": float(solution.force[0]),
-            "exact_force": exact[0] if exact is not None else None,
-        }
-    return {
+    found: dict[str, Any] = {
         "released": [unknown.name for unknown in unknowns],
-        "delta_real": solution.delta_real.tolist(),
-        "delta_base": solution.delta_base.tolist(),
-        "delta_unit": solution.delta_unit.tolist(),
-        "force": solution.force.tolist(),
+        "delta_real": solution.delta_real,
+        "delta_base": solution.delta_base,
+        "delta_unit": solution.delta_unit,
+        "force": solution.force,
         "exact_force": exact,
     }
+    if release is None:
+        return found
+    first = {key: None if values is None else values[0] for key, values in found.items()}
+    return first | {"delta_unit": solution.delta_unit[0, 0]}
 
 
 def _rows(found: Mapping[str, Any]) -> Iterator[Row]:
-    """The result as rows, one for every unknown, headings first."""
+    """The result as rows, one per unknown, headings first."""
     if not isinstance(found["released"], list):
         found = {key: [value] for key, value in found.items()} | {"delta_unit": [[found["delta_unit"]]]}
     names = found["released"]

@@ -10,7 +10,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from components.model import Model
 from components.suggestions import missing
 from game.checks import EVERYTHING
 from game.commands import COMMANDS
@@ -27,7 +26,7 @@ from game.mods.loading import MODS, load
 from game.mods.mod import INCLUDED, LOG, Mod, ModError
 from game.mods.skeleton import write_skeleton
 from game.version import __version__
-from systems.base import Commit, Law
+from systems.base import Commit, Integrator, Law
 from systems.catalogue import all_systems
 from systems.input.bindings import BINDINGS
 from systems.physics.integrators import INTEGRATORS
@@ -43,8 +42,8 @@ LEFT_OUT = (
 def load_as_asked(words: Sequence[str]) -> list[str]:
     """Load the mods that the options --mods DIR and --no-mods ask for; returns the other words.
 
-    What was left out is said on standard error. After a crash with mods, a window opens without those
-    that --mods did not name. Raises ModError.
+    Mods that are left out are named on standard error. After a crash with mods, a window opens without those that
+    --mods did not name. Raises ModError.
     """
     parser = Parser(prog="pinjoint", add_help=False, allow_abbrev=False)
     parser.add_argument("--mods", action="append", default=[], metavar="DIR")
@@ -143,17 +142,18 @@ def _lines_of_check(found: Sequence[dict[str, Any]]) -> Iterator[str]:
 
 
 def problems(mod: Mod) -> Iterator[str]:
-    """One sentence for each kernel of a mod that no model could be run with, and each key in a scene that does not exist."""
+    """One sentence for each kernel of a mod that cannot be compiled, and each key in a scene that does not exist."""
     model = models.load(EVERYTHING)
-    for system in all_systems():
-        if system.mod is mod and isinstance(system, Law | Commit):
-            yield from filter(None, [_problem_of(system, model)])
-    for integrator in INTEGRATORS.values():
-        if integrator.mod is mod:
-            try:
-                read_sources([integrator])
-            except ProgramError as error:
-                yield str(error)
+    for system in (*all_systems(), *INTEGRATORS.values()):
+        try:
+            if system.mod is not mod:
+                continue
+            if isinstance(system, Integrator):
+                read_sources([system])
+            elif isinstance(system, Law | Commit) and (problem := problem_of(bind(system, model), model)):
+                yield problem
+        except ProgramError as error:
+            yield str(error)
     scenes = {scene.name for scene in all_scenes()}
     for binding in BINDINGS:
         if binding.action.startswith(f"{mod.name}."):
@@ -161,25 +161,13 @@ def problems(mod: Mod) -> Iterator[str]:
                 yield f"The key '{binding.key}' for {binding.action}: {missing('scenes', scene, scenes)}"
 
 
-def _problem_of(system: Law | Commit, model: Model) -> str:
-    """The problem of a system's kernel, or ""."""
-    try:
-        return problem_of(bind(system, model), model)
-    except ProgramError as error:
-        return str(error)
-
-
 # --- safe start ----------------------------------------------------------------------------------------
 
 
-def _folder() -> Path:
-    return data_folder() / "running"
-
-
 def crashed() -> bool:
-    """True if the program ended in a window with mods without closing it; asking forgets it."""
+    """True if a window with mods ended without being closed; asking deletes its lock file."""
     found = False
-    for path in _folder().glob("*.lock"):
+    for path in (data_folder() / "running").glob("*.lock"):
         lock = lock_file(path)
         if lock is not None:
             lock.close()
@@ -194,7 +182,7 @@ def in_use() -> Iterator[None]:
     if not any(mod.loaded and mod.source != INCLUDED for mod in MODS):
         yield
         return
-    path = _folder() / f"{uuid.uuid4().hex}.lock"
+    path = data_folder() / "running" / f"{uuid.uuid4().hex}.lock"
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         lock = lock_file(path)

@@ -1,4 +1,4 @@
-"""Options that several commands share, and the sessions and analyses that they describe."""
+"""Options that several commands share, and the sessions and analyses made of them."""
 
 from __future__ import annotations
 
@@ -39,7 +39,12 @@ def add_model(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help=f"one of {', '.join(INTEGRATORS)}",
     )
-    change("--time-step", type=_time_step, metavar="S", help="fixed time step in seconds")
+    change(
+        "--time-step",
+        type=lambda text: f"settings.time_step={positive(text)}",
+        metavar="S",
+        help="fixed time step in seconds",
+    )
     change(
         "--set",
         metavar="PATH=VALUE",
@@ -47,15 +52,10 @@ def add_model(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _time_step(text: str) -> str:
-    """A time step in seconds as an override."""
-    return f"settings.time_step={positive(text)}"
-
-
 def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> Session:
     """A session with the model of `add_model`, and further systems. Raises ModelError, PathError, FieldError."""
     session = Session.open(options.model, systems)
-    if session.notice:  # data of mods that are not loaded, which would change the result
+    if session.notice:  # about data of mods that are not loaded, which would change the result
         print(f"pinjoint: {session.notice}", file=sys.stderr)
     for override in options.set:
         apply_override(session.model, override)
@@ -63,7 +63,7 @@ def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> S
 
 
 def add_analysis(parser: argparse.ArgumentParser) -> None:
-    """Add the options that say what to compute: equilibria, the state at certain times, or the state at rest."""
+    """Add the options of the analysis: equilibria, the state at certain times, or the state at rest."""
     how = parser.add_mutually_exclusive_group()
     how.add_argument("--until-rest", action="store_true", help="run until nothing moves (the default)")
     how.add_argument(

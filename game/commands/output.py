@@ -1,4 +1,4 @@
-"""Output: where a command writes its result, and the three formats that all of them share: table, json, csv."""
+"""Output of commands: the options --format and --output, and the formats table, json and csv."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Literal
 
@@ -31,7 +32,7 @@ class ResultError(ValueError):
 
 
 def writable(text: str) -> str:
-    """The name of a file that can be written; checked before anything is computed for it."""
+    """The name of a file that can be written, checked before the computation."""
     path = Path(text)
     if path.is_dir():
         reason = "it is a folder"
@@ -45,14 +46,14 @@ def writable(text: str) -> str:
 
 
 def add_format(parser: argparse.ArgumentParser, default: Format = "table") -> None:
-    """The option --format alone, of commands whose --output is something else than a file."""
+    """Add the option --format alone, to commands whose --output is not a file."""
     parser.add_argument(
         "--format", choices=FORMATS, default=default, help=f"of what is printed; default {default}"
     )
 
 
 def add_output(parser: argparse.ArgumentParser, default: Format = "table") -> None:
-    """The options --format and --output, which `write_result` obeys."""
+    """Add the options --format and --output of `write_result`."""
     add_format(parser, default)
     parser.add_argument(
         "--output", type=writable, metavar="FILE", help="write to a file instead of standard output"
@@ -67,8 +68,8 @@ def write_result(
 ) -> None:
     """Write a result to the file and in the format of `add_output`. Raises UsageError, ResultError.
 
-    data: the result, which JSON shows. rows: what makes rows of values of it, headings first, for CSV.
-    lines: what makes the lines of a text to read of it; None: the rows in columns. Both get plain data.
+    data: the result, written as JSON. rows: makes rows of values of plain data, headings first, for CSV. lines: makes
+    lines of a text of plain data, for a table; None: the rows in columns.
     """
     write(formatted(options.format, data, rows, lines), options.output)
 
@@ -88,17 +89,24 @@ def formatted(
 
 def write(text: str, path: str | None) -> None:
     """Write a text to a file, whole or not at all, or to standard output if None. Raises UsageError."""
-    try:
+    with writing(path or "Standard output"):
         if path is None:
             sys.stdout.write(text)
             sys.stdout.flush()
         else:
             replace(path, text.encode())
+
+
+@contextmanager
+def writing(place: object, remedy: str = "file") -> Iterator[None]:
+    """Turn an OSError of writing to a place into a UsageError that asks for another file or option."""
+    try:
+        yield
     except BrokenPipeError:
         raise
     except OSError as error:
-        place = path or "Standard output"
-        raise UsageError(f"{place} cannot be written: {error.strerror}. Choose another file.") from None
+        message = f"{place} cannot be written: {error.strerror or error}. Choose another {remedy}."
+        raise UsageError(message) from None
 
 
 # --- values as text ------------------------------------------------------------------------------------

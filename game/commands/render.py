@@ -8,7 +8,7 @@ from pathlib import Path
 
 from game.commands.arguments import Parser, UsageError, positive
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
-from game.commands.output import writable
+from game.commands.output import writable, writing
 from game.commands.reports.report import FOUND
 from game.documents.shapes import numbered
 from game.session import DEFAULT_LIMIT, Session
@@ -19,10 +19,7 @@ _PICTURES = (".png", ".gif", ".jpg", ".bmp")
 
 def command(words: Sequence[str]) -> int:
     """Do what the words after the command ask for; returns the exit status."""
-    parser = Parser(
-        prog="pinjoint render",
-        description="Draw a model, or its run as a GIF, without a display.",
-    )
+    parser = Parser(prog="pinjoint render", description="Draw a model, or its run as a GIF, without a display.")
     add_model(parser)
     parser.add_argument(
         "--output", type=writable, required=True, metavar="FILE", help="a .png, or a .gif that shows the run"
@@ -47,15 +44,9 @@ def command(words: Sequence[str]) -> int:
         raise UsageError(f"--output {options.output}: write a file that ends with {' or '.join(_PICTURES)}.")
     session = session_of(options)
     session.view.all_diagrams = options.diagrams
-    try:
-        if options.output.lower().endswith(".gif"):
-            status = _animate(session, options, (width, height))
-        else:
-            status = _draw(session, options, (width, height))
-    except OSError as error:
-        raise UsageError(
-            f"{options.output} cannot be written: {error.strerror or error}. Choose another --output."
-        ) from None
+    draw = _animate if options.output.lower().endswith(".gif") else _draw
+    with writing(options.output, "--output"):
+        status = draw(session, options, (width, height))
     return ANSWERED if status in FOUND else NOT_ANSWERED
 
 

@@ -14,7 +14,7 @@ from game.commands import COMMANDS
 from game.commands.arguments import Parser, UsageError
 from game.commands.mods import in_use
 from game.commands.options import ANSWERED, NO_DISPLAY
-from game.commands.output import writable
+from game.commands.output import writable, writing
 from game.documents import models
 from game.documents.open_documents import ModelFile, file_of
 from game.scripts import script
@@ -66,12 +66,8 @@ def command(words: Sequence[str]) -> int:
     options = parser.parse_args(words)
     source = options.model or script.EMPTY
     model, file = models.load(source), file_of(source)
-    try:
+    with writing(options.record, "--record"):
         in_window(model, file, options.theme, record=(options.record, source))
-    except OSError as error:
-        raise UsageError(
-            f"{options.record} cannot be written: {error.strerror}. Choose another --record."
-        ) from None
     return ANSWERED
 
 

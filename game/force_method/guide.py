@@ -23,6 +23,7 @@ from game.force_method import PARTS
 from systems.run.real_time import RealTimeRunner
 from systems.run.simulation import Simulation
 from systems.schedule import Schedule
+from systems.statics.equations import largest
 from systems.statics.force_method import (
     ForceMethodError,
     SetState,
@@ -40,7 +41,7 @@ SWING = 3.0  # s in which a mechanism is shown to move there and back
 
 @dataclass
 class Set:
-    """One of the three systems: its model, how it is seen, and its motion."""
+    """One of the three systems: its model, its view and its run in real time."""
 
     model: Model
     view: View
@@ -48,28 +49,27 @@ class Set:
 
     @property
     def simulation(self) -> Simulation:
-        """The run of the model."""
+        """The run of the set."""
         return self.live.simulation
 
     @property
     def moves(self) -> bool:
-        """True while its motion is shown."""
-        return not self.live.simulation.halted
+        """True if frames change the set."""
+        return not self.simulation.halted
 
     def advance(self, elapsed: float) -> None:
         """Let the time of one frame pass."""
         self.live.frame(elapsed)
 
     def scale_to(self, state: SetState) -> None:
-        """Choose drawing scales for the displacements and forces at the end of the motion."""
-        moved = float(np.abs(state.displacement).max(initial=0.0))
-        pulled = float(np.abs(state.axial_force).max(initial=0.0))
+        """Choose drawing scales for the displacements and forces of a final state."""
+        moved, pulled = largest(state.displacement), largest(state.axial_force)
         share = DRAWN_SHARE * extent(self.model)
         self.model.settings.displacement_scale = _round(share / moved) if moved > 0.0 else 1.0
         self.model.settings.diagram_scale = _round(DIAGRAM_HEIGHT / pulled) if pulled > 0.0 else 1.0
 
     def settle(self) -> None:
-        """Skip the rest of the motion: go to its end, if there is one."""
+        """Skip the rest of the motion: go to its equilibrium, if there is one."""
         final = settle(self.model).final
         if final.status == "equilibrium":
             with self.model.transaction("settle"):
@@ -78,10 +78,10 @@ class Set:
 
 
 class Mechanism:
-    """A structure that cannot carry its load, swinging along its motion, shape (n, 2)."""
+    """A structure that swings along the motion (n, 2) that nothing resists."""
 
     moves = True
-    simulation = None  # no run: `advance` sets the displacements
+    simulation = None  # the motion is prescribed
 
     def __init__(self, model: Model, motion: Column, view: View) -> None:
         self.model, self.view = model, view
@@ -97,11 +97,11 @@ class Mechanism:
 
 
 class Guide:
-    """The part of the force method that the person is in, and the results so far.
+    """The present part of the force method, and the answers so far.
 
-    part: 1 to 7 as in REQUIREMENTS §4. released: the static unknowns, the newest last. solution: with all
-    of them. sets: those that exist so far. mechanism: the structure that the last refused release would leave.
-    Raises ForceMethodError at the start if the structure cannot carry its load.
+    part: 1 to PARTS. released: the static unknowns, the newest last. solution: with all of them. sets: those
+    that exist so far. mechanism: that which a refused release would leave. Raises ForceMethodError at the start
+    if the structure cannot carry its load.
     """
 
     def __init__(self, model: Model, schedule: Schedule, view: View) -> None:
@@ -120,7 +120,7 @@ class Guide:
 
     @property
     def unknown(self) -> Unknown | None:
-        """The unknown that was released last."""
+        """The newest unknown."""
         return self.released[-1] if self.released else None
 
     # --- sets --------------------------------------------------------------------------------------
@@ -142,14 +142,13 @@ class Guide:
 
     @property
     def shown(self) -> list[Set | Mechanism]:
-        """The sets and mechanisms to show, from left to right."""
+        """The structures in the picture, from left to right."""
         return [*self.sets, self.mechanism] if self.mechanism is not None else [*self.sets]
 
     @property
     def moving(self) -> list[Set | Mechanism]:
-        """The sets and mechanisms in motion."""
-        shown: list[Set | Mechanism] = [*self.running, *([self.mechanism] if self.mechanism else [])]
-        return [one for one in shown if one.moves]
+        """The structures that frames change."""
+        return [one for one in (*self.running, self.mechanism) if one is not None and one.moves]
 
     # --- going on ----------------------------------------------------------------------------------
 
@@ -164,9 +163,10 @@ class Guide:
             self.refusal = "Pick the rod or the constraint first."
             return True
         self.part += 1
-        if self.part == 5:
-            self._show_set_3()
-        elif self.part == 7:
+        if self.part == 5 and self.solution is not None:
+            self.sets.append(self._make_set(self.released, unit=self.released[-1]))
+            self.sets[2].scale_to(self.solution.units[-1])
+        elif self.part == PARTS:
             self._apply_forces()
         return True
 
@@ -182,15 +182,14 @@ class Guide:
             self.sets, self.part = self.sets[:1], 2
 
     def pick(self, hit: Handle | None) -> None:
-        """Take the element clicked in set 1 as the unknown (part 2)."""
+        """Take the element that was clicked in set 1 as the unknown (part 2)."""
         self._forget_refusal()
         self.axis_wanted = None
         if isinstance(hit, Rod):
             self._take(Unknown(self.model.rods[hit.name]))
-        elif isinstance(hit, Particle):
-            self._pick_support(self.model.particles[hit.name])
-
-    def _pick_support(self, particle: Particle) -> None:
+        if not isinstance(hit, Particle):
+            return
+        particle = self.model.particles[hit.name]
         held = [axis for axis in (0, 1) if particle.fixed[axis]]
         if not held:
             self.refusal = f"{particle.name} has no constraint; pick a rod or a support."
@@ -212,65 +211,44 @@ class Guide:
         try:
             self.solution = solve(self.model, wanted)
         except ForceMethodError as error:
-            self._refuse(error, wanted)
+            self.refusal = str(error)
+            if error.motion is not None:
+                left = base_structure(self.model, wanted)
+                self.mechanism = Mechanism(left, error.motion, view_like(self._view))
             return
         self.released, self.axis_wanted = wanted, None
         self.exact = exact_forces(self.model, wanted)
-        self._mark_released()
+        first = self.sets[0].model  # in which the released elements are drawn as selected
+        tables: dict[str, Table[Any]] = first.tables
+        first.tag_only([tables[one.element.table][one.element.name] for one in wanted], Selected)
         base = self._make_set(wanted, unit=None)
         base.scale_to(self.solution.base)
         self.sets = [self.sets[0], base]
         self.part = 3
 
-    def _refuse(self, error: ForceMethodError, wanted: Sequence[Unknown]) -> None:
-        """Say why a release is refused, and show the mechanism, if it would leave one."""
-        self.refusal = str(error)
-        if error.motion is not None:
-            base = base_structure(self.model, wanted)
-            self.mechanism = Mechanism(base, error.motion, view_like(self._view))
-
     def _forget_refusal(self) -> None:
         self.refusal, self.mechanism = "", None
-
-    def _mark_released(self) -> None:
-        """The released elements are drawn as selected in set 1."""
-        model = self.sets[0].model
-        tables: dict[str, Table[Any]] = model.tables
-        model.tag_only([tables[one.element.table][one.element.name] for one in self.released], Selected)
-
-    def _show_set_3(self) -> None:
-        assert self.solution is not None
-        unit = self._make_set(self.released, unit=self.released[-1])
-        unit.scale_to(self.solution.units[-1])
-        self.sets.append(unit)
 
     def _apply_forces(self) -> None:
         """The hyperstatic forces in place of the unit force (part 7)."""
         assert self.solution is not None
         third = self.sets[2]
-        force, displacement, axial_force = (np.zeros(shape) for shape in _shapes(self.solution))
+        axial_force = np.zeros(self.model.rods.count)
+        force, displacement = np.zeros((2, self.model.particles.count, 2))
         for p, unknown, unit in zip(self.solution.force, self.released, self.solution.units, strict=True):
             force += p * unit_force(self.model, unknown)
             displacement += p * unit.displacement
             axial_force += p * unit.axial_force
         third.model.assign(list(third.model.particles), "force", force.tolist())
         third.scale_to(SetState(displacement, axial_force))
-        for name in (
-            "displacement_scale",
-            "diagram_scale",
-        ):  # the same scale, so that the sum of sets 2 and 3 can be seen
+        for name in ("displacement_scale", "diagram_scale"):  # equal, so that the pictures add up, too
             scale = min(getattr(one.model.settings, name) for one in self.sets)
             for one in self.sets:
                 setattr(one.model.settings, name, scale)
 
 
-def _shapes(solution: Solution) -> tuple[tuple[int, ...], ...]:
-    moved = solution.base.displacement.shape
-    return moved, moved, solution.base.axial_force.shape
-
-
 def view_like(view: View) -> View:
-    """A view of a set with the choices of the view of the window."""
+    """The view of a set in a window with this view."""
     return View(all_diagrams=view.all_diagrams, legend=False, pixel_ratio=view.pixel_ratio)
 
 
@@ -320,7 +298,7 @@ def exact_forces(model: Model, unknowns: Sequence[Unknown]) -> list[float] | Non
 
 
 def _unload(model: Model) -> None:
-    """Remove loads, accelerations, misfits, temperature changes and moved supports."""
+    """Remove loads, accelerations, lack of fit, changes of temperature and displacements of supports."""
     model.delete(list(model.loads))
     model.environment.force = model.environment.acceleration = (0.0, 0.0)
     particles = list(model.particles)

@@ -1,4 +1,4 @@
-"""Words of the force method: messages, captions, the equations and the table."""
+"""Texts of the force method: messages, captions, equations and the final table."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ NAMES = ("Set 1: real structure", "Set 2: base structure", "Set 3: base structur
 TO_COME = ("", "follows in part 3", "follows in part 5")
 
 
-# --- what happens, and what is next ------------------------------------------------------------------
+# --- messages and hints ------------------------------------------------------------------------------
 
 
 def message(guide: Guide) -> str:
-    """The line of red text: what is happening or expected."""
+    """The line of red text: the present part, or the reason of a refusal."""
     if guide.refusal:
         return guide.refusal
     if guide.part == 2:
@@ -60,11 +60,11 @@ def _unit_words(unknown: Unknown | None) -> str:
     return "a pair of unit forces" if unknown is not None and unknown.axis is None else "a unit force"
 
 
-# --- what was measured -------------------------------------------------------------------------------
+# --- captions ----------------------------------------------------------------------------------------
 
 
 def captions(guide: Guide) -> list[Caption]:
-    """For each of the three places its name, and its displacements once they have been measured."""
+    """The captions of the three sets: name, load, and displacements once they are measured."""
     if guide.mechanism is not None:
         return [(NAMES[0],), ("A mechanism: nothing resists this motion",), ("",)]
     there = len(guide.sets)
@@ -72,13 +72,12 @@ def captions(guide: Guide) -> list[Caption]:
     solution = guide.solution
     if solution is None or guide.part == 2:
         return shown
-    load = ("the real load", "the real load", f"{_unit_words(guide.unknown)} at {_name(guide.unknown)}")
+    third = f"{_unit_words(guide.unknown)} at {guide.released[-1].name}"
     if guide.part == PARTS:
         several = len(guide.released) > 1
-        load = (*load[:2], "the forces p below" if several else _force(solution))
-    shown = [
-        (*caption, load[i]) if i < there and guide.part > 2 else caption for i, caption in enumerate(shown)
-    ]
+        third = "the forces p below" if several else f"p = {signed(solution.force[0])} kN"
+    for i, load in enumerate(("the real load", "the real load", third)[:there]):
+        shown[i] = (*shown[i], load)
     if guide.part >= 4:
         shown[0] = (*shown[0], *_each(guide, "_real", solution.delta_real))
         shown[1] = (*shown[1], *_each(guide, "₀", solution.delta_base))
@@ -87,12 +86,8 @@ def captions(guide: Guide) -> list[Caption]:
     return shown
 
 
-def _name(unknown: Unknown | None) -> str:
-    return unknown.name if unknown is not None else ""
-
-
 def _each(guide: Guide, index: str, metres: object, unit: str = "") -> Caption:
-    """The displacement of every unknown: the change of a rod's distance Δ, or that of a support, u."""
+    """The displacement of every unknown: Δ, the change of distance of a rod, or u, that of a support."""
     several = len(guide.released) > 1
     return tuple(
         f"{'Δ' if unknown.axis is None else 'u'}{index}{f' {unknown.name}' * several} = {_mm(value)} mm{unit}"
@@ -100,15 +95,11 @@ def _each(guide: Guide, index: str, metres: object, unit: str = "") -> Caption:
     )
 
 
-def _force(solution: Solution) -> str:
-    return f"p = {signed(solution.force[0])} kN"
-
-
 # --- the working -------------------------------------------------------------------------------------
 
 
 def working(guide: Guide) -> tuple[str, ...]:
-    """The compatibility equations with their numbers, and the forces that they give (part 7)."""
+    """The compatibility equations with their numbers, and their solution (part 7)."""
     solution = guide.solution
     if guide.part == 1:
         return (_degree(guide.degree), "Yielding is switched off: superposition needs linear behaviour.")
@@ -136,7 +127,7 @@ def _one_equation(solution: Solution) -> tuple[str, ...]:
 
 
 def _equations(solution: Solution) -> tuple[str, ...]:
-    """Δ_real = Δ₀ + Σ Δ₁ p, a line for every unknown, and the solution."""
+    """Δ_real = Δ₀ + Σ Δ₁ p, a line for every unknown, and the solution p."""
     names = [unknown.name for unknown in solution.unknowns]
     lines = []
     for row, name in enumerate(names):
@@ -153,13 +144,13 @@ def _equations(solution: Solution) -> tuple[str, ...]:
 
 
 def table(guide: Guide) -> Sequence[tuple[str, ...]]:
-    """Set 1 = set 2 + set 3, rod by rod (part 7), in kN."""
+    """Axial forces (kN) of set 1 = set 2 + set 3 for every rod (part 7)."""
     solution = guide.solution
     return Superposition(guide.model.rods.names, solution) if solution and guide.part == PARTS else ()
 
 
 class Superposition(Sequence[tuple[str, ...]]):
-    """The rows of the last table, each written on demand, since few of a large table are visible."""
+    """The rows of the final table, each written on demand: a large structure has more rows than fit a page."""
 
     def __init__(self, names: list[str], solution: Solution) -> None:
         total = solution.superposed.axial_force

@@ -1,4 +1,4 @@
-"""What comes with Pinjoint but is written as mods are: only through what `plugin(app)` can register."""
+"""Parts of Pinjoint that are written as mods: they only register through `plugin(app)`."""
 
 from game.included import collisions, histories, probes, walls
 from game.mods import include

@@ -1,4 +1,4 @@
-"""Collisions in the window: how many impacts there were, and the speeds of a gas beside Rayleigh's curve."""
+"""Collisions in the window: the number of impacts, and the speeds of a gas beside Rayleigh's curve."""
 
 from __future__ import annotations
 
@@ -13,36 +13,33 @@ from components.rod import nodes
 from game.editor.context import Context
 from game.mods import App
 
-MANY = 100  # particles without rods, from which on their speeds are shown unasked
+MANY = 100  # particles without rods from which on their speeds are shown by default
 BINS = 16
 RANGE = 2.5  # times the root mean square speed, that the bars cover
+
+Array = NDArray[np.float64]
 
 _asked: weakref.WeakKeyDictionary[Context, bool] = weakref.WeakKeyDictionary()
 
 
-def free_speeds(model: Model) -> NDArray[np.float64]:
+def free_speeds(model: Model) -> Array:
     """Speeds v √(m / m̄) (m/s) of the particles that no rod holds, m̄ their mean mass.
 
-    In equilibrium the energies of all particles have one distribution, and so have these speeds, whatever the masses.
+    In equilibrium the energies of all particles have one distribution, and so do these speeds for any masses.
     """
     particles = model.particles
     free = np.logical_not(particles.fixed.all(axis=1) | nodes(model))
     mass = particles.mass[free]
-    speed: NDArray[np.float64] = np.hypot(*particles.velocity[free].T) * np.sqrt(
-        mass / (mass.mean() if len(mass) else 1.0)
-    )
+    speed: Array = np.hypot(*particles.velocity[free].T) * np.sqrt(mass / (mass.mean() if len(mass) else 1.0))
     return speed
 
 
-def rayleigh(speed: NDArray[np.float64], mean_square: float) -> NDArray[np.float64]:
+def rayleigh(speed: Array, mean_square: float) -> Array:
     """Density (s/m) of the speeds of a two-dimensional gas: 2v/⟨v²⟩ exp(−v²/⟨v²⟩)."""
-    density: NDArray[np.float64] = 2 * speed / mean_square * np.exp(-(speed**2) / mean_square)
-    return density
+    return 2 * speed / mean_square * np.exp(-(speed**2) / mean_square)
 
 
-def histogram(
-    speed: NDArray[np.float64], mean_square: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def histogram(speed: Array, mean_square: float) -> tuple[Array, Array]:
     """Outline of the bars of a histogram: speeds (m/s) and densities (s/m)."""
     edges = np.linspace(0.0, RANGE * np.sqrt(mean_square), BINS + 1)
     density, _ = np.histogram(np.minimum(speed, edges[-1]), edges)
@@ -65,7 +62,7 @@ def toggle_speeds(session: Context, pixel: Vector) -> None:
 
 
 def panels(session: Context) -> Sequence[Readout]:
-    """A panel with the number of impacts once there are any, and one with the speeds of a gas, or where asked for."""
+    """A panel with the number of impacts, if any, and one with the speeds, of a gas or on demand."""
     made = []
     if session.model.clock.collisions:
         made.append(Readout("Impacts", (("so far", str(session.model.clock.collisions)),)))
@@ -77,7 +74,7 @@ def panels(session: Context) -> Sequence[Readout]:
     return made
 
 
-def _speeds(speed: NDArray[np.float64], mean_square: float, revision: int) -> Readout:
+def _speeds(speed: Array, mean_square: float, revision: int) -> Readout:
     smooth = np.linspace(0.0, RANGE * np.sqrt(mean_square), 80)
     curves = (
         ("particles", *histogram(speed, mean_square)),

@@ -1,4 +1,4 @@
-"""Histories of loads: sine, pulse, table and record; and shaking a model by a recorded base acceleration.
+"""Histories of loads: sine, pulse, table and record; and the loads of a recorded base acceleration.
 
 In statics a sine, a pulse and a record count as 0 (with a note), a table with its last factor.
 """
@@ -8,6 +8,8 @@ from __future__ import annotations
 import csv
 import itertools
 import math
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,16 +22,12 @@ STANDARD_GRAVITY = 9.80665  # m/s²
 DIRECTIONS = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
 
 
-def check_sine(history: History, where: str) -> None:
-    """Raise FieldError for a sine without a frequency."""
-    if not history["frequency"] > 0.0:
-        raise FieldError(f"{where}: history frequency is {history['frequency']:g} Hz; it must be above 0 Hz.")
-
-
-def check_pulse(history: History, where: str) -> None:
-    """Raise FieldError for a pulse without a duration."""
-    if not history["duration"] > 0.0:
-        raise FieldError(f"{where}: history duration is {history['duration']:g} s; it must be above 0 s.")
+def check_positive(parameter: str, unit: str, history: History, where: str) -> None:
+    """Raise FieldError unless a parameter is above 0."""
+    if not history[parameter] > 0.0:
+        raise FieldError(
+            f"{where}: history {parameter} is {history[parameter]:g} {unit}; it must be above 0 {unit}."
+        )
 
 
 def check_points(history: History, where: str) -> None:
@@ -50,7 +48,7 @@ SINE = HistoryKind(
     f"{KERNELS}:sine",
     static=0.0,
     ends=lambda history: math.inf,
-    check=check_sine,
+    check=partial(check_positive, "frequency", "Hz"),
 )
 PULSE = HistoryKind(
     "pulse",
@@ -58,7 +56,7 @@ PULSE = HistoryKind(
     f"{KERNELS}:pulse",
     static=0.0,
     ends=lambda history: float(history["start"] + history["duration"]),
-    check=check_pulse,
+    check=partial(check_positive, "duration", "s"),
     breaks=lambda history: (history["start"], history["start"] + history["duration"]),
 )
 TABLE = HistoryKind(
@@ -70,15 +68,7 @@ TABLE = HistoryKind(
     check=check_points,
     breaks=lambda history: tuple(history["times"]),
 )
-RECORD = HistoryKind(
-    "record",
-    {"times": (0.0,), "accelerations": (0.0,)},
-    f"{KERNELS}:interpolated",
-    static=0.0,
-    ends=lambda history: float(history["times"][-1]),
-    check=check_points,
-    breaks=lambda history: tuple(history["times"]),
-)
+RECORD = replace(TABLE, name="record", parameters={"times": (0.0,), "accelerations": (0.0,)}, static=0.0)
 
 
 # --- base acceleration -------------------------------------------------------------------------------

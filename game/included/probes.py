@@ -35,7 +35,7 @@ OF_PARTICLE = (
 
 @dataclass
 class Probe:
-    """Quantities sampled against another one; each sample is the time, `against` and all of `read`, one after the other."""
+    """Quantities sampled against another one; samples: the time, `against` and all of `read`, one after the other."""
 
     against: Quantity
     read: tuple[Quantity, ...]
@@ -84,26 +84,21 @@ def _short(read: Quantity) -> str:
     return read.path.partition(".")[2].replace("dissipated_", "").replace(".", " ").replace("_", " ")
 
 
+@dataclass(eq=False)
 class Probes:
-    """The probes of one session. span: the share of the time that plots show."""
+    """The probes of one session, newest last; span: the share of the time that plots show."""
 
-    def __init__(self) -> None:
-        self.all: list[Probe] = []
-        self.span = 1.0
-        self._model: weakref.ref[Model] | None = None
+    all: list[Probe] = field(default_factory=list)
+    span: float = 1.0
+    model: weakref.ref[Model] | None = None
 
     def add(self, session: Context, paths: Iterable[str], against: str = TIME) -> Probe:
-        """Sample these quantities from now on. Raises PathError. Of more than FEW probes the oldest is dropped."""
+        """Sample these quantities from now on; the oldest of more than FEW probes is dropped. Raises PathError."""
         model = session.model
         probe = Probe(quantity(model, against), tuple(quantity(model, path) for path in paths))
-        self._model = weakref.ref(model)
+        self.model = weakref.ref(model)
         self.all = [*self.all, probe][-FEW:]
         return probe
-
-    def keep_to(self, model: Model) -> None:
-        """Forget the probes of any other model."""
-        if self._model is None or self._model() is not model:
-            self.all = []
 
     def sample(self, session: Context) -> None:
         """Take a sample of every probe for which time has passed."""
@@ -120,7 +115,8 @@ _probes: weakref.WeakKeyDictionary[Context, Probes] = weakref.WeakKeyDictionary(
 def probes_of(session: Context) -> Probes:
     """The probes of a session, all of them of the model that is open."""
     probes = _probes.setdefault(session, Probes())
-    probes.keep_to(session.model)
+    if probes.model is None or probes.model() is not session.model:
+        probes.all = []
     return probes
 
 
@@ -221,7 +217,7 @@ def run(words: list[str]) -> int:
     """`pinjoint plot MODEL --of QUANTITY --until T --output FILE`."""
     from game.commands.arguments import Parser, UsageError, count, positive
     from game.commands.options import add_model, session_of
-    from game.commands.output import writable
+    from game.commands.output import writable, writing
 
     parser = Parser(
         prog="pinjoint plot", description="Run a model and write quantities against time or another."
@@ -241,10 +237,8 @@ def run(words: list[str]) -> int:
     if output.suffix not in (".csv", ".png"):
         raise UsageError(f"--output {output}: write a file that ends with .csv or .png.")
     record(session, probe, options.until, options.samples)
-    try:
+    with writing(output, "--output"):
         (write_png if output.suffix == ".png" else write_csv)(probe, output)
-    except OSError as error:
-        raise UsageError(f"{output} cannot be written: {error.strerror}. Choose another --output.") from None
     return 0
 
 

@@ -1,4 +1,4 @@
-"""Walls and floors: straight lines that never move, off which particles bounce and on which they rest."""
+"""Walls and floors: fixed straight lines on which particles bounce and rest."""
 
 from __future__ import annotations
 
@@ -19,10 +19,7 @@ from systems.render.theme import faded
 
 WIDTH = 4.0  # points, of the line that is drawn
 
-ICON = (
-    ("line", (-8.5, -3, 8.5, -3)),
-    *(("line", (x, -2.5, x - 4, 4)) for x in (-3.5, 1.5, 6.5)),
-)
+ICON = (("line", (-8.5, -3, 8.5, -3)), *(("line", (x, -2.5, x - 4, 4)) for x in (-3.5, 1.5, 6.5)))
 
 
 class Wall(Handle):

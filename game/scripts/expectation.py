@@ -1,4 +1,4 @@
-"""Expectations: texts that a session must fulfil, such as rods.AB.axial_force ≈ -28.34 ± 0.01."""
+"""Expectations: conditions on a session as texts, such as rods.AB.axial_force ≈ -28.34 ± 0.01."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ _EXPECTATION = re.compile(
 )
 _ORDERS = {"<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge}
 _SAMENESS = ("=", "≈", "~")
-_NOTHING = ("none", "null")  # what may be written for no value
+_NOTHING = ("none", "null")  # texts for no value
 
 
 class ExpectationError(AssertionError):
-    """An expectation that does not hold; the message says what was expected and what was found."""
+    """An expectation that does not hold; the message gives the expected and the present value."""
 
 
 class Shown(Readable, Protocol):
-    """A session, as far as expectations ask for it."""
+    """The part of a session that expectations read."""
 
     @property
     def scene(self) -> str: ...
@@ -40,7 +40,7 @@ class Shown(Readable, Protocol):
 
 
 def expect(session: Shown, text: str) -> None:
-    """Raise ExpectationError unless a text holds; ValueError or LookupError if it says nothing that can be tested."""
+    """Raise ExpectationError unless a text holds; ValueError or LookupError if it cannot be tested."""
     for expected, got in check(session, text):
         raise ExpectationError(f"expected {expected}, got {got}")
 
@@ -108,9 +108,9 @@ def _one_of(found: Mapping[str, Any], name: str, what: str) -> Any:
 
 
 def _of_force_method(session: Shown, quantity: str) -> Any:
-    """A quantity of the force method: part, unknown, force, delta_real, … of the last unknown; real.AC, base.AC.
+    """A quantity of the force method: part, unknown, force, delta_real, … of the last unknown; force in a set.
 
-    superposed.AC is set 2 + set 3, which is to equal real.AC, set 1.
+    real.AC is the axial force of rod AC in set 1, base.AC in set 2, superposed.AC in set 2 + set 3.
     """
     guide = getattr(session.scenes.active, "guide", None)
     if quantity == "message" and session.scene == "force method":

@@ -31,7 +31,7 @@ _UNSEEN = {"expect", "resize", "window"}  # verbs without a pause after them
 
 
 class Screen(Protocol):
-    """A window, as a performance knows it: size in points of the display."""
+    """The part of a window that a performance uses; size: in points of the display."""
 
     session: Session
     size: tuple[int, int]
@@ -85,7 +85,7 @@ class Performance:
                 if self._ended:
                     break
                 failures += self._perform(number, entry)
-                self._watch_what_came(entry)
+                self._watch(entry)
         finally:
             session.performing, session.footer = False, None
             self._grow(-grown)
@@ -102,19 +102,18 @@ class Performance:
         simulation = session.simulation
         simulation.before_steps.append(self._watch_time)
         try:
-            if set(entry) == {"type"}:  # letter by letter
-                return [f for letter in entry["type"] for f in self._typed(number, letter)]
-            return play_line(self._script, number, entry, session)
+            if set(entry) != {"type"}:
+                return play_line(self._script, number, entry, session)
+            failures = []
+            for letter in entry["type"]:
+                failures += play_line(self._script, number, {"type": letter}, session)
+                self._wait(0.12)
+            return failures
         finally:
             simulation.before_steps.remove(self._watch_time)
 
-    def _typed(self, number: int, letter: str) -> list[Failure]:
-        failures = play_line(self._script, number, {"type": letter}, self._screen.session)
-        self._wait(0.12)
-        return failures
-
     def _lead_to(self, entry: Mapping[str, Any]) -> None:
-        """Take the pointer to where the next thing is done."""
+        """Move the pointer to the target of the next line."""
         target = self._target(entry)
         if target is None:
             return
@@ -139,7 +138,8 @@ class Performance:
         x, y = self._screen.session.focus[1].camera.to_pixels((float(at[0]), float(at[1]))).tolist()
         return x, y
 
-    def _watch_what_came(self, entry: Mapping[str, Any]) -> None:
+    def _watch(self, entry: Mapping[str, Any]) -> None:
+        """Leave time to see what a line has done."""
         if "resize" in entry:
             width, height, ratio = (*entry["resize"], 1.0)[:3]
             self._screen.size = round(width / ratio), round(height / ratio + FOOTER)
@@ -201,6 +201,6 @@ class Performance:
         self._ended |= "escape" in pressed or screen.closed
 
     def _grow(self, points: int) -> None:
-        """Make room for the footer below the picture, or take it away; where there is none, the picture has less."""
+        """Add points to the height of the window, for the footer; where there is no room, the picture shrinks."""
         width, height = self._screen.size
         self._screen.size = width, height + points

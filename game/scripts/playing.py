@@ -37,7 +37,7 @@ def session_of(script: Script) -> Session:
 
 
 def play(script: Script, session: Session | None = None) -> list[Failure]:
-    """Play all lines in a session, else in that of the header; returns failed expectations. Raises ScriptError."""
+    """Play all lines in a session (None: that of the header); returns failed expectations. Raises ScriptError."""
     session = session or session_of(script)
     return [
         failure for number, entry in script.lines[1:] for failure in play_line(script, number, entry, session)
@@ -53,7 +53,7 @@ def play_line(script: Script, number: int, entry: Mapping[str, Any], session: Se
         raise ScriptError(f"{script.path} line {number}: {reason}") from error
 
 
-_EXAMPLES: dict[str, Any] = {  # by key of a line: an example of its value
+_EXAMPLES: dict[str, Any] = {  # by key of a line: a value of the required shape
     "press": "space",
     "over": [1.0, 1.0],
     "click": [1.0, 1.0],
@@ -105,8 +105,8 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
         width, height = rest.pop("window")
         session.resize(int(width), int(height))
         session.view.fit(session.model)
-    if "at" in rest:
-        _advance_to(session, rest.pop("at"))
+    if "at" in rest and (left := rest.pop("at") - session.model.clock.steps) > 0:
+        session.run(steps=left)
     if "over" in rest:
         session.point(*rest.pop("over"))
     if "clipboard" in rest:
@@ -125,13 +125,6 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
             _VERBS[verb](session, value)
 
 
-def _run(session: Session, value: Any) -> None:
-    if value == "rest":
-        session.run(until="rest")
-    else:
-        session.run(time=value)
-
-
 _VERBS: dict[str, Callable[[Session, Any], Any]] = {
     "press": lambda session, key: session.press(key),
     "click": lambda session, value: session.click(*value),
@@ -140,24 +133,18 @@ _VERBS: dict[str, Callable[[Session, Any], Any]] = {
     "box": lambda session, title: session.click_box(title),
     "set": lambda session, text: apply_override(session.model, text),
     "action": lambda session, name: session.act(name),
-    "run": _run,
+    "run": lambda session, time: session.run(until="rest") if time == "rest" else session.run(time=time),
     "steps": lambda session, count: session.run(steps=count),
     "say": lambda session, text: None,
     "resize": lambda session, size: session.resize(int(size[0]), int(size[1]), float(size[2])),
 }
 
 
-def _advance_to(session: Session, steps: int) -> None:
-    left = steps - session.model.clock.steps
-    if left > 0:
-        session.run(steps=left)
-
-
 # --- recording -------------------------------------------------------------------------------------------
 
 
 class Recorder:
-    """Writes what a person does in a window, line by line, so that it can be played again."""
+    """Writes what a person does in a window as lines of a script."""
 
     def __init__(self, session: Session, file: TextIO, model: Any) -> None:
         self._file = file
@@ -177,7 +164,7 @@ class Recorder:
         entry: dict[str, Any] = {"at": self._session.model.clock.steps, "input": key}
         if pixel is not None:
             entry["pixel"] = list(pixel)
-        if key == "ctrl+v":  # the text may come from another program, which is not there at replay
+        if key == "ctrl+v":  # a text from another program will not be there when the script is played
             entry["clipboard"] = self._session.clipboard
         self._write(entry)
 

@@ -13,13 +13,13 @@ a "description". Every further line does one thing:
     {"run": "rest"}   {"run": 0.5}              until at rest; or by seconds
     {"steps": 128}                              by fixed steps
     {"expect": "rods.AB.axial_force ≈ -28.34 ± 0.01"}   also =, <, >, <=, >=; scene, time, count.rods, energy.…
-    {"expect": "clock.collisions = 3"}          how many impacts there were
+    {"expect": "clock.collisions = 3"}          the number of impacts
     {"expect": "message ≈ not found"}           the message in the window; of a text, ≈ asks for a part
     {"input": "click", "pixel": [512, 300]}     what a window recorded
     {"resize": [1280, 800, 2]}                  the window's pixels, and pixels per point
-    {"say": "Press Space."}                     shown in a window; else nothing
+    {"say": "Press Space."}                     shown below the picture in a window; else nothing
 
-"clipboard" sets the text on the clipboard.
+"clipboard" gives the text on the clipboard at that moment.
 
 "at": N on a line first lets time pass to the N-th fixed step, as it had in a recording; "window":
 [width, height] sets the size of the view in pixels. Replaying gives the same bits.
@@ -46,7 +46,7 @@ class ScriptError(ValueError):
 
 
 def lessons() -> list[str]:
-    """Names of the scripts that come with the program, in the order in which they are to be seen."""
+    """Names of the bundled scripts, in order."""
     names = sorted(entry.name for entry in files("assets").joinpath("lessons").iterdir())
     return [name.removesuffix(".jsonl") for name in names if name.endswith(".jsonl")]
 
@@ -61,8 +61,8 @@ def _found(source: str | Path) -> Path | Traversable:
 class Script:
     """A script read from a file, or a lesson by its name, ready to be played in a session.
 
-    title, description: of its header, or "". has_data: it saves and loads in a folder that the person chose; else it
-    is kept away from what the person saved.
+    title, description: from its header, or "". has_data: whether a folder is chosen in which the script saves and
+    loads; else it must be kept away from the models that the person saved.
     """
 
     has_data = False
@@ -70,22 +70,20 @@ class Script:
     def __init__(self, source: str | Path) -> None:
         self.path = _found(source)
         self.lines = list(self._read())
-        if not self.lines or self.lines[0][1].get("format") != HEADER["format"]:
-            raise ScriptError(
-                f"{source}: its first line must be like {json.dumps({**HEADER, 'model': 'isostatic'})}."
-            )
-        if self.lines[0][1].get("version") != HEADER["version"]:
-            raise ScriptError(
-                f"{source}: version {self.lines[0][1].get('version')} is not known; update Pinjoint."
-            )
-        for key, value in self.lines[0][1].items():
+        header = self.lines[0][1] if self.lines else {}
+        if header.get("format") != HEADER["format"]:
+            form = json.dumps({**HEADER, "model": "isostatic"})
+            raise ScriptError(f"{source}: its first line must be like {form}.")
+        if header.get("version") != HEADER["version"]:
+            raise ScriptError(f"{source}: version {header.get('version')} is not known; update Pinjoint.")
+        for key in header:
             if key not in _HEADER_KEYS:
                 raise ScriptError(
                     f"{source} line 1: there is no '{key}'; use one of {', '.join(_HEADER_KEYS)}."
                 )
-            if key == "model" and not isinstance(value, str | dict):
-                raise ScriptError(f"{source} line 1: model is {json.dumps(value)}; write a name or a document.")
-        self.title, self.description = (str(self.lines[0][1].get(key, "")) for key in ("title", "description"))
+        if not isinstance(model := header.get("model", EMPTY), str | dict):
+            raise ScriptError(f"{source} line 1: model is {json.dumps(model)}; write a name or a document.")
+        self.title, self.description = (str(header.get(key, "")) for key in ("title", "description"))
 
     def _read(self) -> Iterator[tuple[int, dict[str, Any]]]:
         try:
@@ -110,7 +108,7 @@ class Script:
 
     @property
     def source(self) -> Any:
-        """The model of the header: the name of a bundled one, a file, or a document."""
+        """The model in the header: a document, a path, or the name of a bundled model."""
         source = self.lines[0][1].get("model", EMPTY)
         beside = self.path.parent / source if isinstance(self.path, Path) and isinstance(source, str) else None
         return beside if beside is not None and beside.is_file() else source

@@ -38,7 +38,7 @@ class VaryingLoads(Law):
         rows = self._rows(model)
         values: list[float] = []
         first: list[int] = []
-        begun: dict[int, int] = {}  # where the values of a history begin, which loads may share
+        begun: dict[int, int] = {}  # first index of the values of a history, which loads may share
         for row in rows:
             history = model.loads.history[row]
             if id(history) not in begun:

@@ -9,7 +9,7 @@ AT_LIMIT = 1e-9  # relative distance from a limit within which a rod that moves 
 
 @compiled
 def limited(axial_force, rods_tension_limit, rods_compression_limit):
-    """The axial force cannot pass a strength."""
+    """The axial force within the strengths."""
     return min(max(axial_force, -rods_compression_limit), rods_tension_limit)
 
 
@@ -23,7 +23,7 @@ def branch(
     rods_tension_limit,
     rods_compression_limit,
 ):
-    """1: yields in tension, −1: in compression, 0: is elastic."""
+    """1: yielding in tension, −1: in compression, 0: elastic."""
     trial = rods_stiffness * (elongation / rods_rest_length - rods_plastic_strain)
     if rate > 0.0 and trial >= rods_tension_limit * (1.0 - AT_LIMIT):
         return 1.0
@@ -44,7 +44,7 @@ def margin(
     rods_tension_limit,
     rods_compression_limit,
 ):
-    """Elastic: distance of the axial force from the nearer limit; yielding: what it grows by in a step.
+    """Elastic: distance of the axial force from the nearer limit; yielding: its growth in a step.
 
     Both relative to the strength.
     """
@@ -66,7 +66,7 @@ def yielded(
     rods_tension_limit,
     rods_compression_limit,
 ):
-    """Plastic strain after ε_p has taken up what exceeds the elastic range, and |N| |Δε_p| L₀."""
+    """The plastic strain ε_p after return to the elastic range, and the dissipated energy |N| |Δε_p| L₀."""
     strain = elongation / rods_rest_length
     trial = rods_stiffness * (strain - rods_plastic_strain)
     if trial > rods_tension_limit:

@@ -1,4 +1,4 @@
-"""Which of the rods at their strength go on yielding: a linear complementarity problem."""
+"""The set of yielding rods at a limit: a linear complementarity problem."""
 
 from __future__ import annotations
 
@@ -8,17 +8,16 @@ import numpy as np
 
 from systems.statics.equations import Array, Flags
 
-ENUMERATED = 10  # rods up to which all sets are tried if pivoting goes in circles
+ENUMERATED = 10  # rods up to which all sets are tried if pivoting does not end
 PIVOTS = 200
 
 
 def yielding_set(matrix: Array, growth: Array, guess: Flags) -> Flags | None:
     """The set A that solves γ ≥ 0, w = M γ − g ≥ 0, γᵀw = 0, with γ = 0 outside A and w = 0 in it.
 
-    g is how fast the force of each rod (k,) would exceed its strength if none yielded, M γ how much of that
-    yielding at the rates γ takes away, M symmetric. None if there is no such set, or none was found.
-    Principal pivoting on the least index [K. G. Murty, 1974], which ends from any guess if M is positive
-    definite.
+    growth g (k,): the rates at which forces of rods would exceed their strengths if none yielded. matrix M (k, k),
+    symmetric: yielding at the rates γ lowers them by M γ. None if no set was found. Principal pivoting on the least
+    index [K. G. Murty, 1974] ends from any guess if M is positive definite.
     """
     chosen = guess.copy()
     for _ in range(PIVOTS):
@@ -30,7 +29,8 @@ def yielding_set(matrix: Array, growth: Array, guess: Flags) -> Flags | None:
     if len(growth) <= ENUMERATED:
         for trial in product([True, False], repeat=len(growth)):
             chosen = np.array(trial)
-            if _is_positive(matrix, chosen) and not _violations(matrix, growth, chosen).any():
+            definite = not any(trial) or np.linalg.eigvalsh(matrix[np.ix_(chosen, chosen)])[0] > 0.0
+            if definite and not _violations(matrix, growth, chosen).any():
                 return chosen
     return None
 
@@ -44,7 +44,3 @@ def _violations(matrix: Array, growth: Array, chosen: Flags) -> Flags:
             return chosen.copy()
     excess = growth - matrix @ rates
     return np.where(chosen, rates < 0.0, excess > 1e-12 * np.abs(growth).max())
-
-
-def _is_positive(matrix: Array, chosen: Flags) -> bool:
-    return not chosen.any() or bool(np.linalg.eigvalsh(matrix[np.ix_(chosen, chosen)])[0] > 0.0)

@@ -1,9 +1,8 @@
 """Discs that come to rest on one another and on structures: gap ≥ 0, force ≥ 0, no friction.
 
-A contact is a rod that bears compression only, as a cable bears tension only. Discs sink like in a thick fluid,
-by implicit Euler steps short enough for all contacts to be seen coming. Contacts are stiff springs on the way; in
-the end each is made longer by what its force shortens it, so that the discs just touch (the method of multipliers
-[M. R. Hestenes, 1969]).
+A contact is a rod in compression only. The discs sink as in a viscous fluid, by implicit Euler steps so short that
+the search for contacts misses none. Contacts are stiff springs; at rest each is lengthened by its own shortening
+until the discs just touch (the method of multipliers [M. R. Hestenes, 1969]).
 """
 
 from __future__ import annotations
@@ -15,35 +14,37 @@ import numpy as np
 from components.model import Model
 from components.obstacles import Obstacles, obstacles
 from systems.broad_phase import near_pairs, nearest
-from systems.statics.equations import Array, Flags, Rows, Structure
-from systems.statics.factor import regular
+from systems.statics.equations import Array, Flags, Rows, Structure, largest
+from systems.statics.factor import is_stable
 from systems.statics.follow import Path, Point
-from systems.statics.relax import BALANCED, LARGEST_PENALTY, RUNAWAY, implicit_step
+from systems.statics.relax import BALANCED, RUNAWAY, creep
 
-CONTACT_STRAIN = 1e-3  # by which the largest load would shorten a contact that is not corrected
-SHORTEST_MOVE = 0.25  # of its radius: how far a disc may move in a step, whatever is near
-LONGEST_MOVE = 0.45  # of its distance from the nearest other
+CONTACT_STRAIN = 1e-3  # of a contact under the largest load, before it is lengthened
+SHORTEST_MOVE = 0.25  # of its radius: the travel of a disc in a step, whatever is near
+LONGEST_MOVE = 0.45  # of its distance from the nearest other: the same elsewhere
 TOUCHING = 1e-12  # of the sum of radii: a gap, or an overlap, that is round-off
-NEARLY_TOUCHING = 1e-9  # the same, where rounding leaves no less
-MOST_LOOKS = 10**6  # at pairs, for how far nodes of structures are from others
-AT_END = 1e-12  # of its length: where a side ends
+NEARLY_TOUCHING = 1e-9  # the same, where lengthening no longer lessens it
+MOST_PAIRS = 10**6  # between which distances are measured; above, nodes of structures move SHORTEST_MOVE
+AT_END = 1e-12  # of its length: distance from the end of a side that counts as 0
 STIFF = 1e-4  # overlap, of the sum of radii, below which contacts need not become stiffer
 STIFFER = 10.0
-NEAR_REST = 0.1  # of the largest force, unbalanced: an equilibrium is sought
-MOST_STEPS = 1000  # until sinking is given up; the pile of 60 stones takes 280
-SMALLEST_PENALTY = 1e-9  # of the stiffness: a step without end
+NEAR_REST = 0.1  # of the largest force, unbalanced: from here on an equilibrium is sought
+MOST_STEPS = 1000  # the pile of 60 stones takes 280
+SMALLEST_PENALTY = 1e-9  # of the stiffness: hardly any damping
 
 
 @dataclass(frozen=True)
 class Discs:
-    """Who may touch whom: the discs of all n particles, and after them the straight obstacles, N in all.
+    """The bodies that may touch: the discs of all n particles, then the straight obstacles, N in all.
 
-    start: original positions, of obstacles their first end; span: the way to the other; (N, 2). movable: free
-    directions (N, 2). is_alone: movable and without rods (N,). apart: keys of the pairs that never touch, sorted:
-    those that a rod joins, and nodes of structures that overlap another or an obstacle at the beginning.
+    start: original positions, of obstacles their first end, (N, 2). span: from there to the other end of obstacles,
+    0 for discs, (N, 2). movable: free directions (N, 2). is_alone:
+    movable and without rods (N,). apart: sorted keys of the pairs that never touch: those that a rod joins, and
+    nodes of structures that overlap another node or an obstacle at the beginning.
     """
 
     start: Array
+    span: Array
     obstacles: Obstacles
     radius: Array
     movable: Flags
@@ -52,7 +53,7 @@ class Discs:
 
     @classmethod
     def of(cls, model: Model, displacement: Array) -> Discs:
-        """The discs of a model, first at these displacements (n, 2)."""
+        """The discs of a model that begins at these displacements (n, 2)."""
         particles, others = model.particles, obstacles(model)
         ends, still = np.sort(model.rods.between.astype(np.intp), axis=1), np.zeros(len(others), dtype=bool)
         is_node = np.concatenate([np.zeros(particles.count, dtype=bool), ~still])
@@ -60,6 +61,7 @@ class Discs:
         fixed = np.concatenate([particles.fixed, np.ones((len(others), 2), dtype=bool)])
         discs = cls(
             start=np.concatenate([particles.position, others.start]),
+            span=np.concatenate([np.zeros((particles.count, 2)), others.span]),
             obstacles=others,
             radius=np.concatenate([particles.radius, others.radius]),
             movable=~fixed,
@@ -80,7 +82,7 @@ class Discs:
         return len(self.radius) - len(self.obstacles)
 
     def beside(self, structure: Structure) -> Structure:
-        """A structure of the particles with the obstacles as particles that are held."""
+        """A structure with the obstacles added as held particles."""
         still = np.zeros((len(self.obstacles), 2))
         return replace(
             structure,
@@ -91,15 +93,9 @@ class Discs:
             own_weight=np.concatenate([structure.own_weight, still[:, 0]]),
         )
 
-    def pulled(self, load: Array) -> Flags:
-        """Discs without rods (k,) that a load (k, 2) on the first k moves."""
-        pulled: Flags = self.is_alone[: len(load)] & (self.movable[: len(load)] & (load != 0.0)).any(axis=1)
-        return pulled
-
     def keys(self, pairs: Rows) -> Rows:
-        """A number (k,) for each of some pairs (k, 2), the lower row first."""
-        keys: Rows = pairs[:, 0] * len(self.radius) + pairs[:, 1]
-        return keys
+        """One number (k,) for each pair (k, 2), the lower row of which is first."""
+        return pairs[:, 0] * len(self.radius) + pairs[:, 1]
 
     # --- distances -----------------------------------------------------------------------------------
 
@@ -108,16 +104,10 @@ class Discs:
         place[: len(displacement)] += displacement
         return place
 
-    def _span(self, rows: Rows) -> Array:
-        """The way from the first end to the other (k, 2), 0 of discs."""
-        spans = np.concatenate([np.zeros((self._count, 2)), self.obstacles.span])
-        span: Array = spans[rows]
-        return span
-
     def lines(self, displacement: Array, pairs: Rows) -> Array:
-        """Vectors (k, 2) from the centres of the first of some pairs to the nearest points of the second."""
+        """Vectors (k, 2) from the centre of the first of each pair to the nearest point of the second."""
         place = self._place(displacement)
-        return nearest(place[pairs[:, 1]] - place[pairs[:, 0]], self._span(pairs[:, 1]))
+        return nearest(place[pairs[:, 1]] - place[pairs[:, 0]], self.span[pairs[:, 1]])
 
     def gap(self, displacement: Array, pairs: Rows) -> Array:
         """Distances (k,) between the rims of pairs (k, 2), negative where they overlap."""
@@ -131,10 +121,10 @@ class Discs:
         return overlapping
 
     def moves(self, displacement: Array) -> Array:
-        """How far (m) each may move (N,) before contacts must be looked for again."""
+        """The distance (m) that each body may move, (N,), before the next search for contacts."""
         moves, total = SHORTEST_MOVE * self.radius, len(self.radius)
         free = np.flatnonzero(self.movable.any(axis=1))
-        free = free if len(free) * total <= MOST_LOOKS else np.flatnonzero(self.is_alone)
+        free = free if len(free) * total <= MOST_PAIRS else np.flatnonzero(self.is_alone)
         pairs = np.column_stack([np.repeat(free, total), np.tile(np.arange(total), len(free))])
         gaps = self.gap(displacement, pairs).reshape(len(free), total)
         gaps[np.arange(len(free)), free] = np.inf
@@ -143,30 +133,29 @@ class Discs:
         return moves
 
     def near(self, displacement: Array, moves: Array) -> Rows:
-        """Pairs (k, 2) that touch, or may while each moves that far; obstacles second."""
+        """Pairs (k, 2) that touch or come to touch while every body moves at most so far; obstacles second."""
         count = self._count
         reach = (self.radius + moves)[:count]
         pairs = near_pairs(self._place(displacement)[:count], reach, self.obstacles).astype(np.intp)
         may_touch = self.movable[pairs].any(axis=(1, 2)) & ~np.isin(self.keys(pairs), self.apart)
-        near: Rows = pairs[may_touch]
-        return near
+        return pairs[may_touch]
 
     # --- contacts as rods ----------------------------------------------------------------------------
 
     def axes(self, displacement: Array, pairs: Rows) -> tuple[Array, Array, Flags]:
-        """How contacts of pairs (k, 2) act: from where to where, if nothing were displaced, and along what.
+        """The contacts of pairs (k, 2) as rods: undisplaced vectors (k, 2), present axes (k, 2), flatness (k,).
 
-        Returns the ways (k, 2) from the first centre, when undisplaced, to the second, or of obstacles to the end
-        or the side that is nearest now; the axis (k, 2) now; and whether it keeps its direction, as at a side.
+        A vector leads from the first centre to the second, or to the end or side of the obstacle that is nearest
+        now. A flat contact, with a side, keeps its axis.
         """
-        line, span = self.lines(displacement, pairs), self._span(pairs[:, 1])
+        line, span = self.lines(displacement, pairs), self.span[pairs[:, 1]]
         way = self.start[pairs[:, 1]] - self.start[pairs[:, 0]]
         place = self._place(displacement)
         along = ((place[pairs[:, 0]] + line - self.start[pairs[:, 1]]) * span).sum(axis=1)
         squared = (span * span).sum(axis=1)
-        beyond, side = along >= squared * (1.0 - AT_END), (along > AT_END * squared) & (squared > 0.0)
-        way = way + np.where(beyond & (squared > 0.0), 1.0, 0.0)[:, None] * span
-        flat = side & ~beyond
+        beyond = along >= squared * (1.0 - AT_END)
+        flat = (along > AT_END * squared) & (squared > 0.0) & ~beyond
+        way = way + beyond[:, None] * span
         length = np.hypot(*line.T)
         turned = np.column_stack([-span[:, 1], span[:, 0]])
         line = np.where((length > 0.0)[:, None], line, turned)
@@ -174,14 +163,14 @@ class Discs:
 
 
 class Sinking:
-    """A structure and discs on the way to where they rest under a load (n, 2), from a point without contacts.
+    """The motion of a structure and discs to rest under a load (n, 2), from a point without contacts.
 
-    pairs (k, 2): which discs are in contact or near it; way, axis and flat say how, as Discs.axes has it.
-    lengthened (k,): by which share contacts are longer than the radii of their discs.
+    pairs (k, 2): the discs that are in contact or near it; way, axis, flat: the contacts, as by Discs.axes.
+    lengthened (k,): the share by which contacts are longer than the sum of their radii.
     """
 
     def __init__(self, structure: Structure, discs: Discs, load: Array, start: Point) -> None:
-        scale = float(np.abs(load).max(initial=0.0)) or 1.0
+        scale = largest(load) or 1.0
         own = scale / CONTACT_STRAIN * discs.is_alone / np.where(discs.is_alone, discs.radius, 1.0)
         self.bare = replace(structure, unknown=discs.movable, own_weight=own)
         self.discs, self.load, self.stiffness = discs, load, scale / CONTACT_STRAIN
@@ -213,17 +202,17 @@ class Sinking:
                 penalty = 0.0
                 continue
             crept = self._creep(moves, penalty)
-            if not crept:
-                return "gave up"
+            if crept is None:
+                break
             penalty = crept
-            if np.abs(self.point.displacement).max() > RUNAWAY * self.bare.extent:
+            if largest(self.point.displacement) > RUNAWAY * self.bare.extent:
                 return "falls"
         return "gave up"
 
     # --- contacts ----------------------------------------------------------------------------------
 
     def _look_around(self, moves: Array) -> None:
-        """Find the pairs that may touch before the next look, and how."""
+        """Find the pairs that may touch before the next search."""
         near = self.discs.near(self.point.displacement, moves)
         way, axis, flat = self.discs.axes(self.point.displacement, near)
         same = np.array_equal(near, self.pairs) and np.array_equal(flat, self.flat)
@@ -236,11 +225,11 @@ class Sinking:
         self._use(lengthened)
 
     def _lengthen(self) -> None:
-        """Make contacts longer by what their forces shorten them."""
+        """Lengthen contacts by what their forces shorten them."""
         self._use(-self.point.response.axial_force[self.rods.stop :] / self.stiffness)
 
     def _use(self, lengthened: Array) -> None:
-        """Go on with contacts so much longer; they do not yield."""
+        """Go on with contacts of this lengthening; they do not yield."""
         self.lengthened = lengthened
         plastic_strain = np.zeros(self.rods.stop + len(lengthened))
         plastic_strain[self.rods] = self.point.plastic_strain[self.rods]
@@ -249,7 +238,7 @@ class Sinking:
         self.point = replace(start, dissipated=self.point.dissipated)
 
     def _with_contacts(self) -> Structure:
-        """The structure with a rod that only pushes between the discs of each pair."""
+        """The structure with a rod in compression only between the discs of each pair."""
         bare, flat = self.bare, self.flat[:, None]
         reach = self.discs.radius[self.pairs].sum(axis=1)
         distance = np.where(self.flat, (self.way * self.axis).sum(axis=1), np.hypot(*self.way.T))
@@ -269,13 +258,12 @@ class Sinking:
         )
 
     def _pressed(self) -> Flags:
-        pressed: Flags = self.point.response.axial_force[self.rods.stop :] < 0.0
-        return pressed
+        return self.point.response.axial_force[self.rods.stop :] < 0.0
 
     def _gap(self) -> float:
         """The largest gap or overlap of pressed contacts, as a share of their length."""
         gap = self.point.response.strain[self.rods.stop :] + self.lengthened
-        return float(np.abs(gap[self._pressed()]).max(initial=0.0))
+        return largest(gap[self._pressed()])
 
     # --- moving --------------------------------------------------------------------------------------
 
@@ -283,46 +271,42 @@ class Sinking:
         """Go to the equilibrium nearby, if there is one: "equilibrium" or "unstable", else ""."""
         borne = np.zeros(len(self.discs.radius), dtype=bool)
         borne[self.pairs[self._pressed()]] = True
-        if (self.discs.pulled(self.load) & ~borne).any():
+        pulled = self.discs.is_alone & (self.discs.movable & (self.load != 0.0)).any(axis=1)
+        if (pulled & ~borne).any():
             return ""
-        if np.abs(self._residual()).max(initial=0.0) > NEAR_REST * self.path.scale:
+        if largest(self._residual()) > NEAR_REST * self.path.scale:
             return ""
         found = self.path.correct(self.point, self.point.displacement, 0.0, None)
-        if found is None or (_distance(found, self.point) > moves).any():
+        if found is None or (np.hypot(*(found.displacement - self.point.displacement).T) > moves).any():
             return ""
-        structure = self.path.structure
-        definite = regular(structure.tangent(found.response, found.response.soft), structure.weight).definite
-        if not definite and np.abs(self._residual()).max(initial=0.0) > BALANCED * self.path.scale:
+        stable = is_stable(self.path.structure, found.response)
+        if not stable and largest(self._residual()) > BALANCED * self.path.scale:
             return ""
         self.point = found
-        return "equilibrium" if definite else "unstable"
+        return "equilibrium" if stable else "unstable"
 
     def _residual(self) -> Array:
         structure = self.path.structure
         return structure.gather(self.load - structure.internal(self.point.response))
 
-    def _creep(self, moves: Array, penalty: float) -> float:
-        """One implicit Euler step of length 1/penalty, shortened until no disc moves too far.
+    def _creep(self, moves: Array, penalty: float) -> float | None:
+        """One implicit Euler step of length 1/penalty, short enough that no disc moves too far (moves: (N,), m).
 
-        Returns the penalty for the next, 0 if there is no step.
+        Returns the penalty for the next step, None if no step succeeds.
         """
-        residual, structure = self._residual(), self.path.structure
+        residual, structure, start = self._residual(), self.path.structure, self.point.displacement
         if penalty == 0.0:
             pace = structure.spread(residual / structure.weight)
             penalty = float((np.hypot(*pace.T) / moves).max(initial=0.0))
         penalty = max(penalty, SMALLEST_PENALTY)
-        while penalty < LARGEST_PENALTY:
-            displacement = implicit_step(self.path, self.point, residual, penalty)
-            if displacement is not None:
-                moved = self.path.after(self.point, displacement, 0.0)
-                share = float((_distance(moved, self.point) / moves).max())
-                if share <= 1.0:
-                    self.point = moved
-                    return penalty / (4.0 if share < 0.25 else 1.0 if share > 0.5 else 2.0)
-            penalty *= 3.0
-        return 0.0
-
-
-def _distance(one: Point, other: Point) -> Array:
-    distance: Array = np.hypot(*(one.displacement - other.displacement).T)
-    return distance
+        crept = creep(
+            self.path,
+            self.point,
+            residual,
+            penalty,
+            lambda to: float((np.hypot(*(to - start).T) / moves).max()),
+        )
+        if crept is None:
+            return None
+        self.point, penalty = crept
+        return penalty

@@ -1,7 +1,7 @@
 """Equilibrium equations of pin-jointed rods in exact geometry, as functions of the displacements.
 
-The unknowns are the displacements of the free directions of all particles that rods hold; a vector of
-unknowns has shape (N,), a field over all particles (n, 2). Lengths in m, forces in kN.
+The unknowns are the displacements of particles with rods in their free directions: a vector of shape (N,),
+or a field (n, 2) over all particles. Lengths in m, forces in kN.
 """
 
 from __future__ import annotations
@@ -30,13 +30,23 @@ AT_LIMIT = 1e-10  # share of its strength within which a rod counts as yielding
 ROUND_OFF = float(np.finfo(np.float64).eps)
 
 
+def largest(values: Array) -> float:
+    """The largest absolute value in an array; 0 of an empty one."""
+    return float(np.abs(values).max(initial=0.0))
+
+
+def normalised(motion: Array) -> Array:
+    """A motion (n, 2) scaled so that the particle that moves most moves by 1."""
+    scaled: Array = motion / np.hypot(*motion.T).max()
+    return scaled
+
+
 @dataclass(frozen=True)
 class Response:
-    """What the rods do at some displacements, having yielded from a given plastic strain; shape (rods,).
+    """The state of the rods at given displacements, by return mapping from a given plastic strain; (rods,).
 
-    elastic_force: what the axial force would be without yielding from there. plastic_strain: after it.
-    axis: unit vectors from first to second end, (rods, 2). flowing: in the course of yielding. slack:
-    one-sided rods without force.
+    elastic_force: the trial force, before yielding. plastic_strain: after yielding. axis: unit vectors from
+    first to second end, (rods, 2). flowing: rods that yield now. slack: one-sided rods without force.
     """
 
     elongation: Array
@@ -66,11 +76,11 @@ class Response:
 
 @dataclass(frozen=True)
 class Branches:
-    """Where rods are in their laws, which are linear piece by piece; shape (rods,).
+    """The linear piece of its law that each rod is on; shape (rods,).
 
-    force: elastic of slack rods, else axial (kN). low, high: the forces at which the present piece ends.
-    outward: the sense of elongation, 1 or −1, in which a rod that is at such an end leaves its piece; 0: it is
-    not. slack: one-sided rods without force, those excluded that are about to bear some.
+    force: elastic of slack rods, else axial (kN). low, high: the forces at which the piece ends. outward: the
+    sense of elongation, 1 or −1, in which a rod at an end of its piece leaves it; 0 elsewhere. verge:
+    one-sided rods that are about to tighten or slacken. slack: the other one-sided rods without force.
     """
 
     force: Array
@@ -88,11 +98,11 @@ class Structure:
     ends: rows of the particles at both ends, (rods, 2). difference: between their original positions.
     unknown: the free directions that are solved for, (n, 2): those of particles with rods, less one of
         every body that nothing holds along an axis (its translation is arbitrary).
-    body: number of the connected body that each particle belongs to, (n,).
-    sense: of one-sided rods 1 (a cable, tension only) or −1 (compression only), else 0.
-    own_weight: what particles count with besides their rods in `weight` (kN/m), (n,).
-    flat: rods whose axis keeps its direction, as that of a contact with a straight side does.
-    linear: first-order theory, in which elongations and equilibrium are those of the original positions.
+    body: number of the connected body of each particle, (n,).
+    sense: 1 for cables (tension only), −1 for contacts (compression only), else 0.
+    own_weight: stiffness added to that of its rods in the `weight` of a particle (kN/m), (n,).
+    flat: rods whose axis keeps its direction, such as contacts with a straight side.
+    linear: first-order theory: elongations and equilibrium about the original positions.
     """
 
     position: Array
@@ -149,15 +159,14 @@ class Structure:
 
     @cached_property
     def index(self) -> Rows:
-        """Where the unknowns are in a flattened field, (N,); ordered so that sparse factors stay sparse."""
+        """Indices of the unknowns in a flattened field, (N,), in an order that keeps factors sparse."""
         index = np.flatnonzero(self.unknown.ravel())
         if len(index) <= DENSE:
             return index
-        links = _compatibility(self.ends, np.ones((len(self.ends), 2)), len(self.position))[:, index]
+        links = compatibility(self.ends, np.ones((len(self.ends), 2)), len(self.position))[:, index]
         pattern = csc_matrix(abs(links).T @ abs(links) + identity(len(index)))
         order = splu(pattern, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC).perm_c
-        ordered: Rows = index[np.argsort(order)]
-        return ordered
+        return index[np.argsort(order)]
 
     @property
     def size(self) -> int:
@@ -165,9 +174,8 @@ class Structure:
         return len(self.index)
 
     def gather(self, field: Array) -> Array:
-        """The unknowns' part of a field."""
-        part: Array = field.ravel()[self.index]
-        return part
+        """The unknowns in a field."""
+        return field.ravel()[self.index]
 
     def spread(self, vector: Array) -> Array:
         """A vector of unknowns as a field, zero elsewhere."""
@@ -175,10 +183,15 @@ class Structure:
         field.ravel()[self.index] = vector
         return field
 
+    def fields(self, vectors: Array) -> Array:
+        """Vectors of unknowns (N, k) as fields (k, n, 2)."""
+        return np.array([self.spread(vector) for vector in vectors.T]).reshape(
+            vectors.shape[1], *self.unknown.shape
+        )
+
     def relative(self, field: Array) -> Array:
         """Second end minus first end of every rod, (rods, 2)."""
-        difference: Array = field[self.ends[:, 1]] - field[self.ends[:, 0]]
-        return difference
+        return field[self.ends[:, 1]] - field[self.ends[:, 0]]
 
     def move(self, vector: Array, reach: Array) -> float:
         """The largest change of a rod, in length or direction, relative to its reach."""
@@ -212,6 +225,16 @@ class Structure:
         return self.gather(np.repeat(total + self.own_weight, 2).reshape(-1, 2))
 
     # --- forces --------------------------------------------------------------------------------------
+
+    @cached_property
+    def unmoved(self) -> Response:
+        """The rods at the original positions without plastic strain."""
+        return self.respond(np.zeros(self.unknown.shape), np.zeros(len(self.ends)))
+
+    @cached_property
+    def initial_tangent(self) -> Matrix:
+        """The tangent at the original positions, without axial forces and with taut cables."""
+        return self.tangent(self.unmoved, np.zeros(len(self.ends), dtype=bool), geometric=False)
 
     def respond(self, displacement: Array, plastic_strain: Array) -> Response:
         """Axial forces N = EA (ε − ε_p), ε = (L − L₀)/L₀, limited by yielding; both limits move with ε_p."""
@@ -278,7 +301,7 @@ class Structure:
         return pulled | pressed
 
     def branches(self, response: Response, scale: float) -> Branches:
-        """The pieces of their laws that the rods are on; scale: force (kN) of which a share AT_LIMIT is nothing."""
+        """The pieces of their laws that the rods are on; forces (kN) below AT_LIMIT × scale count as 0."""
         nothing = AT_LIMIT * scale + ROUND_OFF * 4.0 * self.stiffness * np.abs(response.strain)
         verge = (self.sense != 0.0) & (np.abs(response.elastic_force) <= nothing)
         slack = response.slack & ~verge
@@ -295,7 +318,7 @@ class Structure:
         )
 
     def round_off(self, displacement: Array) -> float:
-        """Force (kN) below which a residual is rounding of the displacements."""
+        """The residual (kN) that rounding of the displacements alone causes."""
         size = np.abs(self.gather(displacement))
         return 2.0 * ROUND_OFF * float((self.weight * size).max(initial=0.0))
 
@@ -328,7 +351,7 @@ class Structure:
 
     @cached_property
     def _dense_pattern(self) -> tuple[Rows, Rows]:
-        """Which of the rods' 16 entries count, and where each goes in the flattened matrix."""
+        """Those of the rods' 16 entries that are between unknowns, and the place of each in the flat matrix."""
         number = np.full(self.unknown.size, -1, dtype=np.intp)
         number[self.index] = np.arange(self.size, dtype=np.intp)
         own = number.reshape(-1, 2)[self.ends].reshape(-1, 4)
@@ -348,11 +371,11 @@ class Structure:
 
     def compatibility(self, response: Response, rows: Rows | slice = slice(None)) -> csc_matrix:
         """Elongations of (some) rods from the unknowns, (rods, N); its transpose is the equilibrium matrix."""
-        matrix = _compatibility(self.ends[rows], response.axis[rows], len(self.position))
+        matrix = compatibility(self.ends[rows], response.axis[rows], len(self.position))
         return csc_matrix(matrix[:, self.index])
 
 
-def _compatibility(ends: Rows, axis: Array, particles: int) -> csc_matrix:
+def compatibility(ends: Rows, axis: Array, particles: int) -> csc_matrix:
     """Elongations from the displacements of all particles, (rods, 2n)."""
     columns = 2 * ends[:, [0, 0, 1, 1]] + np.array([0, 1, 0, 1])
     entries = np.concatenate([-axis, axis], axis=1)

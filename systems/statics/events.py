@@ -1,4 +1,4 @@
-"""What happens to a structure while its load grows, in words and numbers."""
+"""Events: yielding, jumps and collapses of a structure while its load grows, in words and numbers."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import numpy as np
 from components.model import Model
 from systems.statics.equations import Array
 
-RESTS = 1e-9  # of the largest motion: less is none
+RESTS = 1e-9  # of the largest motion: a smaller one counts as none
 
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happened on the way to a load factor.
+    """One event on the way to a load factor.
 
     kind: "yield", "slack", "taut", "plastic mechanism", "snap-through", "bifurcation", "collapse", "mechanism",
-        "free body" or "note"; of a simulation beside it "overshoot" or "other equilibrium".
-    load_factor: at which it happened. rods: names of those concerned.
-    motion: of all particles, (n, 2), the largest of them 1 long; None if nothing moves.
+        "free body" or "note"; "overshoot" or "other equilibrium" of a simulation compared with statics.
+    load_factor: that of the event. rods: names of the rods concerned.
+    motion: of all particles, (n, 2), the largest 1; None if nothing moves.
     """
 
     kind: str
@@ -46,7 +46,7 @@ def event_record(model: Model, event: Event) -> dict[str, Any]:
 
 
 class NoEquilibrium(Exception):
-    """There is no equilibrium to go on to; status: "mechanism", "collapse" or "limit reached"."""
+    """No further equilibrium; status: "mechanism", "collapse" or "limit reached"."""
 
     def __init__(self, status: str, message: str) -> None:
         super().__init__(message)

@@ -1,4 +1,4 @@
-"""Motions and rods in words, for messages that point at the particle and the direction."""
+"""Motions and rods in words, for messages that name the particle and the direction."""
 
 from __future__ import annotations
 
@@ -16,11 +16,16 @@ ONE_WAY = 1e-3  # ratio of a particle's motions across and along, below which it
 
 
 def listed(names: Sequence[str]) -> str:
-    """Names as in "B, C and D", the rest counted."""
+    """Up to NAMED names, as in "B, C and D", and the number of the others."""
     shown = list(names[:NAMED])
     if len(names) > NAMED:
         return f"{', '.join(shown)} and {len(names) - NAMED} more"
     return " and ".join(filter(None, [", ".join(shown[:-1]), *shown[-1:]]))
+
+
+def capitalised(text: str) -> str:
+    """A text as the beginning of a sentence."""
+    return text[:1].upper() + text[1:]
 
 
 def rod_names(model: Model, rows: Rows) -> str:
@@ -34,8 +39,7 @@ def rod_names(model: Model, rows: Rows) -> str:
 def cables_named(model: Model) -> str:
     """The subject and verb of a sentence about a model's cables: "Rods AC and BD act"."""
     rows = np.flatnonzero(model.rods.tension_only)
-    names = rod_names(model, rows)
-    return f"{names[:1].upper()}{names[1:]} {'acts' if len(rows) == 1 else 'act'}"
+    return f"{capitalised(rod_names(model, rows))} {'acts' if len(rows) == 1 else 'act'}"
 
 
 def slack_named(model: Model, slack: Flags) -> str:
@@ -43,13 +47,12 @@ def slack_named(model: Model, slack: Flags) -> str:
     rows = np.flatnonzero(slack)
     if not len(rows):
         return ""
-    names = rod_names(model, rows)
     verb, them = ("is", "it") if len(rows) == 1 else ("are", "them")
-    return f" {names[:1].upper()}{names[1:]} {verb} slack; tension {them} if that is not meant."
+    return f" {capitalised(rod_names(model, rows))} {verb} slack; tension {them} if that is not meant."
 
 
 def describe_motion(model: Model, modes: Array) -> str:
-    """Who moves, and which way, in some modes (k, n, 2): "B and D along x, C in any direction"."""
+    """Moving particles and their directions in modes (k, n, 2): "B and D along x, C in any direction"."""
     names = model.particles.column("name")
     size = np.sqrt((modes**2).sum(axis=(0, 2)))
     movers = np.flatnonzero(size > TAKES_PART * size.max())
@@ -77,7 +80,7 @@ def _direction(motions: Array) -> str:
 
 
 def describe_way(model: Model, motion: Array) -> str:
-    """Who moves most, and which way, in a motion (n, 2): "ball, which moves down"."""
+    """The particles that move most in a motion (n, 2), and which way: "ball, which moves down"."""
     names = model.particles.column("name")
     size = np.hypot(*motion.T)
     far = np.flatnonzero(size > 0.5 * size.max())
@@ -93,7 +96,7 @@ def describe_way(model: Model, motion: Array) -> str:
 
 
 def moved(model: Model, before: Array, after: Array) -> str:
-    """Who moved most between two fields of displacements (m), and where it is now."""
+    """The particle that moved most between two fields of displacements (m), and its new displacement."""
     names = model.particles.column("name")
     change = after - before
     row = int(np.hypot(change[:, 0], change[:, 1]).argmax())

@@ -1,4 +1,4 @@
-"""External forces of statics: what load factors multiply, and what acts in full from the first one on."""
+"""External forces of statics, and the loose bodies that nothing holds against them."""
 
 from __future__ import annotations
 
@@ -8,24 +8,28 @@ import numpy as np
 
 from components.load import static_factor
 from components.model import Model
-from systems.statics.equations import Array
+from systems.statics.equations import Array, Rows, Structure
+from systems.statics.events import Event
+from systems.statics.explain import listed
+
+NO_NET_FORCE = 1e-12  # of the sum of a body's forces: a smaller net force is round-off
 
 
 @dataclass(frozen=True)
 class External:
-    """scaled: forces and loads at factor 1; steady: mass × accelerations (kN, (n, 2)); notes: sentences."""
+    """Forces (n, 2) in kN. scaled: forces and loads at factor 1; steady: mass × acceleration; notes: sentences."""
 
     scaled: Array
     steady: Array
     notes: tuple[str, ...]
 
     def at(self, factor: float) -> Array:
-        """All external force at a load factor."""
+        """The whole external force at a load factor."""
         return factor * self.scaled + self.steady
 
 
 def external_forces(model: Model) -> External:
-    """The forces on a model; a load that varies in time counts with the factor its history has in statics."""
+    """The external forces on a model; a varying load counts with the factor of its history in statics."""
     particles, environment = model.particles, model.environment
     scaled = particles.force + np.array(environment.force)
     notes = []
@@ -36,3 +40,42 @@ def external_forces(model: Model) -> External:
             notes.append(f"The {load.history['kind']} load on {load.particle.name} counts as 0 in statics.")
     acceleration = particles.acceleration + np.array(environment.acceleration)
     return External(scaled, particles.mass[:, None] * acceleration / 1000.0, tuple(notes))
+
+
+@dataclass(frozen=True)
+class LooseBody:
+    """particles: rows; axis: 0 for x, 1 for y; pull: the net force (kN) along it, 0 if there is none."""
+
+    particles: Rows
+    axis: int
+    pull: float
+
+
+def loose_bodies(structure: Structure, load: Array) -> list[LooseBody]:
+    """The bodies without a constraint along x, then along y, under a load (n, 2); lone particles only if pulled."""
+    count = int(structure.body.max(initial=-1)) + 1
+    members = np.bincount(structure.body, minlength=count)
+    found = []
+    for axis in range(2):
+        held = np.bincount(structure.body, structure.fixed[:, axis], count) > 0
+        net = np.bincount(structure.body, load[:, axis], count)
+        gross = np.bincount(structure.body, np.abs(load[:, axis]), count)
+        pulled = np.abs(net) > NO_NET_FORCE * gross
+        for body in np.flatnonzero(~held & (pulled | (members > 1))).tolist():
+            rows = np.flatnonzero(structure.body == body)
+            found.append(LooseBody(rows, axis, float(net[body]) if pulled[body] else 0.0))
+    return found
+
+
+def loose_event(model: Model, body: LooseBody, factor: float) -> Event:
+    """The event of a loose body at a load factor."""
+    names = model.particles.column("name")
+    who, along = listed([str(names[row]) for row in body.particles]), "xy"[body.axis]
+    if body.pull:
+        what = f", where {body.pull:.6g} kN pull {'it' if len(body.particles) == 1 else 'them'}"
+    else:
+        what = ", but in all no force acts there"
+    message = f"Free body: nothing holds {who} along {along}{what}. Constrain one of them in {along}."
+    motion = np.zeros((model.particles.count, 2))
+    motion[body.particles, body.axis] = np.sign(body.pull) or 1.0
+    return Event("free body", factor, message, motion=motion)

@@ -1,4 +1,4 @@
-"""Sparse symmetric matrices: solving, definiteness, and the modes that offer least resistance."""
+"""Symmetric matrices, full or sparse: solving, definiteness, and the softest modes."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from scipy.linalg.lapack import dsytrf, dsytrs
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
-from systems.statics.equations import SYMMETRIC, Array, Matrix
+from systems.statics.equations import SYMMETRIC, Array, Flags, Matrix, Response, Structure
 
-NO_STIFFNESS = 1e-13  # of the rods' at the same particle: what is softer than that is round-off
-SOFT = 1e-12  # of the rods' at the same particle: such a motion counts as not resisted
+NO_STIFFNESS = 1e-13  # of the rods' stiffness at the same particle: round-off
+SOFT = 1e-12  # of the same: a motion that is resisted less counts as not resisted
 INVERSE_ITERATIONS = 30
 
 
@@ -20,7 +20,7 @@ class Factor:
     """A factored symmetric matrix: L D Lᵀ, full or sparse.
 
     negative: number of eigenvalues that are not positive, by Sylvester's law from the signs of D.
-    exists: False if a pivot vanishes and there is nothing to solve with.
+    exists: False if a pivot vanishes, so that the matrix cannot be solved with.
     """
 
     def __init__(self, matrix: Matrix) -> None:
@@ -62,8 +62,7 @@ class Factor:
 
     def solve(self, right: Array) -> Array:
         """The solution for one or several right-hand sides, (N,) or (N, k)."""
-        solution: Array = self._solve(right)
-        return solution
+        return self._solve(right)
 
 
 def regular(matrix: Matrix, weight: Array, share: float = NO_STIFFNESS) -> Factor:
@@ -75,8 +74,18 @@ def regular(matrix: Matrix, weight: Array, share: float = NO_STIFFNESS) -> Facto
     return Factor(shifted)
 
 
-def lowest_mode(matrix: Matrix, weight: Array) -> tuple[float, Array]:
-    """The least eigenvalue λ of K φ = λ W φ and its mode, φᵀWφ = 1, by shifted inverse iteration."""
+def is_stable(structure: Structure, response: Response, soft: Flags | None = None) -> bool:
+    """True if every small motion is resisted while these rods are soft; None: those that are soft now."""
+    matrix = structure.tangent(response, response.soft if soft is None else soft)
+    return regular(matrix, structure.weight).definite
+
+
+def softest(structure: Structure, response: Response, soft: Flags | None = None) -> tuple[float, Array]:
+    """The least eigenvalue λ of K φ = λ W φ and its mode, φᵀWφ = 1, by shifted inverse iteration.
+
+    soft: the rods without stiffness; None: those that are soft now.
+    """
+    matrix, weight = structure.tangent(response, response.soft if soft is None else soft), structure.weight
     share = NO_STIFFNESS
     factor = regular(matrix, weight, share)
     while not factor.definite:

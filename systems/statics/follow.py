@@ -1,9 +1,9 @@
-"""Following a path of equilibria while the load changes, increment by increment, event by event.
+"""Continuation of a path of equilibria while the load changes, increment by increment, event by event.
 
-A path consists of the equilibria under force + t × change. Each increment goes along the tangent, is
-corrected by Newton's method on a plane across it (which reduces to constant t where the structure is
-stiff, and passes limit points where it is not), and is accepted only if it went where the tangent pointed:
-an increment that lands on another branch is taken back and made smaller.
+A path consists of the equilibria under force + t × change. An increment along the tangent is corrected by
+Newton's method on a plane across the tangent, which reduces to constant t where the structure is stiff and passes
+limit points where it is not. An increment that misses where the tangent pointed, since it landed on another branch,
+is taken back and made smaller.
 """
 
 from __future__ import annotations
@@ -14,24 +14,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from systems.statics.complementarity import yielding_set
-from systems.statics.equations import ROUND_OFF, Array, Branches, Flags, Response, Structure
+from systems.statics.equations import ROUND_OFF, Array, Branches, Flags, Response, Structure, largest
 from systems.statics.factor import Factor, regular
 
 LARGEST_MOVE = 0.1  # of a rod's length, in one increment; larger: fewer increments, less sure of the branch
 MISS = 0.2  # share of an increment by which it may miss where the tangent pointed
 TURN = 0.5  # share by which the tangent may change over an increment
 NEWTON_ITERATIONS = 25
-PATIENCE = 6  # iterations before steps are shortened that do not lessen the residual
+PATIENCE = 6  # iterations after which a step that does not lessen the residual is shortened
 SMALLEST_SHARE = 1 / 8
-CONVERGED = 1e-11  # of the largest force: a residual that stopped falling below it is round-off
-EXACT_EVENTS = 500  # rods up to which every yield ends an increment; larger: slower, no more exact answers
+CONVERGED = 1e-11  # of the largest force: a smaller residual that falls no more is round-off
+EXACT_EVENTS = 500  # rods up to which every yield ends an increment; larger: slower, answers as exact
 HALF = 0.5  # share of an increment to try after it failed
 RESOLUTION = 1 / 8  # of the change of load, to which yields are told apart in larger structures
 EVENT = 1e-8  # of the change of load, to which a yield is located
 REVERSAL = 1e-5  # increment to which the end of yielding is located; the error goes with its square
 SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
-NARROWINGS = 42  # halvings that locate a loss of stability; in larger structures:
-FEW_NARROWINGS = 14
+NARROWINGS = 42  # halvings that locate a loss of stability
+FEW_NARROWINGS = 14  # the same in structures larger than EXACT_EVENTS
 ACTIVE_SET_ROUNDS = 12
 
 
@@ -39,7 +39,7 @@ ACTIVE_SET_ROUNDS = 12
 class Point:
     """A state on a path: displacement (n, 2), plastic strain (rods,), t, and the rods' response.
 
-    dissipated: energy (J) that yielding has taken so far.
+    dissipated: energy (J) that yielding has dissipated so far.
     """
 
     displacement: Array
@@ -53,8 +53,8 @@ class Point:
 class Tangent:
     """The direction of a path at a point.
 
-    rate: du/dt of the unknowns. flowing: rods that yield on the way, slack: that bear nothing. sense: +1 if t
-    grows along the path. consistent: False if no set of soft rods agrees with the motion it leads to.
+    rate: du/dt of the unknowns. flowing, slack: rods that yield, or bear nothing, on the way. sense: +1 if t
+    grows along the path, else −1. consistent: False if no set of soft rods agrees with the motion it leads to.
     """
 
     rate: Array
@@ -88,8 +88,8 @@ class Step:
 class Path:
     """The equilibria of a structure under force + t × change (fields of kN), up to t = 1.
 
-    passes_limits: go on without end where stability is lost, the load growing or falling, instead of
-    looking for another way to yield that is stable.
+    passes_limits: a path without end that goes on beyond a loss of stability, with a growing or falling load;
+    False: where stability is lost, another set of yielding rods that is stable is sought.
     """
 
     def __init__(
@@ -102,7 +102,7 @@ class Path:
         self.change = change
         self.push = structure.gather(change)
         self.exact_events = len(structure.ends) <= EXACT_EVENTS
-        self.scale = max(np.abs(force).max(initial=0.0), np.abs(force + change).max(initial=0.0))
+        self.scale = max(largest(force), largest(force + change))
         self.reference = 0.0  # size of du/dt that counts as much as dt does; that of the first tangent
 
     def load(self, t: float) -> Array:
@@ -110,7 +110,7 @@ class Path:
         return self.force + t * self.change
 
     def start(self, displacement: Array, plastic_strain: Array) -> Point:
-        """The point at t = 0 in this state; what is beyond a strength has yielded."""
+        """The point at t = 0 in this state; rods beyond a strength yield at once."""
         yielded = self.structure.respond(displacement, plastic_strain).plastic_strain
         return Point(displacement, yielded, 0.0, self.structure.respond(displacement, yielded), 0.0)
 
@@ -123,16 +123,19 @@ class Path:
 
     def branches(self, response: Response) -> Branches:
         """The pieces of their laws that the rods are on."""
-        scale = max(self.scale, float(np.abs(response.axial_force).max(initial=0.0)))
-        return self.structure.branches(response, scale)
+        return self.structure.branches(response, self.largest_force(response))
+
+    def largest_force(self, response: Response) -> float:
+        """The largest force (kN) of the load on the path or of a rod."""
+        return max(self.scale, largest(response.axial_force))
 
     # --- directions --------------------------------------------------------------------------------
 
     def tangent(self, point: Point, onward: Array | None = None, before: Tangent | None = None) -> Tangent:
         """The direction in which the path goes on from a point.
 
-        onward: how the unknowns changed so far; before: the tangent then. Of the rods at the end of a piece
-        of their law those give way whose elongation goes on outward.
+        onward: the last change of the unknowns; before: the tangent there. Of the rods at the end of a piece of
+        their law, those give way whose elongation goes on outward.
         """
         response, branches = point.response, self.branches(point.response)
         limited = branches.outward != 0.0
@@ -176,20 +179,19 @@ class Path:
         return Tangent(rate, flowing, slack, factor, 1.0 if forward else -1.0)
 
     def _growth(self, response: Response, branches: Branches, tangent: Tangent) -> Array:
-        """How fast rods at the end of a piece elongate outward along the path."""
+        """Rates at which rods at the end of a piece elongate outward along the path."""
         rate = self.structure.elongation_rate(tangent.sense * tangent.rate, response)
-        growth: Array = rate * branches.outward
-        return growth
+        return rate * branches.outward
 
     def _agrees(self, response: Response, branches: Branches, tangent: Tangent) -> bool:
-        """True if of the rods at the end of a piece just those that give way go on outward."""
+        """True if exactly those rods at the end of a piece give way that go on outward."""
         grows = self._growth(response, branches, tangent) > 0.0
         return tangent.factor.exists and np.array_equal(grows, tangent.soft & ~branches.slack)
 
     def _soften_exactly(
         self, response: Response, branches: Branches, growth: Array, elastic: Factor, guess: Flags
     ) -> Flags | None:
-        """Of the rods at the end of a piece those that give way, or None if there is no such set."""
+        """The rods at the end of a piece that give way, by the complementarity problem; None without a solution."""
         structure = self.structure
         limited: Flags = branches.outward != 0.0
         sign = branches.outward[limited]
@@ -206,7 +208,7 @@ class Path:
     def _soften_by_trial(
         self, response: Response, branches: Branches, soft: Flags, onward: Array | None
     ) -> Tangent:
-        """In a large structure, or beyond a limit point: let rods give way and resist until the set stays, or nearly."""
+        """The tangent by fixed-point iteration of the set of rods that give way: large structures, limit points."""
         for _ in range(ACTIVE_SET_ROUNDS):
             found = self._direction(response, branches, soft, onward)
             grows = self._growth(response, branches, found) > 0.0
@@ -214,11 +216,6 @@ class Path:
                 break
             soft = grows
         return found
-
-    def stable_without(self, point: Point, soft: Flags) -> bool:
-        """True if the point is stable when only these rods are soft."""
-        matrix = self.structure.tangent(point.response, soft)
-        return regular(matrix, self.structure.weight).definite
 
     def stretch(self, tangent: Tangent) -> float:
         """Increment along the path for an increment of t."""
@@ -263,11 +260,11 @@ class Path:
         change = structure.gather(found.displacement - point.displacement)
         kink = self._kink(point, tangent, found, dt)
         if kink < 1.0:
-            return max(kink, HALF)  # much sooner than the tangent tells: what was found is on another branch
+            return max(kink, HALF)  # far sooner than by the tangent: the point found is on another branch
         following = self.tangent(found, change, tangent)
         if self._reversed(tangent, found, following, increment):
             return HALF
-        fine = self._went_along(point, tangent, found, following, predicted, change)
+        fine = self._went_along(point.response.reach, tangent, following, predicted, change)
         switched = not np.array_equal(found.response.soft, tangent.soft)
         coarse = not self.exact_events and switched and abs(dt) <= RESOLUTION
         return (found, following) if fine or coarse else HALF
@@ -281,8 +278,7 @@ class Path:
         for iteration in range(NEWTON_ITERATIONS):
             response = structure.respond(displacement, start.plastic_strain)
             residual = structure.gather(self.load(t) - structure.internal(response))
-            size = float(np.abs(residual).max(initial=0.0))
-            scale = max(self.scale, float(np.abs(response.axial_force).max(initial=0.0)))
+            size, scale = largest(residual), self.largest_force(response)
             if not size <= 1e6 * scale:
                 return None
             noise = structure.round_off(displacement) + 4.0 * ROUND_OFF * scale
@@ -290,7 +286,7 @@ class Path:
                 return self.after(start, displacement, t)
             switched = soft is not None and not np.array_equal(response.soft, soft)
             if (switched or iteration > PATIENCE) and size >= before and share > SMALLEST_SHARE:
-                share *= HALF  # other rods are soft than the step reckoned with: take less of it
+                share *= HALF  # other rods are soft than in the tangent of the step: take less of it
                 displacement, t = displacement - share * step, t - share * dt
                 continue
             moved = self._newton_step(response, residual, normal)
@@ -318,16 +314,10 @@ class Path:
         return solved[:, 0] + dt * solved[:, 1], dt
 
     def _went_along(
-        self,
-        point: Point,
-        tangent: Tangent,
-        found: Point,
-        following: Tangent,
-        predicted: Array,
-        change: Array,
+        self, reach: Array, tangent: Tangent, following: Tangent, predicted: Array, change: Array
     ) -> bool:
         """True if the increment went where the tangent pointed and the tangent did not turn much."""
-        structure, reach = self.structure, point.response.reach
+        structure = self.structure
         size = structure.move(change, reach)
         if size > LARGEST_MOVE:
             return False
@@ -343,7 +333,7 @@ class Path:
     # --- yielding, slackening, tightening ------------------------------------------------------------
 
     def _until_event(self, point: Point, tangent: Tangent) -> float:
-        """Increment after which the next rod comes to the end of a piece of its law, judged from the tangent."""
+        """Increment to the next end of a piece of a rod's law, judged by the tangent."""
         if not self.exact_events:
             return math.inf
         structure, branches = self.structure, self.branches(point.response)
@@ -357,9 +347,9 @@ class Path:
         return float(wait.min(initial=np.inf)) * self.stretch(tangent)
 
     def _kink(self, point: Point, tangent: Tangent, found: Point, dt: float) -> float:
-        """Share of an increment after which the first rod left its piece in it; 1 if at its end or not at all.
+        """Share of an increment after which the first rod left its piece; 1 if at the end or not at all.
 
-        The force on the way is taken as quadratic, from its values at both ends and its rate at the start.
+        Forces within the increment are quadratic, by their values at both ends and their rates at the start.
         """
         structure, branches, after = self.structure, self.branches(point.response), found.response
         above = (after.elastic_force > branches.high) & (branches.outward <= 0.0)
@@ -384,8 +374,7 @@ class Path:
         """True if a rod stopped flowing well within the increment."""
         if not self.exact_events or increment <= REVERSAL:
             return False
-        stopped = tangent.flowing & ~(found.response.flowing & following.flowing)
-        return bool(stopped.any())
+        return bool((tangent.flowing & ~(found.response.flowing & following.flowing)).any())
 
     # --- loss of stability -----------------------------------------------------------------------------
 

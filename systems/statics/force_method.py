@@ -1,7 +1,7 @@
 """Force method: hyperstatic forces from three displacements, by first-order theory about original positions.
 
 Set 1 is the real structure under the real load, set 2 the base structure (without the static unknown) under
-the real load, set 3 the base structure under a unit force alone. Superposition is exact in this theory.
+the real load, set 3 the base structure under a unit force alone. Superposition is exact in first-order theory.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from components.numeric_range import incomputable
 from components.particle import Particle
 from components.rod import Rod, nodes
 from components.suggestions import missing
-from systems.statics.equations import Array, Structure
+from systems.statics.equations import Array, Structure, compatibility, normalised
 from systems.statics.explain import cables_named, describe_motion
 from systems.statics.external import external_forces
 from systems.statics.factor import Factor, soft_count, soft_modes
@@ -30,7 +30,7 @@ _RANK = 1e-9  # relative size below which a pivot is zero
 class ForceMethodError(ValueError):
     """A static unknown that cannot be used; the message names it, the reason and the remedy.
 
-    motion: of the mechanism that its release would leave, (n, 2), the largest 1; None if that is not why.
+    motion: of the mechanism that its release would leave, (n, 2), the largest 1; None for other reasons.
     """
 
     def __init__(self, message: str, motion: Array | None = None) -> None:
@@ -53,7 +53,7 @@ class Unknown:
 
 @dataclass(frozen=True)
 class SetState:
-    """What a set comes to by first-order theory: displacements (m, (n, 2)) and axial forces (kN, (rods,))."""
+    """Displacements (n, 2), in m, and axial forces (rods,), in kN, of a set by first-order theory."""
 
     displacement: Array
     axial_force: Array
@@ -89,13 +89,9 @@ class Solution:
 
 
 def counted_indeterminacy(model: Model) -> int:
-    """Degree of static indeterminacy of a structure that is no mechanism, by counting; theory.py finds ranks.
-
-    Rods and constraints of the particles that rods join, less two equations for each.
-    """
+    """Degree of static indeterminacy of a structure that is no mechanism: rods + constraints − 2 × nodes."""
     used = nodes(model)
-    constraints = int(model.particles.fixed[used].sum())
-    return int(model.rods.count + constraints - 2 * used.sum())
+    return int(model.rods.count + model.particles.fixed[used].sum() - 2 * used.sum())
 
 
 def find_unknown(model: Model, name: str) -> Unknown:
@@ -118,7 +114,7 @@ def find_unknown(model: Model, name: str) -> Unknown:
 
 
 class _Linear:
-    """First-order theory of a model with some unknowns released (masses, loads and moved supports stay)."""
+    """First-order theory of a model without some unknowns, but with all masses, loads and moved supports."""
 
     def __init__(self, model: Model, released: Sequence[Unknown] = ()) -> None:
         whole = Structure.of(model)
@@ -142,22 +138,18 @@ class _Linear:
         matrix = csc_matrix(self._compatibility.T @ diags(along) @ self._compatibility)
         self._factor = Factor(matrix)
         if soft_count(matrix, structure.weight) and (modes := soft_modes(matrix, structure.weight)).shape[1]:
-            motions = np.array([structure.spread(mode) for mode in modes.T])
-            first = motions[0] / np.hypot(*motions[0].T).max()
-            raise ForceMethodError(self._mechanism(released, describe_motion(model, motions)), first)
-
-    @staticmethod
-    def _mechanism(released: Sequence[Unknown], motion: str) -> str:
-        if not released:
-            return f"The structure is a mechanism already ({motion} can move); support or brace it first."
-        names = ", ".join(unknown.name for unknown in released)
-        return (
-            f"Without {names} the structure is a mechanism: {motion} can move."
-            " It is not a static unknown; choose a redundant rod or constraint."
-        )
+            motions = structure.fields(modes)
+            moves, names = describe_motion(model, motions), ", ".join(unknown.name for unknown in released)
+            message = f"The structure is a mechanism already ({moves} can move); support or brace it first."
+            if released:
+                message = (
+                    f"Without {names} the structure is a mechanism: {moves} can move."
+                    " It is not a static unknown; choose a redundant rod or constraint."
+                )
+            raise ForceMethodError(message, normalised(motions[0]))
 
     def under(self, force: Array, *, prestressed: bool) -> SetState:
-        """The state under forces (n, 2); `prestressed`: with what lack of fit and moved supports add."""
+        """The state under forces (n, 2); prestressed: and under lack of fit and moved supports."""
         initial = self._prestress if prestressed else np.zeros_like(self._prestress)
         supports = self._supports if prestressed else np.zeros_like(self._supports)
         right = self.structure.gather(force) - self._compatibility.T @ initial
@@ -172,9 +164,9 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     Rod: Δ is the change of distance between its ends (apart +), the unit pair pulls them together, p > 0 is
     tension. Support: Δ and p along +x or +y, p is the force on the structure.
 
-    Several unknowns are solved with what is known of Δ_real: a support is where it was moved, if it was; a
-    rod's Δ is p L₀/EA less its lack of fit. Then they are unique even where the base structure has fewer rods than
-    there are unknowns, and Δ₁ alone is singular.
+    Several unknowns are solved with the known part of Δ_real: the displacement of a moved support; for a rod,
+    p L₀/EA less its lack of fit. So they are unique even where the base structure has fewer rods than there are
+    unknowns, and Δ₁ alone is singular.
     """
     problem = incomputable(model)
     if problem:
@@ -185,7 +177,11 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
             " and have taut ones bear compression too."
         )
     for unknown in unknowns:
-        _check_strains(model, unknown)
+        if unknown.axis is not None and not (model.rods.between == unknown.element.row).any():
+            raise ForceMethodError(
+                f"{unknown.name} is not a static unknown: no rod ends at {unknown.element.name}, so its reaction"
+                " only balances what acts on it there. Choose a rod, or a constraint of the structure."
+            )
     load = external_forces(model).at(1.0)
     whole = _Linear(model)
     real = whole.under(load, prestressed=True)
@@ -197,15 +193,6 @@ def solve(model: Model, unknowns: Sequence[Unknown]) -> Solution:
     own, unstrained = _flexibility(model, unknowns)
     force: Array = np.linalg.solve(delta_unit - np.diag(own), unstrained - delta_base).astype(np.float64)
     return Solution(tuple(unknowns), delta_real, delta_base, delta_unit, force, real, base, units)
-
-
-def _check_strains(model: Model, unknown: Unknown) -> None:
-    """Raise ForceMethodError for a support that holds no rod."""
-    if unknown.axis is not None and not (model.rods.between == unknown.element.row).any():
-        raise ForceMethodError(
-            f"{unknown.name} is not a static unknown: no rod ends at {unknown.element.name}, so its reaction"
-            " only balances what acts on it there. Choose a rod, or a constraint of the structure."
-        )
 
 
 def _flexibility(model: Model, unknowns: Sequence[Unknown]) -> tuple[Array, Array]:
@@ -261,13 +248,10 @@ def redundants(model: Model) -> list[Unknown]:
     used = np.zeros(model.particles.count, dtype=bool)
     used[structure.ends] = True
     supports = np.argwhere(structure.fixed & used[:, None])
-    columns = np.zeros((2 * model.particles.count, model.rods.count + len(supports)))
-    for row, ((first, second), along) in enumerate(zip(structure.ends, structure.original_axis, strict=True)):
-        columns[2 * first : 2 * first + 2, row] = along
-        columns[2 * second : 2 * second + 2, row] = -along
-    for index, (row, direction) in enumerate(supports):
-        columns[2 * row + direction, model.rods.count + index] = _KEPT
-    factor, order = qr(columns, mode="r", pivoting=True)
+    of_supports = np.zeros((2 * model.particles.count, len(supports)))
+    of_supports[2 * supports[:, 0] + supports[:, 1], np.arange(len(supports))] = _KEPT
+    of_rods = compatibility(structure.ends, structure.original_axis, model.particles.count).toarray().T
+    factor, order = qr(np.hstack([of_rods, of_supports]), mode="r", pivoting=True)
     sizes = np.abs(np.diag(factor))
     rank = int((sizes > _RANK * sizes.max(initial=0.0) / _KEPT).sum())
     found = []

@@ -1,4 +1,4 @@
-"""Load–displacement curves: the path of equilibria through limit points, the load falling where it must."""
+"""Load–displacement curves: paths of equilibria through limit points, with a growing or falling load."""
 
 from __future__ import annotations
 
@@ -23,9 +23,11 @@ LANDINGS = 60  # trials
 
 @dataclass(frozen=True)
 class Curve:
-    """Equilibria in order along a path. load_factor: (k,). displacement: (k, n, 2) in m, axial_force:
-    (k, rods) in kN, stable: (k,), False where the structure would snap or collapse under a dead load.
-    complete: False if the path was lost before its end."""
+    """Equilibria in order along a path: load_factor (k,), displacement (k, n, 2) in m, axial_force (k, rods) in kN.
+
+    stable: (k,), False where the structure would snap or collapse under a dead load. complete: False if the
+    path was lost before its end.
+    """
 
     load_factor: Array
     displacement: Array
@@ -36,7 +38,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Goal:
-    """Where a curve ends: where the load factor first is `value`, or (particle row, axis) is displaced by it (m)."""
+    """The end of a curve: a load factor, or a displacement (m) of a (particle row, axis), reached for the first time."""
 
     value: float
     displaced: tuple[int, int] | None = None
@@ -69,9 +71,10 @@ def goal_of(model: Model, factor: float = 1.0, until: str | None = None) -> Goal
 def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DETAIL) -> Curve:
     """The curve from the load factor 0 on, by arc-length continuation with exact geometry and yielding.
 
-    The factor first grows, or falls below 0 if that leads towards the goal. The curve ends exactly there, or
-    after so many points. Accelerations act in full from the start. It goes straight on through bifurcations.
-    Raises ValueError if nothing is to be scaled, or if there is no equilibrium at the factor 0.
+    The factor first grows, or falls below 0 if that leads towards the goal. The curve ends exactly at the goal, or
+    after so many points, and goes straight on through bifurcations. Accelerations act in full from the start.
+    detail: of a rod's length, the largest change between points. Raises ValueError without a force or load to
+    scale, or without an equilibrium at the factor 0.
     """
     unloaded = settle(model, (0.0,)).final
     if unloaded.status != "equilibrium":
@@ -92,7 +95,7 @@ def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DE
 
 @dataclass(frozen=True)
 class _Search:
-    """The way along a path on which the load factor is sign × t."""
+    """A path on which the load factor is sign × t, followed up to a goal."""
 
     path: Path
     start: Point
@@ -101,7 +104,7 @@ class _Search:
 
     @classmethod
     def towards(cls, goal: Goal, structure: Structure, external: External, unloaded: StaticState) -> _Search:
-        """The way that begins in the direction of a goal."""
+        """The path that begins in the direction of a goal."""
         found = None
         for sign in (1.0, -1.0):
             path = Path(structure, external.at(0.0), sign * external.scaled, passes_limits=True)
@@ -115,11 +118,10 @@ class _Search:
         return found
 
     def beyond(self, point: Point) -> float:
-        """How far a point is beyond the goal, negative if it is not above it."""
+        """Load factor, or displacement, of a point less that of the goal."""
         displaced = self.goal.displaced
-        return (
-            self.sign * point.t if displaced is None else float(point.displacement[displaced])
-        ) - self.goal.value
+        here = self.sign * point.t if displaced is None else float(point.displacement[displaced])
+        return here - self.goal.value
 
     def run(self, points: int, detail: float) -> tuple[list[tuple[Point, Tangent]], bool]:
         """Points and tangents up to the goal; and whether it was reached."""

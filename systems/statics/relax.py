@@ -1,97 +1,88 @@
 """Relaxing to the next stable equilibrium at constant load, as a strongly damped structure would.
 
-The motion is that of W u' = force − internal force, W being the rods' stiffness at each particle, by implicit
-Euler steps: each minimises the energy plus a penalty on moving, so that no step climbs, none leaps over an
-equilibrium, and rods yield in their order. The last steps are Newton's.
+The motion W u' = force − internal force, W the rods' stiffness at each particle, is integrated by implicit Euler
+steps. Each step minimises the energy plus a penalty on moving, so that no step gains energy or leaps over an
+equilibrium, and rods yield in their order. Newton's method takes the last steps.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
-from systems.statics.equations import Array
-from systems.statics.factor import lowest_mode, regular
+from systems.statics.equations import Array, Structure, largest
+from systems.statics.factor import is_stable, regular, softest
 from systems.statics.follow import LARGEST_MOVE, SMALLEST_SHARE, Path, Point
 
-STEPS = 4000  # until relaxing is given up
+STEPS = 4000  # at most
 NEWTON_ITERATIONS = 20  # within a step
 STEP_CONVERGED = 1e-7  # of the force at its start
 LARGEST_PENALTY = 1e9
 NUDGE = 1e-3  # of a rod's length: how far to push off an unstable equilibrium
-BALANCED = 1e-9  # of the largest force: an equilibrium, if only an unstable one
-LARGEST_PLASTIC_STRAIN = 0.2  # on the way; no structural metal follows further
-RUNAWAY = 100.0  # times the structure's extent: it will not come back
+BALANCED = 1e-9  # of the largest force: an equilibrium, though an unstable one
+LARGEST_PLASTIC_STRAIN = 0.2  # gained on the way; structural metal tears before
+RUNAWAY = 100.0  # times the structure's extent: a displacement without end
 
 
-@dataclass(frozen=True)
-class Relaxed:
-    """Where relaxing ended; `outcome` is "equilibrium", "strained apart", "ran away" or "gave up"."""
+def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STEPS) -> tuple[Point, str]:
+    """Let a structure move under the load at start.t until it rests; nudge: the direction to start in.
 
-    point: Point
-    outcome: str
-
-
-def relax(path: Path, start: Point, nudge: Array | None = None, steps: int = STEPS) -> Relaxed:
-    """Let a structure move under the load at start.t until it rests; nudge: the direction to start in."""
+    Returns the point where it ended, and "equilibrium", "strained apart", "ran away" or "gave up".
+    """
     structure, point = path.structure, start
     if nudge is not None:
-        point = _moved(path, point, nudge, NUDGE)
+        point = _nudged(path, point, nudge)
     penalty = 0.0
     for _ in range(steps):
         residual = structure.gather(path.load(point.t) - structure.internal(point.response))
-        scale = max(path.scale, float(np.abs(point.response.axial_force).max(initial=0.0)))
-        stable = regular(structure.tangent(point.response, point.response.soft), structure.weight).definite
-        if stable:
+        if is_stable(structure, point.response):
             rested = path.correct(point, point.displacement, point.t, None)
-            if rested is not None and _is_stable(path, rested):
-                return Relaxed(rested, "equilibrium")
-        elif np.abs(residual).max(initial=0.0) <= BALANCED * scale:
-            point = _moved(path, point, _way_down(path, point), NUDGE)
+            if rested is not None and is_stable(structure, rested.response):
+                return rested, "equilibrium"
+        elif largest(residual) <= BALANCED * path.largest_force(point.response):
+            point = _nudged(path, point, softest(structure, point.response)[1])
             continue
         if penalty == 0.0:
-            penalty = (
-                max(structure.move(residual / structure.weight, point.response.reach), 1e-9) / LARGEST_MOVE
-            )
-        crept = _creep(path, point, residual, penalty)
+            pace = structure.move(residual / structure.weight, point.response.reach)
+            penalty = max(pace, 1e-9) / LARGEST_MOVE
+        crept = creep(path, point, residual, penalty, partial(_travel, structure, point))
         if crept is None:
             break
         point, penalty = crept
-        if np.abs(point.plastic_strain - start.plastic_strain).max(initial=0.0) > LARGEST_PLASTIC_STRAIN:
-            return Relaxed(point, "strained apart")
-        if np.abs(point.displacement).max() > RUNAWAY * structure.extent:
-            return Relaxed(point, "ran away")
-    return Relaxed(point, "gave up")
+        if largest(point.plastic_strain - start.plastic_strain) > LARGEST_PLASTIC_STRAIN:
+            return point, "strained apart"
+        if largest(point.displacement) > RUNAWAY * structure.extent:
+            return point, "ran away"
+    return point, "gave up"
 
 
-def _is_stable(path: Path, point: Point) -> bool:
-    matrix = path.structure.tangent(point.response, point.response.soft)
-    return regular(matrix, path.structure.weight).definite
+def _travel(structure: Structure, point: Point, displacement: Array) -> float:
+    """The largest change of a rod from a point to these displacements, as a share of the largest in a step."""
+    change = structure.gather(displacement - point.displacement)
+    return structure.move(change, point.response.reach) / LARGEST_MOVE
 
 
-def _way_down(path: Path, point: Point) -> Array:
-    matrix = path.structure.tangent(point.response, point.response.soft)
-    return lowest_mode(matrix, path.structure.weight)[1]
-
-
-def _moved(path: Path, point: Point, direction: Array, size: float) -> Point:
+def _nudged(path: Path, point: Point, direction: Array) -> Point:
+    """The point moved by NUDGE in a direction, shape (N,)."""
     structure = path.structure
-    share = size / structure.move(direction, point.response.reach)
-    displacement = point.displacement + structure.spread(share * direction)
-    return path.after(point, displacement, point.t)
+    share = NUDGE / structure.move(direction, point.response.reach)
+    return path.after(point, point.displacement + structure.spread(share * direction), point.t)
 
 
-def _creep(path: Path, point: Point, residual: Array, penalty: float) -> tuple[Point, float] | None:
-    """One implicit Euler step of length 1/penalty, and the penalty for the next; shorter if it fails."""
-    structure, reach = path.structure, point.response.reach
+def creep(
+    path: Path, point: Point, residual: Array, penalty: float, travel: Callable[[Array], float]
+) -> tuple[Point, float] | None:
+    """One implicit Euler step of length 1/penalty, and the penalty for the next; None if no step succeeds.
+
+    The step is shortened until its travel is at most 1: travel(displacement) is the share of the longest step.
+    """
     while penalty < LARGEST_PENALTY:
         displacement = implicit_step(path, point, residual, penalty)
-        if displacement is not None:
-            move = structure.move(structure.gather(displacement - point.displacement), reach)
-            if move <= LARGEST_MOVE:
-                shorter = 4.0 if move < 0.25 * LARGEST_MOVE else 1.0 if move > 0.5 * LARGEST_MOVE else 2.0
-                return path.after(point, displacement, point.t), penalty / shorter
+        if displacement is not None and (share := travel(displacement)) <= 1.0:
+            longer = 4.0 if share < 0.25 else 1.0 if share > 0.5 else 2.0
+            return path.after(point, displacement, point.t), penalty / longer
         penalty *= 3.0
     return None
 
@@ -99,7 +90,7 @@ def _creep(path: Path, point: Point, residual: Array, penalty: float) -> tuple[P
 def implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> Array | None:
     """Displacements u with force − internal(u) = penalty × W (u − u₀), or None if Newton's method fails."""
     structure = path.structure
-    wanted = STEP_CONVERGED * float(np.abs(residual).max(initial=0.0))
+    wanted = STEP_CONVERGED * largest(residual)
     moved, step = np.zeros(structure.size), np.zeros(structure.size)
     before, share, soft = np.inf, 1.0, point.response.soft
     for _ in range(NEWTON_ITERATIONS):
@@ -107,11 +98,11 @@ def implicit_step(path: Path, point: Point, residual: Array, penalty: float) -> 
         response = structure.respond(displacement, point.plastic_strain)
         pull = structure.gather(path.load(point.t) - structure.internal(response))
         pull -= penalty * structure.weight * moved
-        size = float(np.abs(pull).max(initial=0.0))
+        size = largest(pull)
         if size <= max(wanted, structure.round_off(displacement)):
             return displacement
         if size >= before and share > SMALLEST_SHARE and not np.array_equal(response.soft, soft):
-            share *= 0.5  # other rods are soft than the step reckoned with: take less of it
+            share *= 0.5  # other rods are soft than in the tangent of the step: take less of it
             moved = moved - share * step
             continue
         factor = regular(structure.tangent(response, response.soft), structure.weight, penalty)

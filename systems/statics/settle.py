@@ -1,8 +1,8 @@
-"""Settling: the equilibrium that a structure comes to as its load grows slowly through given factors.
+"""Settling: the equilibria of a structure while its load grows slowly through given factors.
 
-Exact geometry, rods elastic and perfectly plastic. The path of equilibria is followed from the present
-state. Where it ends (a limit point, a bifurcation, too many rods yielding) the event is reported with its
-load, and the structure moves on to the next stable equilibrium if there is one.
+Exact geometry, rods elastic and perfectly plastic. Settling follows the path of equilibria from the present state.
+Where the path ends (a limit point, a bifurcation, too many rods yielding) it reports the event with its load and
+moves on to the next stable equilibrium, if there is one.
 """
 
 from __future__ import annotations
@@ -15,26 +15,25 @@ import numpy as np
 from components.field import FieldError
 from components.model import Model
 from components.numeric_range import incomputable
-from systems.statics.bodies import loose_bodies, loose_event
 from systems.statics.contacts import Discs, Sinking
-from systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure
+from systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, largest, normalised
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import describe_motion, describe_way, slack_named
-from systems.statics.external import external_forces
-from systems.statics.factor import lowest_mode, soft_modes
+from systems.statics.external import external_forces, loose_bodies, loose_event
+from systems.statics.factor import soft_modes, softest
 from systems.statics.follow import Path, Point
 from systems.statics.loading import Loading, first_order_mechanism
 
-MOST_TOLD = 3  # events that an account tells besides
+MOST_TOLD = 3  # events in an account besides the message
 TOLD = ("free body", "mechanism", "snap-through", "bifurcation", "note")  # kinds of events that messages repeat
-NEARLY_SOFT = 1e-9  # of the rods' stiffness: a motion that is resisted less is worth a note
-ROUGH = 1e-9  # of the largest force, unbalanced: worth a note
-UNBALANCED = 1e-6  # of the largest force: more is no equilibrium
-UNCHANGED = 1e-12  # of the load: a change of it that is round-off
+NEARLY_SOFT = 1e-9  # of the rods' stiffness: a note about a motion that is resisted less
+ROUGH = 1e-9  # of the largest force: a note about a larger unbalanced force
+UNBALANCED = 1e-6  # of the largest force: a larger unbalanced force is no equilibrium
+UNCHANGED = 1e-12  # of the load: a smaller change is round-off
 MOST_DISCS = 250  # without rods; more would take minutes
-IN_ONE_PLACE = 0.75  # of the sum of their radii: discs that overlap by more are hardly parted by forces
-HELD = 1e-3  # of the forces that hold a state: if no more differs from the load, it is what holds it
-UNSTRESSED = 1e-9  # of the largest force: what holds the present state counts as nothing
+IN_ONE_PLACE = 0.75  # of the sum of their radii: forces hardly part discs that overlap by more
+HELD = 1e-3  # of the forces that hold a state: a smaller difference from a scaled load counts as none
+UNSTRESSED = 1e-9  # of the largest force: smaller forces that hold the present state count as none
 
 
 @dataclass(frozen=True)
@@ -43,9 +42,9 @@ class StaticState:
 
     reaction: the supports' force in constrained directions, 0 elsewhere. residual: the largest unbalanced
     force over the largest force so far. dissipated_plastic: since settling began. status: "equilibrium",
-    "mechanism", "collapse" or "limit reached"; if not the first, all values are those of the last good
-    state on the way. events: what happened on the way from the state before. contacts: rows of the discs that
-    press each other, (k, 2), with contact_force (k,).
+    "mechanism", "collapse" or "limit reached"; if not the first, all values are those of the last equilibrium
+    on the way. events: those on the way from the state before. contacts: rows of the discs that press each
+    other, (k, 2), with contact_force (k,).
     """
 
     load_factor: float
@@ -68,7 +67,7 @@ class StaticState:
 
 @dataclass(frozen=True)
 class Settlement:
-    """What settling found: one state per load factor, up to the one at which it ended."""
+    """One state per load factor, up to the first that is no equilibrium."""
 
     states: tuple[StaticState, ...]
 
@@ -79,17 +78,17 @@ class Settlement:
 
     @property
     def status(self) -> str:
-        """That of the last state."""
+        """Status of the last state."""
         return self.final.status
 
     @property
     def message(self) -> str:
-        """What a person should know: why it ended, and what happened before; "" if nothing."""
+        """The messages of all states, each once; "" if there are none."""
         return " ".join(dict.fromkeys(state.message for state in self.states if state.message))
 
     @property
     def account(self) -> str:
-        """What somebody who watched is told: the message, if any, and the first of what else happened."""
+        """The message, or else the status, and the first of the other events."""
         others = [event.message for event in self.events if event.message not in self.message]
         more = f"And {len(others) - MOST_TOLD} more events." if len(others) > MOST_TOLD else ""
         said = [self.message or f"Settled: {self.status}.", *others[:MOST_TOLD], more]
@@ -97,13 +96,13 @@ class Settlement:
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """Everything that happened, in order."""
+        """The events of all states, in order."""
         return tuple(event for state in self.states for event in state.events)
 
 
 @dataclass(frozen=True)
 class Start:
-    """What settling starts from: displacement (n, 2) in m and plastic strain (rods,)."""
+    """The state that settling starts from: displacement (n, 2) in m and plastic strain (rods,)."""
 
     displacement: Array
     plastic_strain: Array
@@ -120,12 +119,12 @@ def settle(
     geometry: str = "exact",
     start: Start | None = None,
 ) -> Settlement:
-    """The equilibria at these load factors in turn, from a state (None: the present one); changes nothing.
+    """The equilibria at these load factors in turn, from a state (None: the present one); the model is unchanged.
 
     Factors multiply forces and loads; accelerations grow from 0 to 1 with the first factor and then stay.
-    In a model that has not moved yet, lack of fit and moved supports act before the load does; in any other
-    the forces that hold its present state are exchanged for the load, and factors on the way count both.
-    Ends early, with a status other than "equilibrium", where there is no equilibrium to go on to.
+    In a model that has not moved yet, lack of fit and moved supports act before the load; in any other model the
+    forces that hold its present state are exchanged for the load, and load factors on the way count both.
+    Ends early, with a status other than "equilibrium", where there is no further equilibrium.
     geometry: "linear" for first-order theory about the original positions, with the same yielding.
     Raises FieldError for numbers too large or too small to compute with, ValueError for no load factors.
     """
@@ -143,27 +142,26 @@ def settle(
 
 
 def _may_rest(model: Model, discs: Discs, factors: Sequence[float]) -> bool:
-    """True if something is pulled that only others in its way may hold."""
+    """True if a body without supports is pulled that other discs may hold."""
     structure, external = Structure.of(model), external_forces(model)
     loose = [body for factor in factors for body in loose_bodies(structure, external.at(factor))]
     return any(body.pull and len(body.particles) < len(discs.radius) for body in loose)
 
 
 def _meet(discs: Discs, found: Settlement, start: Start) -> bool:
-    """True if discs overlap that do not at the beginning, or move so far that they may pass an obstacle."""
+    """True if discs overlap that did not at the beginning, or move so far that they may pass an obstacle."""
     places = [start.displacement, *(state.displacement for state in found.states)]
     farthest = max(np.hypot(*(end - places[0]).T).max(initial=0.0) for end in places)
-    if len(discs.obstacles) and farthest > discs.smallest:
-        return True
-    return any(len(discs.touching(displacement)) for displacement in places[1:])
+    passes = len(discs.obstacles) and farthest > discs.smallest
+    return bool(passes) or any(len(discs.touching(displacement)) for displacement in places[1:])
 
 
 def _factors(given: Sequence[float] | float) -> list[float]:
     try:
-        factors = np.atleast_1d(np.asarray(given, dtype=float))
+        factors = np.atleast_1d(
+            np.empty(0) if isinstance(given, str | bool) else np.asarray(given, dtype=float)
+        )
     except (TypeError, ValueError):
-        factors = np.empty(0)
-    if isinstance(given, str | bool):
         factors = np.empty(0)
     if factors.ndim != 1 or len(factors) == 0 or not np.isfinite(factors).all():
         raise ValueError(f"Load factors are {given!r}; give at least one finite number, such as (1.0, 0.0).")
@@ -179,7 +177,7 @@ def apply(model: Model, state: StaticState) -> None:
 
 
 class _Settling:
-    """A structure on its way through the load factors: its last equilibrium, and what holds it there."""
+    """A structure on its way through the load factors: its last equilibrium and the load that holds it there."""
 
     def __init__(self, model: Model, geometry: str, start: Start) -> None:
         self.model = model
@@ -189,7 +187,7 @@ class _Settling:
         self.looked_for_bodies = self.soft = False
         at_rest = Path(self.structure, self._nothing, self._nothing)
         self.point = at_rest.start(start.displacement, start.plastic_strain)
-        self.largest = float(np.abs(self.point.response.axial_force).max(initial=0.0))
+        self.largest = largest(self.point.response.axial_force)
         self.load = self._holding()
         self.factor = self._held_factor()
         self.slack = at_rest.branches(self.point.response).slack
@@ -201,17 +199,15 @@ class _Settling:
     def _holding(self) -> Array:
         """The forces in free directions that hold the present state."""
         held = np.where(self.structure.unknown, self.structure.internal(self.point.response), 0.0)
-        loads = (self.external.at(1.0), self.point.response.axial_force)
-        largest = max(float(np.abs(values).max(initial=0.0)) for values in loads)
-        return held if np.abs(held).max(initial=0.0) > UNSTRESSED * largest else self._nothing
+        greatest = max(largest(self.external.at(1.0)), self.largest)
+        return held if largest(held) > UNSTRESSED * greatest else self._nothing
 
     def _held_factor(self) -> float:
-        """How much of what load factors multiply holds the present state; 0 where anything else does."""
+        """The load factor of the forces that hold the present state; 0 if they are no scaled load."""
         scaled = np.where(self.structure.unknown, self.external.scaled, 0.0)
         size = float((scaled * scaled).sum())
         factor = float((self.load * scaled).sum()) / size if size > 0.0 else 0.0
-        other = np.abs(self.load - factor * scaled).max(initial=0.0)
-        return factor if other <= HELD * np.abs(self.load).max(initial=0.0) else 0.0
+        return factor if largest(self.load - factor * scaled) <= HELD * largest(self.load) else 0.0
 
     def through(self, factors: Sequence[float]) -> Settlement:
         """The states at these load factors in turn, up to the first that is no equilibrium."""
@@ -239,15 +235,13 @@ class _Settling:
 
     def _change(self, target: Array, factor: float) -> None:
         change = target - self.load
-        if np.abs(change).max(initial=0.0) <= UNCHANGED * np.abs(target).max(initial=0.0):
+        if largest(change) <= UNCHANGED * largest(target):
             path = Path(self.structure, target, self._nothing)
         else:
             path = Path(self.structure, self.load, change)
         total = float(np.hypot(*self.external.scaled.T).sum())
-        start = self.point
-        fresh = Point(start.displacement, start.plastic_strain, 0.0, start.response, start.dissipated)
-        way = (self.factor, factor)
-        loading = Loading(self.model, path, way, total, not self.load.any(), self.events, fresh, self.slack)
+        start, way = replace(self.point, t=0.0), (self.factor, factor)
+        loading = Loading(self.model, path, way, total, not self.load.any(), self.events, start, self.slack)
         try:
             self.point = loading.run()
             self.load, self.factor = target, factor
@@ -259,14 +253,13 @@ class _Settling:
             self.slack = loading.slack
 
     def _note_softness(self, factor: float) -> None:
-        """Report a motion that is resisted so little that few digits are certain."""
+        """Report a motion against so little stiffness that few digits are certain."""
         structure = self.structure
         known = any(event.kind in ("mechanism", "plastic mechanism") for event in self.events)
         if structure.size == 0 or known or self.soft:
             self.soft = True
             return
-        matrix = structure.tangent(self.point.response, self.point.response.soft)
-        share, mode = lowest_mode(matrix, structure.weight)
+        share, mode = softest(structure, self.point.response)
         if share < NEARLY_SOFT:
             self.soft = True
             motion = structure.spread(mode)
@@ -275,8 +268,7 @@ class _Settling:
                 f"Nearly a mechanism: moving {describe_motion(self.model, motion[None])} meets only"
                 f" {max(share, 0.0):.1g} of the rods' stiffness, so that about {digits} digits are certain."
             ) + slack_named(self.model, self.point.response.slack)
-            largest = np.hypot(*motion.T).max()
-            self.events.append(Event("note", factor, message, motion=motion / largest))
+            self.events.append(Event("note", factor, message, motion=normalised(motion)))
 
     def _check_balance(self, factor: float) -> None:
         """Report forces that rounding leaves unbalanced. Raises NoEquilibrium if they are many."""
@@ -295,10 +287,9 @@ class _Settling:
     def _residual(self) -> float:
         """The largest unbalanced force over the largest force so far."""
         response = self.point.response
-        for values in (self.load, response.axial_force):
-            self.largest = max(self.largest, float(np.abs(values).max(initial=0.0)))
+        self.largest = max(self.largest, largest(self.load), largest(response.axial_force))
         unbalanced = np.where(self.structure.fixed, 0.0, self.structure.internal(response) - self.load)
-        return float(np.abs(unbalanced).max(initial=0.0)) / self.largest if self.largest > 0.0 else 0.0
+        return largest(unbalanced) / self.largest if self.largest > 0.0 else 0.0
 
     def _check_bodies(self, target: Array, factor: float) -> None:
         """Report bodies that nothing holds along an axis. Raises NoEquilibrium if one is pulled along it."""
@@ -341,7 +332,7 @@ class _Settling:
 
 
 class _SettlingWithDiscs(_Settling):
-    """The same with discs that rest on one another and on the structure; it moves under each load as a whole."""
+    """Settling with discs that rest on one another and on the structure, under each whole load at once."""
 
     def __init__(self, model: Model, discs: Discs, start: Start) -> None:
         super().__init__(model, "exact", start)
@@ -374,22 +365,23 @@ class _SettlingWithDiscs(_Settling):
             raise NoEquilibrium("limit reached", message)
         if outcome == "falls":
             motion = self._particles(sinking.point.displacement - self.point.displacement)
-            raise self._falls(motion, factor)
+            message = f"Nothing stops {describe_way(self.model, motion)}. Put something in its way, or hold it."
+            self.events.append(Event("free body", factor, message, motion=normalised(motion)))
+            raise NoEquilibrium("mechanism", message)
         if self.structure is self.bare:
             self._note_mechanism(sinking.point)
         self.structure, self.point = sinking.path.structure, sinking.point
         self.load, self.factor = target, factor
         if outcome == "unstable":
-            matrix = self.structure.tangent(self.point.response, self.point.response.soft)
-            motion = self._particles(self.structure.spread(lowest_mode(matrix, self.structure.weight)[1]))
+            motion = self._particles(self.structure.spread(softest(self.structure, self.point.response)[1]))
             message = (
                 f"An unstable balance: the slightest push moves {describe_motion(self.model, motion[None])}"
                 " further and further. Add something that holds it if that is not meant."
             )
-            self.events.append(Event("note", factor, message, motion=motion / np.hypot(*motion.T).max()))
+            self.events.append(Event("note", factor, message, motion=normalised(motion)))
 
     def _check_apart(self) -> None:
-        """Raise NoEquilibrium if two are so nearly in one place that nothing says which way to part them."""
+        """Raise NoEquilibrium if two discs are so nearly in one place that no direction parts them."""
         pairs = self.discs.touching(self.point.displacement)
         share = -self.discs.gap(self.point.displacement, pairs) / self.discs.radius[pairs].sum(axis=1)
         for first, second in pairs[share > IN_ONE_PLACE][:1].tolist():
@@ -401,21 +393,16 @@ class _SettlingWithDiscs(_Settling):
             )
 
     def _note_mechanism(self, found: Point) -> None:
-        """Report what the rods alone do not hold."""
+        """Report the mechanisms of the rods alone."""
         bare, start = self.bare, self.point
         modes = soft_modes(bare.tangent(start.response, start.response.soft), bare.weight)
         if modes.shape[1] > 0:
-            fields = np.array([self._particles(bare.spread(mode)) for mode in modes.T])
+            fields = bare.fields(modes)[:, : self.model.particles.count]
             slack, places = start.response.slack, map(self._particles, (start.displacement, found.displacement))
             self.events.append(first_order_mechanism(self.model, self.factor, fields, slack, *places))
 
-    def _falls(self, motion: Array, factor: float) -> NoEquilibrium:
-        message = f"Nothing stops {describe_way(self.model, motion)}. Put something in its way, or hold it."
-        self.events.append(Event("free body", factor, message, motion=motion / np.hypot(*motion.T).max()))
-        return NoEquilibrium("mechanism", message)
-
     def _check_bodies(self, target: Array, factor: float) -> None:
-        """Whatever is loose moves until something is in its way."""
+        """None: loose bodies move until something is in their way."""
 
     def _note_softness(self, factor: float) -> None:
-        """Discs roll on one another without resistance; where they do not rest it is said."""
+        """None: discs roll on one another without resistance, and an unstable balance is reported."""

@@ -1,5 +1,5 @@
-"""What theory says about a structure: linear answers, indeterminacy, mechanisms, self-stress, influence
-lines, all about the original positions, and vibrations about the present ones. Lengths in m, forces in kN."""
+"""First-order theory about the original positions: linear answers, indeterminacy, mechanisms, self-stress,
+influence lines. Lengths in m, forces in kN."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ import numpy as np
 from scipy.linalg import qr, svd
 
 from components.model import Model
-from systems.statics.bodies import loose_bodies, loose_event
-from systems.statics.equations import ROUND_OFF, Array, Matrix, Response, Structure
+from systems.statics.equations import ROUND_OFF, Array, Response, Structure, normalised
 from systems.statics.events import NoEquilibrium
 from systems.statics.explain import cables_named, describe_motion
-from systems.statics.external import external_forces
+from systems.statics.external import external_forces, loose_bodies, loose_event
 from systems.statics.factor import SOFT, pseudo_random, regular, soft_count, soft_modes
 from systems.statics.settle import Start
 
@@ -26,20 +25,20 @@ MOST_MODES = 20  # mechanisms or states of self-stress of larger structures
 
 
 @dataclass(frozen=True)
-class LinearState:
-    """First-order answer: displacement (n, 2), axial_force (rods,), reaction (n, 2), 0 in free directions."""
+class Answer:
+    """displacement (n, 2) in m, axial_force (rods,) in kN and reaction (n, 2) in kN, 0 in free directions."""
 
     displacement: Array
     axial_force: Array
     reaction: Array
 
 
-def linear(model: Model, start: Start | None = None) -> LinearState:
+def linear(model: Model, start: Start | None = None) -> Answer:
     """The direct stiffness method: K u = f about the original positions, all rods elastic.
 
-    Of the state that it starts from (None: the present one), plastic strain acts as initial forces like lack
-    of fit, and displacements of constrained directions as moved supports. Raises NoEquilibrium, naming who
-    moves, for a mechanism or a free body that the load moves.
+    start: a state (None: the present one) of which plastic strain acts as initial forces, like lack of fit, and
+    displacements of constrained directions as moved supports. Raises NoEquilibrium, naming the particles, for a
+    mechanism or a free body that the load moves.
     """
     structure, start = Structure.of(model, "linear"), start or Start.present(model)
     load = external_forces(model).at(1.0)
@@ -51,11 +50,11 @@ def linear(model: Model, start: Start | None = None) -> LinearState:
     displacement = supports + _deflection(model, structure, load - _internal(structure, initial))
     final = structure.respond(displacement, start.plastic_strain)
     reaction = np.where(structure.fixed, _internal(structure, final) - load, 0.0)
-    return LinearState(displacement, final.elastic_force, reaction)
+    return Answer(displacement, final.elastic_force, reaction)
 
 
 def _internal(structure: Structure, response: Response) -> Array:
-    """Forces (n, 2) that hold the particles against the rods, which do not yield in linear theory."""
+    """Forces (n, 2) that hold the particles against the rods, none of which yields in linear theory."""
     return structure.scatter(response.elastic_force[:, None] * response.axis)
 
 
@@ -67,7 +66,7 @@ def _deflection(model: Model, structure: Structure, load: Array) -> Array:
             " or let slack cables go and have taut ones bear compression too."
         )
         raise NoEquilibrium("limit reached", message)
-    matrix, right = _stiffness(structure), structure.gather(load)
+    matrix, right = structure.initial_tangent, structure.gather(load)
     factor = regular(matrix, structure.weight)
     solution = factor.solve(right)
     for _ in range(REFINEMENTS):
@@ -83,25 +82,15 @@ def _deflection(model: Model, structure: Structure, load: Array) -> Array:
     return structure.spread(solution - modes @ (modes.T @ (structure.weight * solution)))
 
 
-def _stiffness(structure: Structure) -> Matrix:
-    """Of the elastic rods without force."""
-    return structure.tangent(_unmoved(structure), np.zeros(len(structure.ends), dtype=bool), geometric=False)
-
-
-def _unmoved(structure: Structure) -> Response:
-    """The rods where the particles originally are."""
-    return structure.respond(np.zeros(structure.unknown.shape), np.zeros(len(structure.ends)))
-
-
 # --- indeterminacy -------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Indeterminacy:
-    """Degrees of static indeterminacy: in all, of the rods among themselves, and of the supports.
+    """Degrees of static indeterminacy: in all, internal (of the rods) and external (of the supports).
 
-    mechanisms: number of independent motions without elongation, of what nothing holds included
-    (kinematic indeterminacy).
+    mechanisms: number of independent motions without elongation, those of free bodies included (kinematic
+    indeterminacy).
     """
 
     static: int
@@ -111,7 +100,7 @@ class Indeterminacy:
 
 
 def indeterminacy(model: Model) -> Indeterminacy:
-    """Counted from the rank r of the compatibility matrix, with supports and without; cables as if taut.
+    """Degrees by the rank r of the compatibility matrix, with supports and without; cables count as taut.
 
     m rods between particles with f free directions have m − r states of self-stress and f − r mechanisms.
     """
@@ -126,26 +115,25 @@ def mechanisms(model: Model) -> Array:
     """Motions (k, n, 2) that elongate no rod, the largest of each 1; of large structures at most 20."""
     structure = Structure.of(model, "linear").with_translations()
     if structure.size <= FULL:
-        modes = _null_space(structure.compatibility(_unmoved(structure)).toarray())
+        modes = _null_space(structure.compatibility(structure.unmoved).toarray())
     else:
-        matrix = _stiffness(structure)
+        matrix = structure.initial_tangent
         modes = soft_modes(matrix, structure.weight, most=min(MOST_MODES, soft_count(matrix, structure.weight)))
-    fields = [structure.spread(mode) for mode in _localised(modes).T]
-    scaled = [field / np.hypot(*field.T).max() for field in fields]
-    return np.array(scaled).reshape(len(fields), *structure.unknown.shape)
+    fields = structure.fields(_localised(modes))
+    return np.array([normalised(field) for field in fields]).reshape(fields.shape)
 
 
 def self_stress(model: Model) -> Array:
     """Axial forces (k, rods) in equilibrium without load, the largest of each 1; of large ones at most 20."""
     structure = Structure.of(model, "linear").with_translations()
-    compatibility = structure.compatibility(_unmoved(structure))
+    compatibility = structure.compatibility(structure.unmoved)
     if structure.size <= FULL:
         states = _null_space(compatibility.toarray().T)
-    else:  # any forces, less those with which the rods answer to what is unbalanced
+    else:  # any forces, less those that balance their unbalanced part
         count = min(MOST_MODES, len(structure.ends) - _rank(structure))
         states = pseudo_random(len(structure.ends), count)
         unit = replace(structure, stiffness=structure.rest_length)
-        factor = regular(_stiffness(unit), unit.weight)
+        factor = regular(unit.initial_tangent, unit.weight)
         for _ in range(REFINEMENTS):
             states = states - compatibility @ factor.solve(compatibility.T @ states)
     states = _localised(states)
@@ -157,18 +145,18 @@ def _rank(structure: Structure) -> int:
     if structure.size == 0 or len(structure.ends) == 0:
         return 0
     if structure.size > FULL:
-        return structure.size - soft_count(_stiffness(structure), structure.weight)
-    matrix = structure.compatibility(_unmoved(structure)).toarray()
+        return structure.size - soft_count(structure.initial_tangent, structure.weight)
+    matrix = structure.compatibility(structure.unmoved).toarray()
     return _count(svd(matrix, compute_uv=False), matrix)
 
 
 def _count(singular: Array, matrix: Array) -> int:
-    """How many singular values are more than round-off."""
+    """The number of singular values above round-off."""
     return int((singular > 8.0 * max(matrix.shape) * ROUND_OFF * singular.max(initial=0.0)).sum())
 
 
 def _null_space(matrix: Array) -> Array:
-    """Orthonormal vectors (columns, k) that the matrix maps to nothing."""
+    """Orthonormal basis (columns, k) of the null space of a matrix."""
     if 0 in matrix.shape:
         return np.eye(matrix.shape[1])
     _, singular, ways = svd(matrix)
@@ -177,12 +165,11 @@ def _null_space(matrix: Array) -> Array:
 
 
 def _localised(basis: Array) -> Array:
-    """Another basis (size, k) of the same space, in which each vector is 1 where all others are 0."""
+    """Another basis (size, k) of the same space: each vector is 1 in one place where all others are 0."""
     if basis.shape[1] == 0:
         return basis
     pivots = qr(basis.T, mode="r", pivoting=True)[1][: basis.shape[1]]
-    turned: Array = np.linalg.solve(basis[pivots].T, basis.T).T
-    return turned
+    return np.linalg.solve(basis[pivots].T, basis.T).T
 
 
 # --- influence -------------------------------------------------------------------------------------------
@@ -195,7 +182,7 @@ def influence_on_rod(model: Model, rod: int) -> Array:
     """
     structure = Structure.of(model, "linear")
     pull = np.zeros((len(structure.ends), 2))
-    pull[rod] = structure.stiffness[rod] / structure.rest_length[rod] * _unmoved(structure).axis[rod]
+    pull[rod] = structure.stiffness[rod] / structure.rest_length[rod] * structure.unmoved.axis[rod]
     return _deflection(model, structure, structure.scatter(pull))
 
 
@@ -204,9 +191,8 @@ def influence_on_reaction(model: Model, particle: int, axis: int) -> Array:
     structure = Structure.of(model, "linear")
     if not structure.fixed[particle, axis]:
         raise ValueError(f"{model.particles[particle].name} is not constrained along {'xy'[axis]}.")
-    unit = np.zeros(structure.fixed.shape)
-    unit[particle, axis] = 1.0
-    axes = _unmoved(structure).axis
+    unit = _unit(structure, particle, axis)
+    axes = structure.unmoved.axis
     lever = (structure.relative(unit) * axes).sum(axis=1)
     pull = (structure.stiffness / structure.rest_length * lever)[:, None] * axes
     return _deflection(model, structure, structure.scatter(pull)) - unit
@@ -218,6 +204,11 @@ def influence_on_displacement(model: Model, particle: int, axis: int) -> Array:
     Maxwell: the deflection under a unit load there, the unit-load method's virtual state.
     """
     structure = Structure.of(model, "linear")
-    unit = np.zeros(structure.fixed.shape)
-    unit[particle, axis] = 1.0
-    return _deflection(model, structure, unit)
+    return _deflection(model, structure, _unit(structure, particle, axis))
+
+
+def _unit(structure: Structure, particle: int, axis: int) -> Array:
+    """A field (n, 2) of 1 for a particle along an axis, else 0."""
+    field = np.zeros(structure.fixed.shape)
+    field[particle, axis] = 1.0
+    return field

@@ -1,4 +1,4 @@
-"""Theory beside the simulation: linear, exact and simulated answers for every element, and their differences."""
+"""Theory beside the simulation: linear, exact and simulated answers for every element, with their differences."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import numpy as np
 
 from components.model import Model
 from components.suggestions import missing
-from systems.statics.equations import ROUND_OFF, Array, Flags
+from systems.statics.equations import ROUND_OFF, Array, Flags, largest
 from systems.statics.events import Event, NoEquilibrium
-from systems.statics.explain import rod_names
-from systems.statics.settle import Settlement, Start, settle
-from systems.statics.theory import LinearState, linear
+from systems.statics.explain import capitalised, rod_names
+from systems.statics.settle import Settlement, Start, StaticState, settle
+from systems.statics.theory import Answer, linear
 
 QUANTITIES = {
     "axial_force": ("rods", "kN"),
@@ -22,46 +22,31 @@ QUANTITIES = {
     "reaction": ("particles", "kN"),
 }
 
-
 JUMPS = ("snap-through", "bifurcation")
-DEPARTURES = {  # what a run does that ends elsewhere than a slowly growing load, by kind of event
+DEPARTURES = {  # of a run from the path of a slowly growing load, by kind of event
     "overshoot": "yielded in the overshoot",
     "other equilibrium": "in another equilibrium",
 }
-ELSEWHERE = 1e-3  # of the largest value of its kind: a difference that no integration error makes
-FURTHER = 1e-2  # of the plastic strain of statics: more is an overshoot
-LEAST = 1e-6  # of the strain at first yield: less is rounding
-ROUNDING = 64.0 * ROUND_OFF  # of the largest like it, or of what a strain of 1 is, is nothing
-
-
-@dataclass(frozen=True)
-class Answer:
-    """One answer, whoever found it: axial_force (rods,) in kN, displacement in m and reaction in kN, (n, 2)."""
-
-    axial_force: Array
-    displacement: Array
-    reaction: Array
+ELSEWHERE = 1e-3  # of the largest value of its kind: a larger difference is no error of integration
+FURTHER = 1e-2  # of the plastic strain in statics: a larger excess is an overshoot
+LEAST = 1e-6  # of the strain at first yield: a smaller excess is rounding
+ROUNDING = 64.0 * ROUND_OFF  # of the largest value of the same unit, or of that at a strain of 1
 
 
 @dataclass(frozen=True)
 class Theories:
-    """What theory says about a model that starts from some state.
-
-    linear: None if it has no answer, for the reason `refusal`.
-    """
+    """The answers of theory for a model in a state; linear: None if there is none, for the reason `refusal`."""
 
     start: Start
-    linear: LinearState | None
+    linear: Answer | None
     refusal: NoEquilibrium | None
     settlement: Settlement
 
     @property
-    def exact(self) -> Answer | None:
+    def exact(self) -> StaticState | None:
         """The equilibrium in exact geometry, or None if there is none under the whole load."""
         final = self.settlement.final
-        if final.status != "equilibrium":
-            return None
-        return Answer(final.axial_force, final.displacement, final.reaction)
+        return final if final.status == "equilibrium" else None
 
 
 def theories(model: Model, start: Start | None = None) -> Theories:
@@ -82,16 +67,16 @@ def theories(model: Model, start: Start | None = None) -> Theories:
 def observed(model: Model) -> Answer:
     """The present state of a model, as a simulation left it."""
     particles, rods = model.particles, model.rods
-    return Answer(rods.axial_force.copy(), particles.displacement.copy(), particles.reaction.copy())
+    return Answer(particles.displacement.copy(), rods.axial_force.copy(), particles.reaction.copy())
 
 
 @dataclass(frozen=True)
 class Row:
-    """One quantity of one element: its values by the three ways, None where one has no answer.
+    """One quantity of one element: its simulated, linear and exact values, None where there is none.
 
-    element: "rod" or "particle". component: "", "x" or "y". Errors are against the exact value, relative to
-    the largest exact value of the same quantity in the model; where that is zero but for rounding, to the
-    largest of the same unit, and where that is, too, absolute.
+    element: "rod" or "particle". component: "", "x" or "y". Errors are differences from the exact value relative
+    to the largest exact value of the quantity in the model; where this is rounding, to the largest of the same
+    unit; where this is rounding as well, they are absolute.
     """
 
     element: str
@@ -99,15 +84,15 @@ class Row:
     quantity: str
     component: str
     unit: str
-    simulation: float | None
-    linear: float | None
-    exact: float | None
-    simulation_error: float | None
-    linear_error: float | None
+    simulation: float | None = None
+    linear: float | None = None
+    exact: float | None = None
+    simulation_error: float | None = None
+    linear_error: float | None = None
 
     @property
     def title(self) -> str:
-        """What it is a quantity of, such as "displacement y of particle B"."""
+        """Quantity and element, such as "displacement y of particle B"."""
         quantity = f"{self.quantity.replace('_', ' ')} {self.component}".rstrip()
         return f"{quantity} of {self.element} {self.name.removeprefix(self.element + ' ')}"
 
@@ -117,7 +102,7 @@ class Comparison:
     """The "simulation", "linear" and "exact" answers side by side, None where there is none."""
 
     model: Model
-    answers: Mapping[str, Answer | LinearState | None]
+    answers: Mapping[str, Answer | StaticState | None]
 
     @property
     def rows(self) -> Iterator[Row]:
@@ -130,58 +115,51 @@ class Comparison:
         """One quantity of one element: of a rod (row,), of a particle (row, axis)."""
         table, unit = QUANTITIES[quantity]
         found = {way: float(values[place]) for way, values in self._values[quantity].items()}
-        errors = {way: float(values[place]) for way, values in self._errors[quantity].items()}
-        return Row(
-            element=table.removesuffix("s"),
-            name=str(self.model.tables[table].column("name")[place[0]]),
-            quantity=quantity,
-            component="" if len(place) == 1 else "xy"[place[1]],
-            unit=unit,
-            simulation=found.get("simulation"),
-            linear=found.get("linear"),
-            exact=found.get("exact"),
-            simulation_error=errors.get("simulation"),
-            linear_error=errors.get("linear"),
+        errors = {f"{way}_error": float(values[place]) for way, values in self._errors[quantity].items()}
+        name, component = (
+            str(self.model.tables[table].column("name")[place[0]]),
+            "xy"[place[1]] if place[1:] else "",
         )
+        return Row(table.removesuffix("s"), name, quantity, component, unit, **found, **errors)
 
     def worst(self, way: str, *quantities: str) -> Row | None:
-        """The row with the largest error of the "simulation" or of "linear" theory (of some quantities, if given).
+        """The row with the largest error of the "simulation" or of "linear" theory, in all or some quantities.
 
-        None if there is nothing to compare. Raises ValueError for what is neither.
+        None if there is nothing to compare. Raises ValueError for other names.
         """
         for given, known in ((way, ("simulation", "linear")), *((name, QUANTITIES) for name in quantities)):
             if given not in known:
                 raise ValueError(missing("comparisons", given, known))
-        largest, row = -1.0, None
+        greatest, row = -1.0, None
         for quantity in quantities or QUANTITIES:
             errors, concerned = self._errors[quantity].get(way), self._concerned(quantity)
             if errors is None or not concerned.any():
                 continue
             errors = np.where(concerned, errors, -1.0)
-            if errors.max() > largest:
-                largest = float(errors.max())
+            if errors.max() > greatest:
+                greatest = float(errors.max())
                 row = self.row(quantity, tuple(int(i) for i in np.unravel_index(errors.argmax(), errors.shape)))
         return row
 
     def _concerned(self, quantity: str) -> Flags:
-        """Where a quantity says something, in the shape of its array."""
+        """Where a quantity has a meaning, in the shape of its array."""
         if quantity == "axial_force":
             return np.ones(self.model.rods.count, dtype=bool)
         fixed: Flags = self.model.particles.fixed
         return fixed if quantity == "reaction" else ~fixed
 
     def scale(self, quantity: str) -> float:
-        """The largest exact value; of the same unit where that is only rounding; 0 where that is, too."""
+        """The largest exact value of the quantity; where it is rounding, of its unit; 0 where that is rounding."""
         rods, unit = self.model.rods, QUANTITIES[quantity][1]
         of_strain_1 = float((rods.stiffness if unit == "kN" else rods.rest_length).max(initial=0.0))
         own = self._largest(quantity)
         alike = max(self._largest(name) for name, (_, other) in QUANTITIES.items() if other == unit)
-        largest = own if own > ROUNDING * alike else alike
-        return largest if largest > ROUNDING * of_strain_1 else 0.0
+        scale = own if own > ROUNDING * alike else alike
+        return scale if scale > ROUNDING * of_strain_1 else 0.0
 
     def _largest(self, quantity: str) -> float:
         exact = self._values[quantity].get("exact")
-        return float(np.abs(exact).max(initial=0.0)) if exact is not None else 0.0
+        return largest(exact) if exact is not None else 0.0
 
     @cached_property
     def _values(self) -> dict[str, dict[str, Array]]:
@@ -196,9 +174,8 @@ class Comparison:
             quantity: {
                 way: np.abs(array - values["exact"]) / (self.scale(quantity) or 1.0)
                 for way, array in values.items()
+                if "exact" in values and way != "exact"
             }
-            if "exact" in values
-            else {}
             for quantity, values in self._values.items()
         }
 
@@ -210,35 +187,27 @@ def differs(comparison: Comparison) -> bool:
 
 
 def compare(model: Model, theory: Theories, simulated: Answer | None) -> Comparison:
-    """Put the three answers side by side; simulated: None if there is no simulation at rest."""
+    """The three answers side by side; simulated: None if there is no simulation at rest."""
     return Comparison(model, {"simulation": simulated, "linear": theory.linear, "exact": theory.exact})
 
 
-# --- what a simulation did that a slowly growing load does not do ---------------------------------------------
+# --- departures of a simulation from statics ------------------------------------------------------------------
 
 
 def remarks(model: Model, theory: Theories) -> list[Event]:
-    """What is worth knowing about a model at rest: a collapse, passed unstable positions, what came of an overshoot.
+    """Events about a model at rest: a collapse, jumps, overshoots, another equilibrium than that of statics.
 
-    Its load must have been one, applied at once or growing by one history, from theory.start on.
+    The model must have come from theory.start under one load, applied at once or growing by one history.
     """
     if theory.exact is None:
         return [event for event in theory.settlement.events if event.kind == "collapse"]
     overshot = overshoots(model, theory)
     worst = compare(model, theory, observed(model)).worst("simulation", "displacement")
-    elsewhere = worst is not None and (worst.simulation_error or 0.0) > ELSEWHERE
-    if (
-        elsewhere
-        and not overshot
-        and (model.rods.plastic_strain == theory.settlement.final.plastic_strain).all()
-    ):
-        return [_elsewhere(worst)] if worst is not None and not _gave_way(theory) else []
+    alike = not overshot and (model.rods.plastic_strain == theory.exact.plastic_strain).all()
+    if alike and worst is not None and (worst.simulation_error or 0.0) > ELSEWHERE:
+        kinds = {event.kind for event in theory.settlement.events}
+        return [] if kinds & {"bifurcation", "mechanism"} else [_elsewhere(worst)]  # either side was possible
     return [event for event in theory.settlement.events if event.kind in JUMPS] + overshot
-
-
-def _gave_way(theory: Theories) -> bool:
-    """True if another way would have been as possible."""
-    return any(event.kind in ("bifurcation", "mechanism") for event in theory.settlement.events)
 
 
 def _elsewhere(worst: Row) -> Event:
@@ -251,9 +220,9 @@ def _elsewhere(worst: Row) -> Event:
 
 
 def overshoots(model: Model, theory: Theories) -> list[Event]:
-    """Rods that yielded, or yielded further, though a slowly growing load would not have made them."""
-    final, present, begun = theory.settlement.final, model.rods.plastic_strain, theory.start.plastic_strain
-    if theory.exact is None:
+    """Rods that yielded, or yielded further, unlike under a slowly growing load."""
+    final, present, begun = theory.exact, model.rods.plastic_strain, theory.start.plastic_strain
+    if final is None:
         return []
     static, flowed = np.abs(final.plastic_strain - begun), np.abs(present - begun)
     limit = np.where(present > begun, model.rods.tension_limit, model.rods.compression_limit)
@@ -271,6 +240,6 @@ def overshoots(model: Model, theory: Theories) -> list[Event]:
                 f"{who} yielded further in the overshoot: plastic strain {present[row]:.4g}, under a slowly"
                 f" growing load {final.plastic_strain[row]:.4g}"
             )
-        message = f"{what[:1].upper()}{what[1:]}. Load it more slowly, or raise the damping."
+        message = f"{capitalised(what)}. Load it more slowly, or raise the damping."
         found.append(Event("overshoot", 1.0, message, (str(names[row]),)))
     return found

@@ -1,4 +1,4 @@
-"""Natural vibrations of a structure: unloaded, or about an equilibrium under load."""
+"""Natural vibrations of a structure, unloaded or about an equilibrium under load."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from components.model import Model
-from systems.statics.equations import ROUND_OFF, Array, Matrix, Structure
+from systems.statics.equations import ROUND_OFF, Array, Structure, largest, normalised
 from systems.statics.external import external_forces
 from systems.statics.factor import Factor, pseudo_random
 from systems.statics.settle import Start, StaticState
 
 FULL = 600  # unknowns up to which all modes are computed
 LOWEST = 10  # modes of larger structures, unless more are asked for
-BALANCED = 1e-6  # of the largest force; a run ends at 1e-8 of it
+BALANCED = 1e-6  # of the largest force: residual of an equilibrium; a run ends at 1e-8
 SHIFT = 1e-9  # below zero, of the highest ω², so that mechanisms (ω = 0) can be found too
 
 
@@ -34,50 +34,41 @@ class Vibrations:
     @property
     def hertz(self) -> Array:
         """Frequencies (Hz), 0 for mechanisms and for motions that are not stable."""
-        frequencies: Array = np.sqrt(np.maximum(self.angular_squared, 0.0)) / (2.0 * np.pi)
-        return frequencies
+        return np.sqrt(np.maximum(self.angular_squared, 0.0)) / (2.0 * np.pi)
 
 
 def rests_under_load(model: Model) -> bool:
-    """True if the present state is an equilibrium, and not without forces in the rods."""
+    """True if the present state is an equilibrium with forces in the rods."""
     structure = Structure.of(model).with_translations()
     response = structure.respond(model.particles.displacement, model.rods.plastic_strain)
-    external, pull = external_forces(model).at(1.0), float(np.abs(response.axial_force).max(initial=0.0))
+    external, pull = external_forces(model).at(1.0), largest(response.axial_force)
     unbalanced = structure.gather(external - structure.internal(response))
-    largest = max(pull, float(np.abs(external).max(initial=0.0)))
-    return pull > 0.0 and float(np.abs(unbalanced).max(initial=0.0)) <= BALANCED * largest
+    return pull > 0.0 and largest(unbalanced) <= BALANCED * max(pull, largest(external))
 
 
 def vibrations(model: Model, state: StaticState | Start | None = None, count: int | None = None) -> Vibrations:
-    """The lowest natural modes of small undamped vibrations, K φ = ω² M φ; rods do not yield in them.
+    """The lowest natural modes of small undamped vibrations, K φ = ω² M φ, in which no rod yields.
 
-    state: the equilibrium that they are about, whose axial forces stiffen or soften the structure; None: the
-    original positions, without axial forces and with taut cables. count: how many; None: all of a small structure,
-    10 of a large one.
+    state: the equilibrium about which the structure vibrates, stiffened or softened by its axial forces; None: the
+    original positions, without axial forces and with taut cables. count: number of modes; None: all of a small
+    structure, 10 of a large one.
     """
     structure = Structure.of(model).with_translations()
     root = np.sqrt(structure.gather(np.repeat(model.particles.mass, 2).reshape(-1, 2)) / 1000.0)
-    stiffness = _stiffness(structure, state)
+    stiffness = structure.initial_tangent
+    if state is not None:
+        response = structure.respond(state.displacement, state.plastic_strain)
+        stiffness = structure.tangent(response, response.slack)
     if structure.size <= FULL:
         full = stiffness if isinstance(stiffness, np.ndarray) else stiffness.toarray()
         values, vectors = eigh(full / root[:, None] / root)
-        noise = 8.0 * len(root) * ROUND_OFF * np.abs(values).max(initial=0.0)
+        noise = 8.0 * len(root) * ROUND_OFF * largest(values)
         values, vectors = np.where(np.abs(values) > noise, values, 0.0)[:count], vectors[:, :count]
     else:
-        values, vectors = _lowest(
-            csc_matrix(diags(1.0 / root) @ stiffness @ diags(1.0 / root)), count or LOWEST
-        )
-    fields = [structure.spread(vector / root) for vector in vectors.T]
-    modes = np.array([field / np.hypot(*field.T).max() for field in fields])
-    return Vibrations(values, modes.reshape(len(fields), *structure.unknown.shape))
-
-
-def _stiffness(structure: Structure, state: StaticState | Start | None) -> Matrix:
-    if state is not None:
-        response = structure.respond(state.displacement, state.plastic_strain)
-        return structure.tangent(response, response.slack)
-    unmoved = structure.respond(np.zeros(structure.unknown.shape), np.zeros(len(structure.ends)))
-    return structure.tangent(unmoved, np.zeros(len(structure.ends), dtype=bool), geometric=False)
+        scaled = csc_matrix(diags(1.0 / root) @ stiffness @ diags(1.0 / root))
+        values, vectors = _lowest(scaled, count or LOWEST)
+    fields = structure.fields(vectors / root[:, None])
+    return Vibrations(values, np.array([normalised(field) for field in fields]).reshape(fields.shape))
 
 
 def _lowest(matrix: csc_matrix, count: int) -> tuple[Array, Array]:

@@ -1,4 +1,4 @@
-"""Reports: running a model without a window, and what came of it as plain data; see results.py."""
+"""Analyses: runs of a model without a window, with their results as plain data; see results.py."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ class AnalysisError(ValueError):
 
 @dataclass(frozen=True)
 class Analysis:
-    """What to compute of a model: its equilibria, its state at certain times, or its state at rest.
+    """The computation of a model's equilibria, of its state at certain times, or of its state at rest.
 
     load_factors: settle at each in turn (statics). times: run through these, in s, ascending; None for both:
-    run until at rest, at most `limit` s of simulated time. measures_error: even where that takes long.
+    run until at rest, at most `limit` s of simulated time. measures_error: even if that takes long.
     """
 
     load_factors: tuple[float, ...] | None = None
@@ -44,7 +44,7 @@ class Analysis:
     measures_error: bool = False
 
     def run(self, simulation: Simulation, name: str) -> Run:
-        """The result of the analysis; `name` is what it calls the model. Raises AnalysisError, ResultError, FieldError."""
+        """The result of the analysis, in which `name` is the model. Raises AnalysisError, ResultError, FieldError."""
         if self.load_factors is not None:
             return run_static(simulation, name, self.load_factors)
         if self.times is not None:
@@ -55,7 +55,7 @@ class Analysis:
         """The same in a session, which adds remarks of theory on a run through time and its measured error."""
         if self.load_factors is not None:
             return self.run(session.simulation, name)
-        session.run(steps=0)  # the beginning is noted, for theory beside the run
+        session.run(steps=0)  # records the beginning, for theory beside the run
         with session.without_frames():
             found = self.run(session.simulation, name)
         happened = [asdict(event) for event in session.simulation.events]
@@ -102,7 +102,7 @@ def run_at(simulation: Simulation, name: str, times: Sequence[float]) -> Run:
 
 
 def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> Run:
-    """Settle at each load factor in turn; the history (yielding) is kept from one to the next."""
+    """Settle at each load factor in turn, with the yielding of those before."""
     from systems.statics.settle import settle
 
     left_out = simulation.schedule.left_out_of_statics(simulation.model)
@@ -118,21 +118,18 @@ def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> R
 
 
 def _static_state(simulation: Simulation, found: StaticState) -> State:
-    """An equilibrium as a state. The work of statics is the energy that the path of equilibria stores and dissipates."""
+    """An equilibrium as a state; its work is the energy stored and dissipated on the path of equilibria."""
     energy = dict.fromkeys(ENERGIES, 0.0) | {
         "elastic": found.elastic_energy,
         "dissipated_plastic": found.dissipated_plastic,
         "work": found.elastic_energy + found.dissipated_plastic,
     }
+    of_rods = ("axial_force", "length", "strain", "plastic_strain", "yielding")
     columns = {
         "particles.displacement": found.displacement,
         "particles.velocity": np.zeros_like(found.displacement),
         "particles.reaction": found.reaction,
-        "rods.axial_force": found.axial_force,
-        "rods.length": found.length,
-        "rods.strain": found.strain,
-        "rods.plastic_strain": found.plastic_strain,
-        "rods.yielding": found.yielding,
+        **{f"rods.{name}": getattr(found, name) for name in of_rods},
     }
     return state(simulation.model, energy, found.load_factor, found.residual, columns)
 

@@ -1,4 +1,4 @@
-"""Results: what a run found, as plain data, as rows for CSV and as tables to read; see output.py."""
+"""Results of a run as plain data, as rows for CSV and as tables to read; see output.py."""
 
 from __future__ import annotations
 
@@ -25,13 +25,12 @@ def _facts(kind: type[Handle], *names: str) -> tuple[Field[Any], ...]:
     return tuple(fields[name] for name in names)
 
 
-# What is reported of every element: key in a state → its facts, under their names and in their units.
+# Reported facts of every element, by key in a state, under their names and in their units.
 _OWN: Mapping[str, tuple[Field[Any], ...]] = {
     "particles": _facts(Particle, "position", "displacement", "velocity", "reaction", "mass"),
     "rods": _facts(Rod, "axial_force", "length", "strain", "plastic_strain", "yielding"),
 }
 _KINDS: Mapping[str, type[Handle]] = {"particles": Particle, "rods": Rod}
-_NOUNS = {"particles": Particle.noun, "rods": Rod.noun}
 _IN_TABLES = {Particle.displacement.name: ("mm", 1000.0)}  # else units as in files
 
 
@@ -68,9 +67,7 @@ def state(
         "residual": residual,
         "collisions": model.clock.collisions,
     }
-    for key in ("time", "load_factor", "energy", "residual"):
-        made[key] = plain(made[key], key)
-    return made
+    return made | {key: plain(made[key], key) for key in ("time", "load_factor", "energy", "residual")}
 
 
 def _elements(model: Model, name: str, given: Mapping[str, Column]) -> dict[str, dict[str, Any]]:
@@ -106,15 +103,15 @@ def run_rows(run: Run) -> Iterator[Row]:
 
 def _quantities(made: State) -> Iterator[tuple[Any, ...]]:
     """(element, name, quantity, value, unit) of every number in a state."""
-    for group, noun in _NOUNS.items():
+    for group, kind in _KINDS.items():
         for name, values in made[group].items():
             for field in reported(group):
                 value = values[field.name]
                 if field.shape:
-                    yield noun, name, f"{field.name}_x", value[0], field.unit
-                    yield noun, name, f"{field.name}_y", value[1], field.unit
+                    yield kind.noun, name, f"{field.name}_x", value[0], field.unit
+                    yield kind.noun, name, f"{field.name}_y", value[1], field.unit
                 else:
-                    yield noun, name, field.name, value, field.unit
+                    yield kind.noun, name, field.name, value, field.unit
     for name, value in made["energy"].items():
         yield "energy", "", name, value, "J"
     for name in ("residual", "collisions"):
@@ -144,7 +141,7 @@ def run_lines(run: Run) -> Iterator[str]:
 def _state_lines(made: State) -> Iterator[str]:
     factor = made["load_factor"]
     yield f"At time {as_written(made['time'])} s" if factor is None else f"At load factor {as_written(factor)}"
-    for group in _NOUNS:
+    for group in _KINDS:
         if made[group]:
             yield ""
             yield from aligned(_element_rows(group, made[group]))
@@ -164,7 +161,7 @@ def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list
         for axis in (range(2) if field.shape else (None,))
     ]
     titles = [field.title + ("" if axis is None else " " + "xy"[axis]) for field, axis, _, _ in columns]
-    rows = [[_NOUNS[group], *titles], ["", *(unit for _, _, unit, _ in columns)]]
+    rows = [[_KINDS[group].noun, *titles], ["", *(unit for _, _, unit, _ in columns)]]
     for name, values in elements.items():
         cells = [name]
         for field, axis, _, factor in columns:

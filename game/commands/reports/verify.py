@@ -1,4 +1,4 @@
-"""`pinjoint verify`: simulation, linear and exact theory of a model side by side, and what theory says of it."""
+"""`pinjoint verify`: simulation, linear and exact theory side by side; indeterminacy, mechanisms, frequencies."""
 
 from __future__ import annotations
 
@@ -53,8 +53,8 @@ def verify(session: Session, name: str, limit: float, *, simulate: bool = True) 
     """Theory beside the simulation run to rest (at most `limit` s of simulated time), as plain data.
 
     simulate: False for theory alone. `status` is "verified" if the simulation came to rest in the exact
-    equilibrium; "differs from static theory" if it went another way than under a slowly growing load, which `message`
-    says first; "theory only" without a simulation; else "not verified", and `message` says what is missing.
+    equilibrium; "differs from static theory" if it departed from the path of a slowly growing load, as `message`
+    explains first; "theory only" without a simulation; else "not verified", and `message` gives the reason.
     """
     model = session.model
     theory = theories(model)
@@ -77,18 +77,10 @@ def verify(session: Session, name: str, limit: float, *, simulate: bool = True) 
     found["remarks"] = [event_record(model, event) for event in session.remarks]
     if theory.exact is not None and (simulated is not None or not simulate) and model.rods.count:
         departed = any(remark["kind"] in DEPARTURES for remark in found["remarks"])
-        found["status"] = _status(comparison, simulate, departed)
+        agreed = VERIFIED if not differs(comparison) else DIFFERS if departed else NOT_VERIFIED
+        found["status"] = agreed if simulate else THEORY_ONLY
     found["message"] = "\n".join(_messages(found))
     return found
-
-
-def _status(comparison: Comparison, simulated: bool, departed: bool) -> str:
-    """The status where simulation and theory all have an answer."""
-    if not simulated:
-        return THEORY_ONLY
-    if not differs(comparison):
-        return VERIFIED
-    return DIFFERS if departed else NOT_VERIFIED
 
 
 def _by_element(comparison: Comparison | None) -> dict[str, dict[str, Any]]:
@@ -107,8 +99,7 @@ def _by_element(comparison: Comparison | None) -> dict[str, dict[str, Any]]:
 def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
     settlement = theory.settlement
     loaded = vibrations(model, settlement.final).hertz.tolist() if theory.exact is not None else None
-    moving = mechanisms(model)
-    rods = model.rods.names
+    rods, names = model.rods.names, model.particles.names
     return {
         "model": name,
         "status": NOT_VERIFIED,
@@ -116,8 +107,11 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
         "indeterminacy": asdict(indeterminacy(model)),
         "cables": [name for name, cable in zip(rods, model.rods.tension_only, strict=True) if cable],
         "mechanisms": [
-            {"description": describe_motion(model, motion[None]), "motion": _by_particle(model, motion)}
-            for motion in moving
+            {
+                "description": describe_motion(model, motion[None]),
+                "motion": {name: m for name, m in zip(names, motion.tolist(), strict=True) if any(m)},
+            }
+            for motion in mechanisms(model)
         ],
         "self_stress": [dict(zip(rods, state.tolist(), strict=True)) for state in self_stress(model)],
         "frequencies": {"unloaded": vibrations(model).hertz.tolist(), "loaded": loaded},
@@ -132,11 +126,6 @@ def _found_by_theory(model: Model, name: str, theory: Theories) -> Found:
             "events": [event_record(model, event) for event in settlement.events],
         },
     }
-
-
-def _by_particle(model: Model, field: Array) -> dict[str, list[float]]:
-    rows = np.flatnonzero(field.any(axis=1)).tolist()
-    return {model.particles.names[row]: field[row].tolist() for row in rows}
 
 
 def _messages(found: Found) -> Iterator[str]:
@@ -216,14 +205,15 @@ def rows(found: Found) -> Iterator[output.Row]:
         return
     yield "element", "name", "quantity", "component", "unit", *_VALUES
     for quantity, (table, unit) in QUANTITIES.items():
-        for name, quantities in found[table].items():
-            for component, values in _by_component(quantities.get(quantity, {})):
-                yield table[:-1], name, quantity, component, unit, *(values[way] for way in _VALUES)
+        for name, component, values in _values(found, quantity):
+            yield table[:-1], name, quantity, component, unit, *(values[way] for way in _VALUES)
 
 
-def _by_component(values: Found) -> Iterator[tuple[str, Found]]:
-    """(component, values) of a quantity; the component of a scalar is ""."""
-    yield from [("", values)] if "exact" in values else values.items()
+def _values(found: Found, quantity: str) -> Iterator[tuple[str, str, Found]]:
+    """(name, component, values) of a quantity of every element; the component of a scalar is ""."""
+    for name, quantities in found[QUANTITIES[quantity][0]].items():
+        of = quantities.get(quantity, {})
+        yield from ((name, *item) for item in ([("", of)] if "exact" in of else of.items()))
 
 
 def _influence_lines(found: Found) -> Iterator[str]:
@@ -262,9 +252,12 @@ def _verify_lines(found: Found) -> Iterator[str]:
         if frequencies:
             values = [*map(as_written, frequencies[:SHOWN]), *(["…"] if len(frequencies) > SHOWN else [])]
             yield f"natural frequencies {when}, Hz: {'  '.join(values)}"
-    for title, unit, factor, rows in _tables(found):
-        yield ""
-        yield from aligned(_cells(f"{title}, {unit}", factor, rows))
+    for quantity, (_, unit) in QUANTITIES.items():
+        shown, factor = _IN_TABLES.get(unit, (unit, 1.0))
+        rows = {f"{name} {axis}".rstrip(): values for name, axis, values in _values(found, quantity)}
+        if rows:
+            yield ""
+            yield from aligned(_cells(f"{quantity.replace('_', ' ')}, {shown}", factor, rows))
     for way, row in found["worst"].items():
         if row is not None:
             whose = "the simulation" if way == "simulation" else "linear theory"
@@ -280,17 +273,6 @@ def _verdict(found: Found) -> str:
     agree = f"verified, simulation and exact theory agree to {worst['simulation']:.1e}"
     linear = worst["linear"]
     return f"{agree}; linear theory is off by {linear:.1e}" if linear and linear > ELSEWHERE else agree
-
-
-def _tables(found: Found) -> Iterator[tuple[str, str, float, dict[str, Found]]]:
-    """Of every quantity: title, unit, factor to that unit, and values by the element's name and axis."""
-    for quantity, (table, unit) in QUANTITIES.items():
-        rows: dict[str, Found] = {}
-        for name, quantities in found[table].items():
-            of = _by_component(quantities.get(quantity, {}))
-            rows |= {f"{name} {axis}".rstrip(): values for axis, values in of}
-        if rows:
-            yield quantity.replace("_", " "), *_IN_TABLES.get(unit, (unit, 1.0)), rows
 
 
 def _cells(title: str, factor: float, rows: dict[str, Found]) -> list[list[str]]:
