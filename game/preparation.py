@@ -72,13 +72,14 @@ class Preparation(System):
         if before != self._structure:  # what was made or deleted is seen first
             return
         seen, self._seen = self._seen, simulation.model.revision
-        loaded, self._loaded = self._loaded, simulation.ready
-        if loaded and simulation.ready and self._waits_for_meetings(simulation) is None:
+        loaded, self._loaded = self._loaded, simulation.programs.ready
+        if loaded and simulation.programs.ready and self._waits_for_meetings(simulation) is None:
             self._load_driven(simulation)
             if seen == self._seen and not frame.session.busy:
                 self._load_pulled(simulation)
-        else:
-            self._load(simulation, idle=seen == self._seen)
+        elif self.waits_for(simulation) is None and seen == self._seen and _is_compiled(simulation):
+            # As soon as what was done is seen: who needs the program first need not wait.
+            simulation.program  # noqa: B018 (it is loaded when asked for)
         self._compile_ahead()
 
     def _load_driven(self, simulation: Simulation) -> None:
@@ -109,18 +110,12 @@ class Preparation(System):
         if is_prepared(pulled):
             load_program(pulled)
 
-    def _load(self, simulation: Simulation, *, idle: bool) -> None:
-        """As soon as its program is compiled, and what was done is seen: who needs it first need not wait."""
-        waits = self.waits_for(simulation) is not None
-        if idle and not waits and not simulation.ready and _is_compiled(simulation):
-            simulation.program  # noqa: B018 (it is loaded when asked for)
-
     def waits_for(self, simulation: Simulation) -> float | None:
         """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
         if simulation.integrator.exact:  # it may be ready, but not for piles
             waits = [self._waits_for_units(units) for units in _units(simulation)]
             return max((waited for waited in waits if waited is not None), default=None)
-        if simulation.ready:
+        if simulation.programs.ready:
             return self._waits_for_meetings(simulation)
         job = _job(simulation, simulation.plan)
         waited = self._waits(job, lambda: _is_compiled(simulation))
@@ -130,18 +125,19 @@ class Preparation(System):
         return others if waited is None else waited
 
     def _waits_for_meetings(self, simulation: Simulation) -> float | None:
-        """The same for what happens where particles of structures meet; some come to rest on others."""
+        """Seconds since the programs were wanted by which particles of structures meet and rest on others, or None."""
         if not _may_meet(simulation):
             return None
         waited = self._waits_for_units((DRIVEN,))
         if not _may_rest(simulation.model):
             return waited
-        plan = _with_support(simulation)
+        names = (system.name for system in simulation.plan)
+        plan = simulation.schedule.named((*names, Support.name))  # from when on something rests on something
         resting = self._waits(_job(simulation, plan), lambda: _has_program(simulation, plan))
         return resting if waited is None else waited
 
     def raster(self) -> Raster | None:
-        """What draws large pictures, as soon as it is compiled."""
+        """The raster of large pictures, as soon as it is compiled."""
         return load_raster() if self._waits_for_units((RASTER,)) is None else None
 
     def _waits_for_units(self, units: Units) -> float | None:
@@ -178,12 +174,6 @@ def _may_meet(simulation: Simulation) -> bool:
 def _may_rest(model: Model) -> bool:
     """True if something that is no structure may come to rest on one, or a structure on a wall, and none does yet."""
     return persistent_contacts(model) is None and (any_obstacles(model) or not nodes(model).all())
-
-
-def _with_support(simulation: Simulation) -> list[StepSystem]:
-    """The plan from when on something rests on something."""
-    names = (system.name for system in simulation.plan)
-    return simulation.schedule.named((*names, Support.name))
 
 
 def _are_compiled(units: Units) -> bool:

@@ -134,7 +134,7 @@ class Session(Context):
             self.fault
             or self.scenes.active.message
             or (simulation.message if simulation.armed else "")  # else it is about what was before an edit
-            or simulation.warning
+            or simulation.step_size.warning
             or simulation.note
             or self.notice
         )
@@ -183,7 +183,9 @@ class Session(Context):
     def without_frames(self) -> Iterator[None]:
         """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
         simulation, frame = self.simulation, Unseen(self, 0.0)
-        if self.performing or not self.schedule.runs_headless(Phase.EVENTS, simulation.scene, self.model):
+        if self.performing or not self.schedule.runs_headless(
+            Phase.EVENTS, simulation.programs.scene, self.model
+        ):
             yield
             return
 
@@ -193,11 +195,11 @@ class Session(Context):
                 self.schedule.run(Phase.EVENTS, frame, headless=True)
             return EVENT_INTERVAL - beyond
 
-        simulation.watchers.append(follow)
+        simulation.before_steps.append(follow)
         try:
             yield
         finally:
-            simulation.watchers.remove(follow)
+            simulation.before_steps.remove(follow)
         self.schedule.run(Phase.EVENTS, frame, headless=True)
 
     def compare(self) -> Comparison:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from components.obstacles import Obstacles
+from components.obstacles import NO_OBSTACLES, Obstacles
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -28,7 +28,7 @@ def nearest(line: Floats, span: Floats) -> Floats:
     return found
 
 
-def near_pairs(place: Floats, reach: Floats, obstacles: Obstacles | None = None) -> Rows:
+def near_pairs(place: Floats, reach: Floats, obstacles: Obstacles = NO_OBSTACLES) -> Rows:
     """Pairs i < j whose centres are at most reach[i] + reach[j] apart, in ascending order, shape (k, 2).
 
     place: centres, shape (n, 2), m. reach: shape (n,), m. Discs are searched by size, so that a few large discs
@@ -39,9 +39,6 @@ def near_pairs(place: Floats, reach: Floats, obstacles: Obstacles | None = None)
     )
     apart = place[second] - place[first]
     near = np.hypot(apart[:, 0], apart[:, 1]) <= reach[first] + reach[second]
-    if obstacles is None or len(obstacles) == 0:
-        keys = np.sort((first * len(place) + second)[near])
-        return np.column_stack(np.divmod(keys, len(place)))
     total = len(place) + len(obstacles)
     touching = _near_obstacles(place, reach, obstacles)
     keys = np.concatenate([(first * total + second)[near], touching[:, 0] * total + touching[:, 1]])
@@ -69,10 +66,10 @@ def _tree_pairs(place: Floats, reach: Floats) -> Rows:
 
 
 def _near_obstacles(place: Floats, reach: Floats, obstacles: Obstacles) -> Rows:
-    found = []
+    found = [np.zeros((0, 2), dtype=np.int64)]
     for k in range(len(obstacles)):
         span = np.broadcast_to(obstacles.span[k], place.shape)
         away = np.hypot(*nearest(obstacles.start[k] - place, span).T)
         rows = np.flatnonzero(away <= reach + obstacles.radius[k])
         found.append(np.column_stack([rows, np.full(len(rows), len(place) + k)]))
-    return np.concatenate(found).astype(np.int64)
+    return np.concatenate(found)

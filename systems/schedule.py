@@ -17,12 +17,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from graphlib import CycleError, TopologicalSorter
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 from components.model import Model
 from systems.base import Commit, Integrator, Law, Phase, StepSystem, System
-
-S = TypeVar("S", bound=System)
 
 
 class ScheduleError(ValueError):
@@ -90,7 +88,7 @@ class Schedule:
         self._check_conflicts(ordered, predecessors)
         return tuple(ordered)
 
-    def _known(self, system: System, others: Sequence[str], phase_systems: dict[str, S]) -> list[str]:
+    def _known(self, system: System, others: Sequence[str], phase_systems: Mapping[str, System]) -> list[str]:
         """The named systems that are in the same phase; absent ones are allowed, misplaced ones are not."""
         for other in others:
             elsewhere = [s for s in self._systems if s.name == other and other not in phase_systems]
@@ -153,7 +151,7 @@ class Schedule:
 
     @staticmethod
     def inactive(system: System, scene: str) -> str:
-        """That a system is not active in a scene, and where it is."""
+        """The reason why a system is not active in a scene: where it is."""
         return f"not active in {scene}, only in {', '.join(system.scenes or ())}"
 
     def plan(self, scene: str, model: Model) -> Plan:

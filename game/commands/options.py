@@ -14,7 +14,7 @@ from game.commands.reports.report import Analysis
 from game.paths import apply_override
 from game.session import DEFAULT_LIMIT, Session
 from systems.base import System
-from systems.program.cores import VARIABLE
+from systems.program.parallel import VARIABLE
 
 ANSWERED, NOT_ANSWERED, NO_DISPLAY = 0, 1, 3  # exit statuses; BAD_INPUT is 2
 

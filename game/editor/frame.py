@@ -40,7 +40,7 @@ class Unseen(Frame):
     @property
     def scene(self) -> str:
         """The scene whose systems act in the run."""
-        return self.session.simulation.scene
+        return self.session.simulation.programs.scene
 
 
 class Actions(System):

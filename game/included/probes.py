@@ -103,7 +103,7 @@ class Probes:
     def sample(self, session: Context) -> None:
         """Take a sample of every probe for which time has passed."""
         behind = [probe for probe in self.all if probe.time != session.time]
-        if behind and session.simulation.ready:
+        if behind and session.simulation.programs.ready:
             session.simulation.observe()
             for probe in behind:
                 probe.sample(session)

@@ -100,7 +100,7 @@ class Performance:
         self._wait_for_program()
         self._running_since = None
         simulation = session.simulation
-        simulation.watchers.append(self._watch_time)
+        simulation.before_steps.append(self._watch_time)
         try:
             if set(entry) != {"type"}:
                 return play_line(self._script, number, entry, session)
@@ -110,7 +110,7 @@ class Performance:
                 self._wait(0.12)
             return failures
         finally:
-            simulation.watchers.remove(self._watch_time)
+            simulation.before_steps.remove(self._watch_time)
 
     def _lead_to(self, entry: Mapping[str, Any]) -> None:
         """Move the pointer to the target of the next line."""
@@ -182,9 +182,9 @@ class Performance:
             self._running_since, self._natural = time.monotonic(), self._screen.session.pace
         if self._skipping:
             return REVIEW_INTERVAL
-        simulation.watchers.remove(self._watch_time)  # the run stands still during the picture
+        simulation.before_steps.remove(self._watch_time)  # the run stands still during the picture
         self._frame()
-        simulation.watchers.append(self._watch_time)
+        simulation.before_steps.append(self._watch_time)
         shown = time.monotonic() - self._running_since
         faster = 2.0 ** max(shown - PATIENCE * self._pace, 0.0)
         step = simulation.model.clock.step_size

@@ -22,6 +22,7 @@ from systems.entries import ACCOUNT, CONTROL, Measure
 from systems.islands import IMMOVABLE, islands
 from systems.physics.rest import RestMeasure
 from systems.physics.spectrum import spectra
+from systems.program.program import COLUMNS_OBSERVED
 from systems.program.writer import REVIEW_INTERVAL
 from systems.run.energy import ENTRIES, Energy, energy_of, opened
 from systems.run.policy import (
@@ -110,7 +111,7 @@ class Batch:
         self.alone[np.intersect1d(variant[rest], variants)] = True
 
     def _limits(self) -> list[Limits]:
-        """What the state last observed allows each variant."""
+        """The limits of each variant in the state last observed."""
         model, drag = self.model.as_model(), self.model.single("environment.drag")
         frequency, decay = spectra(model, self.model.rods.axial_force, drag)
         return [
@@ -132,10 +133,7 @@ class Batch:
 
     def _clocks(self, names: Sequence[str]) -> Column:
         """Values of the clocks, shape (variants, names)."""
-        found = np.zeros((self.model.variants, len(names)))
-        for place, name in enumerate(names):
-            found[:, place] = self.clock(name)
-        return found
+        return np.stack([self.clock(name).astype(np.float64) for name in names], axis=1)
 
     def _put_clocks(self, names: Sequence[str], values: Column, variants: Rows) -> None:
         for place, name in enumerate(names):
@@ -153,22 +151,9 @@ class Batch:
 
     def observe(self) -> None:
         """Bring the derived columns and the measures up to date."""
-        model = self.model
-        self._call(
-            "observe",
-            self._all,
-            force=self.unbalanced,
-            applied=model["particles.applied_force"],
-            reaction=model["particles.reaction"],
-            rods_axial_force=model["rods.axial_force"],
-            rods_length=model["rods.length"],
-            rods_strain=model["rods.strain"],
-            yielding=model["rods.yielding"],
-            fixed=model["particles.fixed"],
-            tension=model["rods.tension_limit"],
-            compression=model["rods.compression_limit"],
-            yields=model.single("settings.plasticity"),
-        )
+        columns = {name: self.model[path] for name, path in COLUMNS_OBSERVED.items()}
+        yields = self.model.single("settings.plasticity")
+        self._call("observe", self._all, force=self.unbalanced, yields=yields, **columns)
 
     def _advance(
         self, variants: Rows, steps: Any, until: float = math.inf, landing: float = math.inf
@@ -231,7 +216,9 @@ class Batch:
 
     def _run(self, until: float, variants: Rows) -> None:
         while len(variants := variants[is_before(self.clock("time")[variants], until)]):
-            taken, reason = self._advance(variants, self._steps_to_review, until)
+            # Each goes on until Simulation would stop next to look at it.
+            steps = steps_to_sleep_review(self.clock("steps")) if self._may_sleep else REVIEW_INTERVAL
+            taken, reason = self._advance(variants, steps, until)
             reason = reason[variants]
             rest = variants[reason == StopReason.REST]
             self.resting[rest] = True
@@ -241,11 +228,6 @@ class Batch:
             variants = variants[np.isin(reason, GOING_ON) & (taken[variants] > 0)]
             self._leave_sleepers(variants[is_sleep_review(self.clock("steps")[variants])])
             variants = variants[~self.alone[variants]]
-
-    @property
-    def _steps_to_review(self) -> Any:
-        """Steps of each variant until Simulation would stop next to look at it."""
-        return steps_to_sleep_review(self.clock("steps")) if self._may_sleep else REVIEW_INTERVAL
 
     def _review(self, variants: Rows) -> None:
         """Change automatic steps if the stable step changed much."""
@@ -285,9 +267,8 @@ class Batch:
     def energy(self) -> Energy:
         """The energy accounts in the state last observed; each entry has the shape (variants,)."""
         initial, work, reference = map(self.clock, ENTRIES)
-        return energy_of(
-            self.measures.T, lambda name: self.clock(name).copy(), (initial.copy(), work, reference)
-        )
+        entries = initial.copy(), work, reference
+        return energy_of(self.measures.T, lambda name: self.clock(name).copy(), entries)
 
     @property
     def residual(self) -> Column:

@@ -15,13 +15,8 @@ from game.sweeps.batched_model import BatchedModel
 from systems.program.compiler import compile_module, note_compiled
 from systems.program.program import Program
 
-_SHARED = (
-    "fresh",
-    "breaks",
-    "until",
-    "landing",
-    "loads_end",
-)  # one for all variants, besides what is written anew for each
+# One for all variants, besides what is written anew for each.
+_SHARED = "fresh", "breaks", "until", "landing", "loads_end"
 _RETURNS = {"advance": "taken[k], reason[k] = "}
 _KEPT = {"observe": ("force",)}
 _PIECES = 4  # for each thread, so that none waits long for another
@@ -51,7 +46,7 @@ class BatchProgram:
         self._module = compile_module(self._source(), self._entries)
 
     def _scratch(self, entry: str) -> dict[str, tuple[int, ...]]:
-        """What of this an entry writes; the forces that are observed are kept for each variant."""
+        """Shapes of the arrays that an entry writes and nobody reads; observed forces are kept for each variant."""
         kept = _KEPT.get(entry, ())
         return {name: shape for name, shape in self._scratch_shapes.items() if name not in kept}
 
@@ -75,7 +70,7 @@ class BatchProgram:
         return "\n".join(lines)
 
     def columns(self, model: BatchedModel) -> dict[str, Column]:
-        """What the compiled functions end with, by name."""
+        """The columns that the compiled functions end with, by name."""
         made: dict[str, Column] = {}
         for name, bound in self._columns.items():
             table, _, column = name.partition("_")

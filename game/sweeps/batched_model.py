@@ -49,7 +49,7 @@ class BatchedModel:
         return BatchedModel(self._model, columns, len(variants))
 
     def as_model(self) -> Model:
-        """Itself, for functions that only read columns of a model."""
+        """This batch as a model, for functions that only read columns."""
         return cast(Model, self)
 
     def __getitem__(self, name: str) -> Column:

@@ -65,14 +65,13 @@ class Batches:
     @staticmethod
     def _is_number(target: Target) -> bool:
         name = f"{target.table.name}.{target.field.name}"
-        return (
-            target.field.dtype in (float, int, bool) and name not in _ALONE
-        ) or name == "settings.integrator"
+        plain = target.field.dtype in (float, int, bool) and name not in _ALONE
+        return plain or name == "settings.integrator"
 
     # --- the variants ---------------------------------------------------------------------------------
 
     def records(self, numbers: Sequence[int]) -> dict[int, list[Record]]:
-        """What these variants come to, without those that need a run of their own."""
+        """Records of these variants by number, without those that need a run of their own."""
         if self._base is None:
             return {}
         found: dict[int, list[Record]] = {}
@@ -105,10 +104,7 @@ class Batches:
     def _allowed(self, values: Sequence[Value]) -> bool:
         try:
             for target, value in zip(self._targets, values, strict=True):
-                if target.axis:
-                    target.field.check((value, value), "")
-                else:
-                    target.field.check(value, "")
+                target.field.check((value, value) if target.axis else value, "")
         except FieldError:
             return False
         return True
@@ -142,9 +138,9 @@ class Batches:
             with suppress(*refused), self._runner.taken_back():
                 self._runner.override(self._plan.overrides_of(number))
                 simulation = self._runner.simulation
-                if not simulation.collides:
+                if not any(system.impulsive for system in simulation.plan):
                     self._programs[key] = BatchProgram(
-                        simulation.step_program, self._threads, varied_arrays=self._loads_vary
+                        simulation.programs.compiled, self._threads, varied_arrays=self._loads_vary
                     )
         return self._programs[key]
 
@@ -170,14 +166,12 @@ class Batches:
         return found
 
     def _measured(self, batch: Batch) -> list[tuple[Any, ...]]:
-        """What is recorded of the present state of each variant: time, no load factor, measures."""
+        """The record of each variant in its present state: time, no load factor, measures."""
         batch.observe()
         energy, residual = batch.energy.as_dict(), batch.residual
         batch.alone |= ~_finite(batch, energy, residual)
-        columns = [batch.clock("time").tolist(), [None] * batch.model.variants]
-        for measure in self._plan.measures:
-            columns.append(self._column(measure, batch, energy, residual))
-        return list(zip(*columns, strict=True))
+        measured = (self._column(measure, batch, energy, residual) for measure in self._plan.measures)
+        return list(zip(batch.clock("time").tolist(), [None] * batch.model.variants, *measured, strict=True))
 
     def _column(self, measure: Measure, batch: Batch, energy: dict[str, Any], residual: Column) -> list[Any]:
         section, *rest = measure.keys
@@ -193,7 +187,7 @@ class Batches:
 
 
 def _kind(value: Value) -> Hashable:
-    """What about a value decides which systems a model needs: zero, its sign, or itself if it is no number."""
+    """The part of a value that decides which systems a model needs: its sign, or itself if it is no number."""
     if value is None or isinstance(value, bool | str):
         return value
     return "+" if value > 0.0 else "-" if value < 0.0 else "0"

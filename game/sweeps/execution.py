@@ -12,7 +12,7 @@ from game.sweeps.batches import Batches
 from game.sweeps.plan import Outcome, Plan, Record
 from game.sweeps.variant_runner import VariantRunner
 from game.sweeps.variation import INSTALL, SweepError
-from systems.program.cores import VARIABLE, cores
+from systems.program.parallel import VARIABLE, cores
 
 MOST_IN_A_TASK = 64  # variants; what a kill loses at most of each worker
 TASKS_PER_WORKER = 16  # so that no worker waits long for another's last task
@@ -23,7 +23,7 @@ LIGHT = 100  # rods up to which a variant takes as long as one of this many
 
 @dataclass
 class Computed:
-    """What some variants came to. faults: why some of them were not computed together though they should be able to.
+    """Outcomes of some variants. faults: why some of them were not computed together though they should be able to.
 
     Such a fault costs time, not results: they are computed one by one. Counted are variants by what went wrong.
     """
@@ -51,7 +51,7 @@ class Worker:
 
     @property
     def at_a_time(self) -> int:
-        """How many variants are computed together; 1: none."""
+        """Number of variants that are computed together; 1: none."""
         return self._batches.size if self._batches is not None else 1
 
     def compute(self, numbers: Sequence[int]) -> Computed:
@@ -66,7 +66,7 @@ class Worker:
         return Computed([(n, together[n]) if n in together else self._alone(n) for n in numbers], faults)
 
     def together(self, numbers: Sequence[int]) -> dict[int, list[Record]]:
-        """What variants come to, of those that can be computed together."""
+        """Records of those variants that can be computed together, by number."""
         return self._batches.records(numbers) if self._batches is not None else {}
 
     def _alone(self, number: int) -> Outcome:
@@ -174,7 +174,7 @@ def _distributed(
 
 
 def _result(distributed: Any, future: Any) -> Computed | None:
-    """What a task came to; None if its workers died."""
+    """The result of a task; None if its workers died."""
     try:
         found: Computed = future.result()
     except distributed.KilledWorker:

@@ -50,14 +50,14 @@ class NeededMod:
 
 @dataclass(frozen=True)
 class SoftwareEnvironment:
-    """What a sweep is of, and its workers need. version: of Pinjoint. mods: loaded besides those that come with it."""
+    """The software of a sweep, which its workers need. version: of Pinjoint. mods: besides those that come with it."""
 
     version: str
     mods: tuple[NeededMod, ...]
 
     @classmethod
     def present(cls) -> SoftwareEnvironment:
-        """That of this process, as it is now."""
+        """The software of this process, as it is now."""
         mods = (mod for mod in MODS if mod.loaded and mod.source != INCLUDED)
         return cls(
             __version__,
@@ -84,7 +84,7 @@ class SoftwareEnvironment:
 
 @dataclass(frozen=True)
 class Plan:
-    """What a sweep computes; the same plan gives the same bits, whoever computes which part of it.
+    """The variants of a sweep; the same plan gives the same bits, whoever computes which part of it.
 
     Variants are numbered: every combination of the values of all variations, those of the last varying
     fastest; if something is drawn, `samples` of each, the same draws for every combination.
@@ -104,7 +104,7 @@ class Plan:
 
     @property
     def size(self) -> int:
-        """How many variants there are."""
+        """Number of variants."""
         return self.samples * math.prod(len(v.values) for v in self.variations if isinstance(v, Values))
 
     @property
@@ -113,22 +113,20 @@ class Plan:
         return tuple(path for variation in self.variations for path in variation.columns)
 
     def values(self, number: int) -> tuple[Value, ...]:
-        """What a variant gives to the paths that are varied."""
-        combination, sample = divmod(number, self.samples)
-        taken: list[tuple[Value, ...]] = []
-        for variation in reversed(self.variations):
+        """The values of a variant, in the order of the paths that are varied."""
+        place, sample = divmod(number, self.samples)
+        combinations = self.size // self.samples
+        drawn = any(isinstance(variation, Random) for variation in self.variations)
+        generator = np.random.default_rng([self.seed, sample]) if drawn else None
+        taken: list[Value] = []
+        for variation in self.variations:
             if isinstance(variation, Values):
-                combination, index = divmod(combination, len(variation.values))
-                taken.insert(0, (variation.values[index],))
-            else:
-                taken.insert(0, ())
-        if any(isinstance(variation, Random) for variation in self.variations):
-            generator = np.random.default_rng([self.seed, sample])
-            taken = [
-                v.draw(generator) if isinstance(v, Random) else t
-                for v, t in zip(self.variations, taken, strict=True)
-            ]
-        return tuple(value for values in taken for value in values)
+                combinations //= len(variation.values)
+                index, place = divmod(place, combinations)
+                taken.append(variation.values[index])
+            elif generator is not None:
+                taken += variation.draw(generator)
+        return tuple(taken)
 
     def overrides_of(self, number: int) -> tuple[str, ...]:
         """A variant as `pinjoint run MODEL --set …` has it."""
@@ -136,7 +134,7 @@ class Plan:
         return (*self.overrides, *(f"{path}={value}" for path, value in zip(self.varied, values, strict=True)))
 
     def failure(self, number: int, reason: str) -> Outcome:
-        """What is recorded of a variant that could not be computed."""
+        """The record of a variant that could not be computed."""
         return number, [(FAILED, reason, *[None] * (len(RECORDED) - 2 + len(self.measures)))]
 
     def fingerprint(self) -> str:

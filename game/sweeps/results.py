@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import importlib.util
 import io
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -56,10 +57,9 @@ class Results:
         return np.array(column, dtype=float if numbers else None)
 
     def counts(self) -> dict[str, int]:
-        """How many variants ended with each status."""
+        """Number of variants that ended with each status."""
         last = dict(zip(self.columns["variant"], self.columns["status"], strict=True))
-        statuses = list(last.values())
-        return {status: statuses.count(status) for status in sorted(set(statuses))}
+        return dict(sorted(Counter(last.values()).items()))
 
     @property
     def found(self) -> NDArray[np.bool_]:
@@ -115,6 +115,7 @@ class Results:
         from matplotlib import pyplot
 
         measures = self.plan.measures[:MOST_PANELS]
+        drawn = any(isinstance(variation, Random) for variation in self.plan.variations)
         figure, axes = pyplot.subplots(
             len(measures),
             squeeze=False,
@@ -125,8 +126,7 @@ class Results:
         for axis, measure in zip(axes[:, 0], measures, strict=True):
             for label, rows in self._lines().items():
                 x = self[self.plan.varied[0]][rows]
-                style = "." if self._scattered else ".-"
-                axis.plot(x, self[measure.column][rows], style, label=label)
+                axis.plot(x, self[measure.column][rows], "." if drawn else ".-", label=label)
             axis.set_ylabel(measure.label)
             axis.grid(alpha=0.3)
         axes[-1, 0].set_xlabel(self.plan.variations[0].label)
@@ -137,10 +137,6 @@ class Results:
         figure.savefig(made, format="png", dpi=120)
         pyplot.close(figure)
         replace(path, made.getvalue())
-
-    @property
-    def _scattered(self) -> bool:
-        return any(isinstance(variation, Random) for variation in self.plan.variations)
 
     def _lines(self) -> dict[str, NDArray[np.intp]]:
         """The rows of each line, by its label: what else is varied, and the state where there are several."""

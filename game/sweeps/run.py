@@ -161,10 +161,6 @@ class ProgressBar:
 def _duration(seconds: float) -> str:
     minutes, seconds = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
-    return (
-        f"{hours:d} h {minutes:02d} min"
-        if hours
-        else f"{minutes:d} min {seconds:02d} s"
-        if minutes
-        else f"{seconds:d} s"
-    )
+    if hours:
+        return f"{hours:d} h {minutes:02d} min"
+    return f"{minutes:d} min {seconds:d} s" if minutes else f"{seconds:d} s"

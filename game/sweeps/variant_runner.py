@@ -31,7 +31,7 @@ class VariantRunner:
         self._beginning = Snapshot.take(self.model)
 
     def records(self, number: int) -> list[Record]:
-        """What a variant comes to, a record of each state. Raises what its overrides or its run raise."""
+        """A record of each state of a variant. Raises the errors of its overrides and of its run."""
         with self.taken_back():
             self.override(self._plan.overrides_of(number))
             run = self._plan.analysis.run(self.simulation, self._plan.name)
@@ -53,7 +53,7 @@ class VariantRunner:
 
     @contextmanager
     def taken_back(self) -> Iterator[None]:
-        """What is done to the model inside is not done any more in the end."""
+        """Changes of the model inside the `with` are taken back at its end."""
         try:
             with self.model.transaction("variant"):
                 yield

@@ -26,9 +26,8 @@ OVERLAP = 1e-9  # of the reach of two nodes; a larger overlap at the start of a 
 # Steps of piles and crowds
 STEP_SHARE = 0.04  # longest step, as a share of the time in which a disc falls through its diameter
 SHORTEST_SHARE = 1.0 / 16.0  # shortest step, where discs are fast, as a share of the longest
-TRAVEL = (
-    0.35  # relative travel of two discs in a longer step than the shortest, at most, in radii of the smaller
-)
+# Relative travel of two discs in a longer step than the shortest, at most, in radii of the smaller.
+TRAVEL = 0.35
 
 
 class Disc(IntEnum):
@@ -60,7 +59,7 @@ FLIGHT = [Disc.UX, Disc.UY, Disc.VX, Disc.VY, Disc.AX, Disc.AY, Disc.EPOCH, Disc
 
 
 class PairKind(IntEnum):
-    """What a step of an integrator does about a pair of particles, as at the start of the step."""
+    """How a step of an integrator treats a pair of particles, by the state at the start of the step."""
 
     WATCHED = 0  # an impact ends the step
     LEFT_ALONE = 1  # nodes that overlap; they collide once they have separated
@@ -135,26 +134,19 @@ class Constraints(NamedTuple):
         pairs = np.asarray(joined, dtype=np.int64).reshape(-1, 2)
         ends = np.concatenate([pairs, pairs[:, ::-1]])
         ends = ends[np.lexsort((ends[:, 1], ends[:, 0]))]
-        empty = cls(
-            first=np.searchsorted(ends[:, 0], np.arange(n + 1)),
-            partners=np.ascontiguousarray(ends[:, 1]),
-            first_persistent=np.zeros(n, dtype=np.int64),
-            persistent=np.zeros((0, 2), dtype=np.int64),
-            forces=np.zeros(0),
-        )
-        return empty.cleared(size, counts)
+        first, partners = np.searchsorted(ends[:, 0], np.arange(n + 1)), np.ascontiguousarray(ends[:, 1])
+        contacts = np.zeros(n, dtype=np.int64), np.zeros((0, 2), dtype=np.int64), np.zeros(0)
+        return cls(first, partners, *contacts).cleared(size, counts)
 
     def cleared(self, size: int, counts: Integers) -> Constraints:
-        """The same without persistent contacts, with room for `size` entries."""
+        """These constraints without persistent contacts, with room for `size` entries."""
         counts[Count.SPARE], counts[Count.SPARES] = NONE, 0
-        none = np.full(len(self.first_persistent), NONE, dtype=np.int64)
-        emptied = self._replace(
-            first_persistent=none, persistent=np.zeros((0, 2), dtype=np.int64), forces=np.zeros(0)
-        )
+        none = np.full_like(self.first_persistent, NONE)
+        emptied = self._replace(first_persistent=none, persistent=self.persistent[:0], forces=self.forces[:0])
         return emptied.enlarged(size, counts)
 
     def enlarged(self, size: int, counts: Integers) -> Constraints:
-        """The same with room for `size` entries; new unused entries are chained before the old ones."""
+        """These constraints with room for `size` entries; new unused entries are chained before the old ones."""
         old = len(self.persistent)
         persistent, forces = np.zeros((size, 2), dtype=np.int64), np.zeros(size)
         persistent[:old], forces[:old] = self.persistent, self.forces

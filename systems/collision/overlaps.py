@@ -20,13 +20,11 @@ MOST_ROUNDS = 100  # in each of which neighbours are found anew
 UNSEEN_OVERLAP = 1e-3  # of a radius: too small to see, as steps of piles leave them, and not worth a message
 
 
-def overlaps(place: Floats, radius: Floats, others: Obstacles | None = None) -> Rows:
+def overlaps(place: Floats, radius: Floats, others: Obstacles = NO_OBSTACLES) -> Rows:
     """Pairs of discs, and of discs and obstacles, that overlap, shape (k, 2)."""
     pairs = near_pairs(place, radius, others)
-    first, span = place, np.zeros_like(place)
-    if others is not None:
-        first, span = np.concatenate([place, others.start]), np.concatenate([span, others.span])
-        radius = np.concatenate([radius, others.radius])
+    first, span = np.concatenate([place, others.start]), np.concatenate([np.zeros_like(place), others.span])
+    radius = np.concatenate([radius, others.radius])
     line = nearest(first[pairs[:, 1]] - place[pairs[:, 0]], span[pairs[:, 1]])
     reach = radius[pairs].sum(axis=1)
     overlapping: Rows = pairs[np.hypot(line[:, 0], line[:, 1]) < reach * (1.0 - SLACK)]

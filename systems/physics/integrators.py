@@ -43,23 +43,17 @@ class VelocityVerlet(Integrator):
         return 2.0 / (math.hypot(frequency, decay) + decay)
 
 
-class SemiImplicitEuler(Integrator):
+class SemiImplicitEuler(VelocityVerlet):
     """1st order, energy bounded for ever: to compare with.
 
-    Symplectic without dampers.
+    Symplectic without dampers, and stable up to the step of velocity Verlet.
     """
 
     name = "physics.semi_implicit_euler"
     guard = 2.0
-    parts = _PLAIN
     begins = f"{_FIXED_STEPS}:euler_begins"
     ends = f"{_FIXED_STEPS}:euler_ends"
     order: ClassVar[int] = 1
-
-    @staticmethod
-    def stable_step(frequency: float, decay: float) -> float:
-        """(2/ω)(√(1+ζ²) − ζ)."""
-        return 2.0 / (math.hypot(frequency, decay) + decay)
 
 
 class ThesisTaylor(Integrator):
@@ -118,11 +112,7 @@ class RungeKutta4(Integrator):
     name = "physics.rk4"
     kernel = f"{_RUNGE_KUTTA}:controlled"
     entry = f"{_RUNGE_KUTTA}:advance"
-    parts = (
-        *_CONTROLLED,
-        f"{_RUNGE_KUTTA}:explicit_stages=stages",
-        f"{_RUNGE_KUTTA}:attempt",
-    )
+    parts = (*_CONTROLLED, f"{_RUNGE_KUTTA}:explicit_stages=stages", f"{_RUNGE_KUTTA}:attempt")
     order: ClassVar[int] = 4
     controlled = True
     guard = -1.0
@@ -152,7 +142,7 @@ class DormandPrince853(RungeKutta4):
     check_interval = 8
 
 
-class ImplicitRungeKutta4(Integrator):
+class ImplicitRungeKutta4(RungeKutta4):
     """4th order with error control, implicit, stable at every step: for stiff and strongly damped models.
 
     Six stages, of which five are implicit, L-stable: vibrations much faster than the step die out instead of
@@ -161,16 +151,7 @@ class ImplicitRungeKutta4(Integrator):
     """
 
     name = "physics.esdirk4"
-    kernel = f"{_RUNGE_KUTTA}:controlled"
-    entry = f"{_RUNGE_KUTTA}:advance"
-    parts = (
-        *_CONTROLLED,
-        *(f"{_IMPLICIT}:{part}" for part in _SOLVED),
-        f"{_RUNGE_KUTTA}:attempt",
-    )
-    order: ClassVar[int] = 4
-    controlled = True
-    guard = -1.0
+    parts = (*_CONTROLLED, *(f"{_IMPLICIT}:{part}" for part in _SOLVED), f"{_RUNGE_KUTTA}:attempt")
     estimates_error = True
     constants = runge_kutta_constants(KENNEDY_CARPENTER_4, proportional=0.08, lengthen=2.0) | {
         "GAMMA": 0.25,

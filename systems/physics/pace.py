@@ -52,9 +52,9 @@ def _response_time(model: Model) -> float | None:
         return None
     frequency = math.sqrt(float((rods.stiffness / rods.rest_length * elongation**2).sum()) / inertia)
     damping = float((rods.damping * elongation**2).sum()) / inertia + model.environment.drag
-    ratio = damping / (2.0 * frequency) if frequency > 0.0 else 0.0
     if frequency == 0.0:
         return None
+    ratio = damping / (2.0 * frequency)
     if ratio < 1.0:
         return 2.0 * math.pi / frequency / PERIOD_SHOWN
     creep = frequency / (ratio + math.sqrt(ratio * ratio - 1.0))
@@ -80,7 +80,7 @@ def _static_displacement(model: Model) -> Array | None:
 
 
 def _forces(model: Model) -> Array:
-    """What acts on the particles with all loads at their full values (kN), flattened, (2n,)."""
+    """The forces on the particles with all loads at their full values (kN), flattened, (2n,)."""
     force: Array = model.particles.constant_force.ravel().copy()
     for load in model.loads:
         force[2 * load.on : 2 * load.on + 2] += load.force
@@ -95,7 +95,7 @@ def _ends_and_axes(model: Model) -> tuple[NDArray[np.intp], Array]:
 
 
 def _compatibility(model: Model) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
-    """How rods elongate when particles move: entries, rows and columns of a matrix (rods, 2n), four a rod."""
+    """The compatibility matrix (rods, 2n), elongations by displacements: entries, rows and columns, four a rod."""
     ends, axis = _ends_and_axes(model)
     columns = np.concatenate(
         [2 * ends[:, :1], 2 * ends[:, :1] + 1, 2 * ends[:, 1:], 2 * ends[:, 1:] + 1], axis=1
@@ -116,7 +116,7 @@ def _solved_in_full(model: Model, free: NDArray[np.intp], force: Array) -> Array
 
 
 def _solved_sparsely(model: Model, free: NDArray[np.intp], force: Array) -> Array:
-    """The same by a sparse matrix. Raises RuntimeError if it is singular."""
+    """The displacements of free directions by a sparse matrix. Raises RuntimeError if it is singular."""
     from scipy.sparse import csc_matrix, identity
     from scipy.sparse.linalg import splu
 

@@ -35,7 +35,7 @@ class RestMeasure:
     @classmethod
     @_BEYOND
     def of(cls, model: Model, unbalanced: Array) -> RestMeasure:
-        """That of the state last observed. unbalanced: force on each particle without dampers and drag (kN)."""
+        """The measure of the state last observed. unbalanced: force on each particle without dampers and drag (kN)."""
         particles, rods = model.particles, model.rods
         pull, flexibility = np.abs(rods.axial_force), rods.rest_length / rods.stiffness
         moved = np.abs(particles.displacement).max(axis=1, initial=0.0)
@@ -57,10 +57,7 @@ class RestMeasure:
         of_particle, of_rod: the island of each. force_scale (kN), energy_scale (J): of the clock, one for all islands
         or one for each.
         """
-        from systems.physics.kernels import (
-            REST_RESIDUAL,
-            SMALL_SHARE,
-        )  # numba is imported with the first program
+        from systems.physics.kernels import REST_RESIDUAL, SMALL_SHARE  # imports numba, with the first program
 
         count = int(of_particle.max(initial=0)) + 1
         largest = _largest(count, (of_particle, self.load), (of_rod, self.pull))
@@ -77,13 +74,10 @@ class RestMeasure:
 
     def measures(self, model: Model, particles: Mask, rods: Mask) -> Array:
         """The measures of these particles and rods at rest, shape (8,)."""
-        displacement, constant = (
-            model.particles.displacement[particles],
-            model.particles.constant_force[particles],
-        )
+        work = model.particles.constant_force[particles] * model.particles.displacement[particles]
         measures = np.zeros(len(Measure))
         measures[Measure.ELASTIC] = self.elastic[rods].sum()
-        measures[Measure.POTENTIAL] = 1000.0 * (constant * displacement).sum()
+        measures[Measure.POTENTIAL] = 1000.0 * work.sum()
         measures[Measure.RESIDUAL] = self.residual[particles].max(initial=0.0)
         measures[Measure.LARGEST_FORCE] = max(
             self.load[particles].max(initial=0.0), self.pull[rods].max(initial=0.0)

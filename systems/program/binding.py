@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from components.field import Role
 from components.model import Model
-from systems.base import ACCOUNTS, Commit, Event, Integrator, Law, StepSystem
+from systems.base import Commit, Event, Integrator, Law, StepSystem
+from systems.entries import ACCOUNTS
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
 PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for
@@ -42,7 +43,9 @@ _RESULTS = {
 class ProgramError(ValueError):
     """A step system that cannot join the program; the message names it, the reason and the remedy."""
 
-    system: StepSystem | None = None
+    def __init__(self, message: str, system: StepSystem | None = None) -> None:
+        super().__init__(message)
+        self.system = system
 
 
 class StepRole(Enum):
@@ -89,7 +92,7 @@ class Bound:
 
     @property
     def purpose(self) -> str:
-        """What the kernel is called for: a key of PROVIDED_TO."""
+        """The purpose of the kernel: a key of PROVIDED_TO."""
         if isinstance(self.system, Event):
             return f"event of {self.each}"
         return (self.each or "commit") if self.kernel == "kernel" else self.kernel
@@ -185,11 +188,10 @@ def check_names(bound: Iterable[Bound]) -> None:
     for b in bound:
         for name in (b.call, *b.arrays):
             if name in owner:
-                error = ProgramError(
-                    f"{owner[name]} and {b.system.name} are both '{name}' in the step program; rename one."
+                raise ProgramError(
+                    f"{owner[name]} and {b.system.name} are both '{name}' in the step program; rename one.",
+                    b.system,
                 )
-                error.system = b.system
-                raise error
             owner[name] = b.system.name
 
 
@@ -222,12 +224,11 @@ def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., A
     try:
         found = getattr(importlib.import_module(module), attribute)
     except (ImportError, AttributeError, ValueError) as error:
-        lost = ProgramError(
+        raise ProgramError(
             f"The kernel '{kernel}' of {owner.name} cannot be found: {error}; write it like"
-            " 'package.module:function'."
-        )
-        lost.system = owner
-        raise lost from None
+            " 'package.module:function'.",
+            owner,
+        ) from None
     return found
 
 
@@ -272,38 +273,28 @@ def explain(bound: Iterable[Bound], integrator: Integrator, model: Model, error:
     for b in bound:
         problem = problem_of(b, model)
         if problem:
-            found = ProgramError(problem)
-            found.system = b.system
-            return found
-    found = ProgramError(f"The step program of {integrator.name} does not compile: {_brief(error)}")
-    found.system = integrator
-    return found
+            return ProgramError(problem, b.system)
+    return ProgramError(f"The step program of {integrator.name} does not compile: {_brief(error)}", integrator)
 
 
 def problem_of(b: Bound, model: Model) -> str:
-    """What is wrong with a kernel, compiled by itself, or ""."""
-    problem = _problem(b, model)
-    return f"The kernel of {b.system.name} {problem}" if problem else ""
+    """The fault of a kernel, compiled by itself, as a sentence; "" if there is none."""
+    try:
+        made = _result_type(b, model)
+    except Exception as failure:  # numba raises many kinds
+        return f"The kernel of {b.system.name} does not compile: {_brief(failure)}"
+    from numba import types
+
+    numbers = tuple(getattr(made, "types", (made,)))
+    wanted = 2 if b.purpose in ("particles", "commit") else 1
+    if len(numbers) != wanted or not all(isinstance(n, types.Number | types.Boolean) for n in numbers):
+        return f"The kernel of {b.system.name} returns {made}; it must return {_RESULTS[b.purpose]}."
+    return ""
 
 
 def _brief(failure: Exception) -> str:
     lines = [line.strip() for line in str(failure).splitlines() if line.strip()]
     return f"{'; '.join(lines[1:4])}."
-
-
-def _problem(b: Bound, model: Model) -> str:
-    try:
-        made = _result_type(b, model)
-    except Exception as failure:  # numba raises many kinds
-        return f"does not compile: {_brief(failure)}"
-    from numba import types
-
-    role = b.purpose
-    numbers = tuple(getattr(made, "types", (made,)))
-    wanted = 2 if role in ("particles", "commit") else 1
-    if len(numbers) != wanted or not all(isinstance(n, types.Number | types.Boolean) for n in numbers):
-        return f"returns {made}; it must return {_RESULTS[role]}."
-    return ""
 
 
 def _result_type(b: Bound, model: Model) -> Any:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from systems.base import ACCOUNTS
+from systems.entries import ACCOUNTS
 from systems.program.binding import Bound, StepRole
 from systems.program.loops import RodLoop
 from systems.program.pasting import indented
@@ -116,7 +116,7 @@ def _one_by_one(name: str, given: str) -> list[str]:
 
 
 def _shared(name: str, given: str, body: list[str], results: str, after: list[str]) -> str:
-    """The same with the blocks shared among cores."""
+    """A function for one block, and one that calls it for all blocks, shared among cores."""
     each = f"{name}_each(blocks, {given}, partial, *columns)"
     several = ["for block in prange(blocks):", f"    {_call(name, 'block', given)}"]
     loop = ["if block_cores[0] > 1:", f"    {each}", "else:", *indented(_one_by_one(name, given))]

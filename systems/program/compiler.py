@@ -166,6 +166,19 @@ class CompiledUnit:
         return self.module
 
 
+def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str, Callable[..., Any]]]:
+    """Source of a module with an entry to each kernel, under the given names, and the kernels as the source calls them."""
+    lines = [
+        '"""Entries to kernels. Generated; safe to delete."""',
+        "from numba import njit",
+        'entry = njit(error_model="numpy", _nrt=False, cache=True)',
+    ]
+    for name, kernel in kernels.items():
+        arguments = ", ".join(inspect.signature(getattr(kernel, "py_func", kernel)).parameters)
+        lines += ["", "", "@entry", f"def {name}({arguments}):", f"    return kernel_{name}({arguments})"]
+    return "\n".join([*lines, ""]), {f"kernel_{name}": kernel for name, kernel in kernels.items()}
+
+
 def load_compiler() -> None:
     """Import and start up the compiler, which takes longer than loading a compiled module."""
     from numba import njit

@@ -1,4 +1,4 @@
-"""What a step program holds besides for integrators that control their steps; see templates/runge_kutta.py."""
+"""Step programs of integrators that control their steps: powers, events, tangents; see templates/runge_kutta.py."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from components.model import Model
 from systems.base import Integrator, StepSystem
 from systems.entries import Mark
-from systems.program.binding import Bound, StepRole, bind
+from systems.program.binding import StepRole, bind
 from systems.program.loops import RodLoop
 from systems.program.pasting import fragment, pasted
 from systems.program.templates import events, forces, implicit, rods
@@ -17,33 +17,32 @@ from systems.program.writer import DRIFT, NO_POWER, POWER_RETURNED, SHIFT, TRIAL
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
 _STEADY = 1e-8  # a margin that changes less in a step is not watched
 
-
-LOCATING = (
-    (events.mark, events.note),
-    (events.passed, events.look),
-)  # functions, and what each does with a row
+# Functions that locate events, and what each does with a row.
+LOCATING = (events.mark, events.note), (events.passed, events.look)
 
 
 class ControlledWriter(Writer):
     """Writes step programs whose integrator needs powers at every stage, events and tangents."""
 
     def __init__(self, model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> None:
+        from systems.physics.kernels import lowest  # imports numba, when a program is built, not before
+
         super().__init__(model, systems, integrator, form)
-        self.events = [(bind(s, model, "branch"), bind(s, model, "margin")) for s in self.branching]
-        self.names |= {b.call: b.function for pair in self.events for b in pair} | {"lowest": _lowest()}
-        self._add_columns(b for pair in self.events for b in pair)
+        self.branches = [(bind(s, model, "branch"), bind(s, model, "margin")) for s in self.branching]
+        self.names |= {b.call: b.function for pair in self.branches for b in pair} | {"lowest": lowest}
+        self._add_columns(b for pair in self.branches for b in pair)
 
     @property
     def scratch(self) -> tuple[str, ...]:
         return ("search", "work", "rod_work", "marks", "power", "gained", "stage_power")
 
     def _values(self) -> dict[str, Any]:
-        located = bool(self.events or self.happenings)
+        located = bool(self.branches or self.events)
         return super()._values() | {"EVENTS": located, "COMMITS": bool(self.commits)}
 
     def _of_steps(self) -> list[str]:
         parts = [self._evaluate(), *([self._remember()] if self.commits else [])]
-        if self.events or self.happenings:
+        if self.branches or self.events:
             parts += [self._located(*templates) for templates in LOCATING]
         parts += self._happened()
         return [*parts, self._tangent()] if self.integrator.rod_rows else parts
@@ -74,46 +73,32 @@ class ControlledWriter(Writer):
     def _located(self, function: Callable[..., float], template: Callable[[], None]) -> str:
         """A function that does what the template says for every law that has branches, and every event."""
         lines: dict[str, list[str]] = {"rods": [], "particles": []}
-        for place, (branch, margin) in enumerate(self.events):
-            lines["rods"] += fragment(
-                template,
-                law=str(len(Mark) * place),
-                branch=self._apply(branch, "r"),
-                steady=str(_STEADY),
-                margin_and_slope=fragment(
-                    events.margin_and_slope, margin=self._apply(margin, "r"), ahead=str(_AHEAD)
-                ),
-            )
-        for place, b in enumerate(self.happenings, start=len(self.events)):
-            lines[b.each] += fragment(
-                template,
-                law=str(len(Mark) * place),
-                branch=f"-1.0 if {sides_of(b)}[r] == Side.NEGATIVE else 1.0",
-                steady=str(_STEADY),
-                margin_and_slope=self._quantity(b),
-            )
-        of_rods, of_particles = self._each_row(lines["rods"], lines["particles"])
-        return pasted(function, "compiled", rods=of_rods, particles=of_particles)
-
-    def _quantity(self, b: Bound) -> list[str]:
-        """Lines that give how far an event's quantity is from changing sign, and its slope."""
-        if b.each == "rods":
-            force = self._axial_force() if "axial_force" in b.parameters else []
+        for place, (branch, margin) in enumerate(self.branches):
+            slope = self._slope(events.of_rod, self._apply(margin, "r"), [])
+            lines["rods"] += self._look(template, place, self._apply(branch, "r"), slope)
+        for place, b in enumerate(self.events, start=len(self.branches)):
+            of_row = events.of_rod if b.each == "rods" else events.of_particle
             quantity = self._apply(b, "r")
-            return fragment(events.rod_quantity, quantity=quantity, axial_force=force, ahead=str(_AHEAD))
-        quantity = self._apply(b, "r").replace("(displacement[r, 0], displacement[r, 1])", "(x, y)")
-        return fragment(events.particle_quantity, quantity=quantity, ahead=str(_AHEAD))
+            if b.each == "particles":
+                quantity = quantity.replace("(displacement[r, 0], displacement[r, 1])", "(x, y)")
+            side = f"-1.0 if {sides_of(b)}[r] == Side.NEGATIVE else 1.0"
+            slope = self._slope(of_row, f"branch * {quantity}", self._needed_force(b))
+            lines[b.each] += self._look(template, place, side, slope)
+        return pasted(function, "compiled", **self._each_row(lines))
 
-    def _happened(self) -> list[str]:
-        if not self.happenings:
-            return []
-        first = len(self.events)
-        turned = [
-            f"gap < -EVENT_FLOOR or (gap <= EVENT_FLOOR and marks[r, {len(Mark) * place} + Mark.MARGIN] > EVENT_FLOOR)"
-            for place in range(first, first + len(self.happenings))
-        ]
-        of_rods, of_particles = self._turns(turned)
-        return [pasted(events.happened, "compiled", rods=of_rods, particles=of_particles)]
+    @staticmethod
+    def _look(template: Callable[[], None], place: int, branch: str, slope: list[str]) -> list[str]:
+        law = str(len(Mark) * place)
+        return fragment(template, law=law, branch=branch, steady=str(_STEADY), margin_and_slope=slope)
+
+    @staticmethod
+    def _slope(template: Callable[[], None], margin: str, axial_force: list[str]) -> list[str]:
+        """Lines that give a margin and its rate. axial_force: lines by which it follows from the elongation."""
+        return fragment(template, margin=margin, axial_force=axial_force, ahead=str(_AHEAD))
+
+    def _turned(self, place: int) -> str:
+        margin = f"marks[r, {len(Mark) * (len(self.branches) + place)} + Mark.MARGIN]"
+        return f"gap < -EVENT_FLOOR or (gap <= EVENT_FLOOR and {margin} > EVENT_FLOOR)"
 
     # --- tangents ---------------------------------------------------------------------------------
 
@@ -125,23 +110,15 @@ class ControlledWriter(Writer):
         ]
         damping_force = [
             "damping_force = 0.0",
-            *(f"damping_force += {self._apply(b, 'r')}" for b in self._rates),
+            *(f"damping_force += {self._apply(b, 'r')}" for b in self.of[StepRole.RATE]),
         ]
         tangent = fragment(
             implicit.rod_tangent,
             rate=fragment(rods.rate),
             axial_force=self._axial_force(),
-            dampers=fragment(implicit.damper_tangent, damping_force=damping_force) if self._rates else [],
+            dampers=fragment(implicit.damper_tangent, damping_force=damping_force)
+            if self.of[StepRole.RATE]
+            else [],
         )
         loop = RodLoop(SHIFT | DRIFT, [*self.geometry(), *tangent])
         return pasted(implicit.tangent, "compiled", particles=particles, rods=loop.one_by_one())
-
-    @property
-    def _rates(self) -> list[Bound]:
-        return self.of[StepRole.RATE]
-
-
-def _lowest() -> Any:
-    from systems.physics.kernels import lowest  # numba is imported when a program is built, not before
-
-    return lowest

@@ -11,11 +11,9 @@ from components.model import Model
 from components.snapshot import Snapshot
 from systems.base import Mod, StepSystem
 from systems.program.binding import ProgramError, bind
-from systems.program.program import Program
+from systems.program.program import MOTION, Program
 from systems.program.reference_laws import in_turn
 from systems.program.writer import REVIEW_INTERVAL
-
-STATE = ("particles.displacement", "particles.velocity")
 
 
 def blame_mod(error: ProgramError) -> bool:
@@ -42,7 +40,7 @@ def find_culprit(program: Program, safe: Snapshot) -> Mod | None:
         _move_ahead(model)
     else:
         good = _last_good(program, safe)
-    led_to = {name: model.column(name).copy() for name in (*STATE, "clock.time")}
+    led_to = {name: model.column(name).copy() for name in (*MOTION, "clock.time")}
     good.restore(model)
     found = _bad_kernel(program, model)
     if found is None:
@@ -60,7 +58,7 @@ def find_culprit(program: Program, safe: Snapshot) -> Mod | None:
 
 
 def _finite(model: Model) -> bool:
-    return all(bool(np.isfinite(model.column(name)).all()) for name in STATE)
+    return all(bool(np.isfinite(model.column(name)).all()) for name in MOTION)
 
 
 def _move_ahead(model: Model) -> None:

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from systems.program.pasting import indented
 
 CHUNK = 64  # rods in a chunk: their values stay in the nearest cache
-_APART = (
-    7  # columns read directly: LLVM checks at run time that they do not overlap scratch; with more it gives up
-)
+# Columns read directly: LLVM checks at run time that they do not overlap scratch; with more it gives up.
+_APART = 7
 
 ALL = "0, rods_between.shape[0]"
 
@@ -73,12 +72,11 @@ class RodLoop:
             return f"scratch[k + {CHUNK * slots[name]}]"
 
         def there(match: re.Match[str]) -> str:
-            name, part = match.group(1), match.group(2)
-            return f"{name}_[k, {part}]" if part else f"{name}_[k]"
+            return _entry((match[1], match[2] or ""))
 
         def here(match: re.Match[str]) -> str:
-            element = match.group(1), match.group(2) or ""
-            return place(element) if element in slots else there(match)
+            element = match[1], match[2] or ""
+            return place(element) if element in slots else _entry(element)
 
         begin, end = span.split(", ")
         back = [(name, part) for name, part in copied if name in self.writes]

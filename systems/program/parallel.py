@@ -13,14 +13,30 @@ from components.field import Column
 from components.model import Model
 from systems.base import Integrator, StepSystem
 from systems.program.blocks import Layout
-from systems.program.cores import cores
 from systems.program.program import Program
 from systems.program.reordered import ReorderedProgram
 from systems.program.writer import VERY_MANY, form_of
 
+VARIABLE = "PINJOINT_CORES"  # of the environment
+
 _QUICK = ("omp", "tbb")  # threading layers that start the cores in some microseconds
 _SPINS = "10000"  # some 0.1 ms that a core waits awake: waking it costs as much as a step of 10 000 rods
 _WORTHWHILE = 100_000  # rods from which a layer that takes 50 µs to start the cores is worth it
+
+
+_home = os.getpid()
+
+
+def cores() -> int:
+    """Number of cores that a computation may use: by PINJOINT_CORES, else as many as this process may.
+
+    One in a process that was forked, for the threads of its parent are not there.
+    """
+    if os.getpid() != _home:
+        return 1
+    there = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    asked = os.environ.get(VARIABLE, "")
+    return min(max(int(asked), 1), there) if asked.isdigit() else there
 
 
 def make_program(
@@ -71,13 +87,13 @@ class BlockProgram(ReorderedProgram):
         return None if path.startswith("block.") else super()._column(path)
 
     def _loads(self, prefix: str, ordered: Mapping[str, Any]) -> dict[str, Any]:
-        """The same, and the first load of each block."""
+        """The arrays of a law of loads in order, and the first load of each block."""
         loads = super()._loads(prefix, ordered)
         first = np.searchsorted(loads[f"{prefix}_on"], self.layout.first_particle)
         return loads | {f"block_{prefix}": first}
 
     def _cores(self) -> int:
-        """How many cores are worth using; results do not depend on it."""
+        """Number of cores that are worth using; results do not depend on it."""
         os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # else idle threads spin for milliseconds
         os.environ.setdefault("GOMP_SPINCOUNT", _SPINS)
         import numba

@@ -25,12 +25,19 @@ from systems.program.writer import STATE, VERY_MANY, Writer, form_of, sides_of
 
 _ORIGIN = ("origin", "step_limit")
 _COUNTS = ("steps", "origin_steps")
-_OF_PARTICLES = ("displacement", "velocity")
+MOTION = "particles.displacement", "particles.velocity"
 OBSERVED = {
     "particles": ("applied_force", "reaction"),
     "rods": ("axial_force", "length", "strain", "yielding"),
 }
 _GIVEN = {"fixed": "particles.fixed", "tension": "rods.tension_limit", "compression": "rods.compression_limit"}
+COLUMNS_OBSERVED = {  # by the parameter of observe() that they are
+    **{f"rods_{name}": f"rods.{name}" for name in ("axial_force", "length", "strain")},
+    "applied": "particles.applied_force",
+    "reaction": "particles.reaction",
+    "yielding": "rods.yielding",
+    **_GIVEN,
+}
 _REASONS = tuple(StopReason)
 
 
@@ -120,7 +127,7 @@ class Program:
             extra.update(bind(system, model).arrays)
         written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
         extra |= {name: self._storage(path) for name, path in written.items()}
-        self._sides = [(b, self._sides_of(b)) for b in self._writer.happenings]
+        self._sides = [(b, self._sides_of(b)) for b in self._writer.events]
         extra |= {sides_of(b): sides for b, sides in self._sides}
         self._columns = [
             extra[name] if name in extra else self._column(name.replace("_", ".", 1))
@@ -131,7 +138,7 @@ class Program:
         self.changes_end = math.inf if self.lasting else loads_end(model)
         self._breaks = np.array([*load_breaks(model), math.inf])
         self._arrays = {name: np.zeros(shape) for name, shape in self.scratch.items()}
-        self._arrays |= {name: self._storage(f"particles.{name}") for name in _OF_PARTICLES}
+        self._arrays |= {path.partition(".")[2]: self._storage(path) for path in MOTION}
         self._arrays |= {"control": self._control, "account": self._account, "measures": self.measures}
         self._bind_arguments()
         self._bind_observed()
@@ -145,7 +152,7 @@ class Program:
     @property
     def watches_events(self) -> bool:
         """True if it stops where the quantity of an Event changes sign."""
-        return bool(self._writer.happenings)
+        return bool(self._writer.events)
 
     def _sides_of(self, b: Bound) -> NDArray[np.uint8]:
         """Of each row of an event, whether its quantity is negative, as the state has it."""
@@ -178,7 +185,7 @@ class Program:
         return self._unbalanced
 
     def _rows(self, table: str) -> int:
-        """How many elements of a table it holds."""
+        """Number of elements of a table that the program holds."""
         return self.model.tables[table].count
 
     def _column(self, path: str) -> Any:
@@ -208,7 +215,7 @@ class Program:
             "rod_work": (self.integrator.rod_rows, rods),
             "marks": (
                 max(rods, particles),
-                len(Mark) * len([*self._writer.branching, *self._writer.happenings]),
+                len(Mark) * len([*self._writer.branching, *self._writer.events]),
             ),
             "search": (len(Search),),
         }
@@ -223,23 +230,15 @@ class Program:
         self._arguments = (*self._after("loads_end", "advance"), *self._columns)
 
     def _bind_observed(self) -> None:
-        derived = {name: f"{table}.{name}" for table, names in OBSERVED.items() for name in names}
         for path in _GIVEN.values():
             self.model.column(path)  # brings it up to date
-        storage = {name: self._storage(path) for name, path in (derived | _GIVEN).items()}
-        storage |= {f"rods_{name}": storage[name] for name in ("axial_force", "length", "strain")}
+        storage = {name: self._storage(path) for name, path in COLUMNS_OBSERVED.items()}
         apart = {
             name: np.zeros_like(self._arrays[name]) for name in ("force", "resisting", "direction", "power")
         }
         self._unbalanced = apart["force"]
-        self._observed = self._after(
-            "dt",
-            "observe",
-            applied=storage["applied_force"],
-            yields=self.model.settings.plasticity,
-            **storage,
-            **apart,
-        )
+        yields = self.model.settings.plasticity
+        self._observed = self._after("dt", "observe", yields=yields, **storage, **apart)
 
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
         """Take up to `steps` steps; returns how many, and why it stopped.
@@ -250,57 +249,34 @@ class Program:
         if self._sides and not self._is_fresh:
             for b, sides in self._sides:
                 sides[:] = self._sides_of(b)
-        if self.integrator.controlled:
-            return self._advance_controlled(steps, until, landing)
-        time, size = self._control[:2].tolist()
-        if until < math.inf:
+        controlled, (time, size) = self.integrator.controlled, self._control[:2].tolist()
+        if until < math.inf and not controlled:
             steps = min(steps, max(int((until - time) / size * (1.0 + 1e-12)), 0))
             if steps == 0:
                 return 0, StopReason.DONE
-        origin = float(self._origin[0])
-        total, since = self._counts.tolist()
-        taken, reason = self.module.advance(
-            steps,
-            self._is_fresh,
-            total,
-            total - since,
-            origin,
-            size,
-            self._breaks,
-            self.changes_end,
-            *self._arguments,
-        )
-        if taken:
-            self._counts[0] = total + taken
-            self._control[0] = origin + (total - since + taken) * size
-            self._mark_changes()
-        self._state_revision = self.model.newest(Role.STATE)
-        return taken, _REASONS[reason]
-
-    def _advance_controlled(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
-        before = self._control.item(0)
         origin, limit = self._origin.tolist()
         total, since = self._counts.tolist()
+        chosen = (self.tolerance, limit or math.inf) if controlled else (size,)
+        bounds = (float(until), float(landing)) if controlled else ()
         taken, reason = self.module.advance(
             steps,
             self._is_fresh,
             total,
             total - since,
             origin,
-            self.tolerance,
-            limit or math.inf,
+            *chosen,
             self._breaks,
-            float(until),
-            float(landing),
+            *bounds,
             self.changes_end,
             *self._arguments,
         )
-        time = self._control.item(0)
-        if time > before:
+        if taken and not controlled:
+            self._control[0] = origin + (total - since + taken) * size
+        now = self._control.item(0)
+        if taken or now > time:
             self._counts[0] = total + taken
-            if self.tolerance or time == landing:
-                self._origin[0] = time
-                self._counts[1] = total + taken
+            if controlled and (self.tolerance or now == landing):
+                self._origin[0], self._counts[1] = now, total + taken
             self._mark_changes()
         self._state_revision = self.model.newest(Role.STATE)
         return taken, _REASONS[reason]
@@ -338,7 +314,7 @@ class Program:
 def _by_table_and_role(model: Model, written: Iterable[str]) -> list[tuple[str, list[str], Role]]:
     """Table, arrays and role of the columns that steps change, those of commits included."""
     paths = [f"clock.{name}" for name in (*CONTROL, *_ORIGIN, *_COUNTS, *ACCOUNT)]
-    paths += [*(f"particles.{name}" for name in _OF_PARTICLES), *written]
+    paths += [*MOTION, *written]
     found: dict[tuple[str, Role], list[str]] = {}
     for path in dict.fromkeys(paths):
         table, _, name = path.partition(".")

@@ -14,9 +14,7 @@ from components.model import Model
 from systems.base import Integrator, StepSystem, StopReason
 from systems.program.binding import bind, read_only
 from systems.program.blocks import Layout, Numbers
-from systems.program.program import OBSERVED, Program
-
-_STATE = ("particles.displacement", "particles.velocity")
+from systems.program.program import MOTION, OBSERVED, Program
 
 
 class ReorderedProgram(Program):
@@ -49,7 +47,7 @@ class ReorderedProgram(Program):
         self._held: dict[str, tuple[Column, Numbers, Column]] = {}
         super().bind()
         written = [path for b in self._writer.commits for path in b.system.writes]
-        self._of_state = [self._held[path] for path in (*_STATE, *written)]
+        self._of_state = [self._held[path] for path in (*MOTION, *written)]
         self._derived = [self._held[f"{table}.{name}"] for table, names in OBSERVED.items() for name in names]
         ordered = self.columns | self._of_layout()
         ordered |= self._of_systems(ordered)

@@ -6,14 +6,14 @@ on the plan: which kernels are called for each particle and rod, with which colu
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from components.model import Model
 from components.rod import is_warm
-from systems.base import Event, Integrator, Law, StepSystem, StopReason
+from systems.base import Event, Integrator, StepSystem, StopReason
 from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
 from systems.physics.automatic import SMALL
 from systems.program.binding import (
@@ -113,6 +113,11 @@ class Writer:
     """
 
     def __init__(self, model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> None:
+        from systems.physics.kernels import (  # imports numba, when a program is built, not before
+            conserved,
+            judge,
+        )
+
         self.model = model
         self.form = form
         self.integrator = integrator
@@ -121,12 +126,13 @@ class Writer:
         check_names(self.bound)
         self.of = by_role(self.bound)
         self.commits = [b for role in HISTORIES for b in self.of[role]]
-        self.happenings = self.of[StepRole.EVENT]
+        self.events = self.of[StepRole.EVENT]
         self.branching = [b.system for b in self.bound if getattr(b.system, "margin", "")]
-        self.names: dict[str, Callable[..., Any]] = {b.call: b.function for b in self.bound} | _of_energy()
+        self.names: dict[str, Callable[..., Any]] = {b.call: b.function for b in self.bound}
+        self.names |= {"conserved": conserved, "judge": judge}
         self.names |= {kind.__name__: kind for kind in _ENTRIES}
         self.rates = bool(self.of[StepRole.RATE] or self.of[StepRole.RESISTANCE])
-        self.working = [b for b in self.of[StepRole.SUMMED] if not _is_elastic(b)]
+        self.working = [b for b in self.of[StepRole.SUMMED] if not getattr(b.system, "elastic", False)]
         self.powers = self.rates or bool(self.of[StepRole.PARTICLE_FORCE] or self.working)
         # All arrays that the functions read or write besides the integrator's own.
         self.columns = [*_ALWAYS, *(["rods_misfit"] if self.warm else [])]
@@ -171,7 +177,7 @@ class Writer:
             self._integrate(),
             *(self._pasted(part, "inlined") for part in reversed(self.integrator.parts)),
             *self._of_steps(),
-            self._external(),
+            pasted(forces.external, "compiled", particle_forces=self._particle_forces()),
             self._measure(),
             self._observe(),
             *([self._commit()] if self.commits else []),
@@ -207,7 +213,7 @@ class Writer:
             "RATES": self.rates,
             "POWERS": self.powers,
             "LOADS": bool(self.of[StepRole.LOAD]),
-            "HAPPENINGS": bool(self.happenings),
+            "STOPS": bool(self.events),
             "SHADOW": float(self.integrator.guard),
             "CHECK_INTERVAL": self.integrator.check_interval,
             "REVIEW_INTERVAL": REVIEW_INTERVAL,
@@ -239,9 +245,6 @@ class Writer:
         ]
 
     # --- particles --------------------------------------------------------------------------------
-
-    def _external(self) -> str:
-        return pasted(forces.external, "compiled", particle_forces=self._particle_forces())
 
     def _particle_forces(self, powers: bool = False, span: str = EVERY) -> list[str]:
         """Forces on the particles from outside, and of the laws that resist their motion."""
@@ -412,16 +415,16 @@ class Writer:
         return [*self._particles(self.integrator.ends), *self._gains("resist", RESISTED)]
 
     def _finish(self) -> list[str]:
-        """What the last of many steps leaves to do."""
+        """The lines after the last of many steps."""
         return []
 
     def _particles(self, where: str, span: str = EVERY) -> list[str]:
-        """What the integrator does with every particle."""
+        """A loop in which the integrator moves every particle."""
         lines = fragment(find(where, self.integrator), total_force=fragment(fixed_steps.total_force))
         return [f"for i in range({span}):", *indented(lines)] if lines else []
 
     def _gains(self, resist: str, given: str) -> list[str]:
-        """What each account gains in the step that ends here."""
+        """The lines by which each account gains in the step that ends here."""
         if not self.powers:
             return []
         powers = fragment(fixed_steps.powers, accounts=str(len(ACCOUNTS)))
@@ -430,27 +433,30 @@ class Writer:
     # --- events -----------------------------------------------------------------------------------
 
     def _happened(self) -> list[str]:
-        """What tells at the end of a step whether the quantity of an event changed sign."""
-        if not self.happenings:
-            return []
-        of_rods, of_particles = self._turns(["gap < 0.0"] * len(self.happenings))
-        return [pasted(events.happened_by_now, "compiled", "happened", rods=of_rods, particles=of_particles)]
-
-    def _turns(self, conditions: Sequence[str]) -> tuple[list[str], list[str]]:
-        """Loops over the rods and over the particles in which events change sides, each under its condition."""
+        """The function that tells at the end of a step whether the quantity of an event changed sign."""
         lines: dict[str, list[str]] = {"rods": [], "particles": []}
-        for b, condition in zip(self.happenings, conditions, strict=True):
+        for place, b in enumerate(self.events):
             lines[b.each] += [
-                *(self._axial_force() if "axial_force" in b.parameters else []),
-                *fragment(events.turn, sides=sides_of(b), quantity=self._apply(b, "r"), turned=condition),
+                *self._needed_force(b),
+                *fragment(
+                    events.turn, sides=sides_of(b), quantity=self._apply(b, "r"), turned=self._turned(place)
+                ),
             ]
-        return self._each_row(lines["rods"], lines["particles"])
+        return [pasted(events.happened, "compiled", **self._each_row(lines))] if self.events else []
 
-    def _each_row(self, of_rods: list[str], of_particles: list[str]) -> tuple[list[str], list[str]]:
+    def _turned(self, place: int) -> str:
+        """The condition that the quantity of an event, `gap` on the side that it was on, changed sign in the step."""
+        return "gap < 0.0"
+
+    def _needed_force(self, b: Bound) -> list[str]:
+        return self._axial_force() if "axial_force" in b.parameters else []
+
+    def _each_row(self, lines: Mapping[str, list[str]]) -> dict[str, Any]:
         """Loops over the rods and over the particles with these lines, where there are any, for row `r`."""
+        of_rods, of_particles = lines["rods"], lines["particles"]
         rod_loop = RodLoop(SHIFT | DRIFT, [*self.geometry(), *fragment(rods.rate), *of_rods]).one_by_one()
         particle_loop = [f"for r in range({EVERY}):", *indented(of_particles)]
-        return rod_loop if of_rods else [], particle_loop if of_particles else []
+        return {"rods": rod_loop if of_rods else [], "particles": particle_loop if of_particles else []}
 
     # --- reading ----------------------------------------------------------------------------------
 
@@ -479,16 +485,10 @@ class Writer:
 
 def read_sources(integrators: Iterable[Integrator]) -> None:
     """Find the sources of integrators ahead of need; those of one take some frames."""
-    for integrator in integrators:
-        for part in (
-            integrator.kernel,
-            integrator.begins,
-            integrator.ends,
-            integrator.entry,
-            *integrator.parts,
-        ):
+    for one in integrators:
+        for part in (one.kernel, one.begins, one.ends, one.entry, *one.parts):
             if isinstance(part, str) and part:
-                source_of(find(part.partition("=")[0], integrator))
+                source_of(find(part.partition("=")[0], one))
 
 
 def sides_of(b: Bound) -> str:
@@ -539,13 +539,3 @@ def _literal(value: Any) -> str:
 def _origin(function: Any) -> str:
     plain = getattr(function, "py_func", function)
     return f"{plain.__module__}.{plain.__qualname__}"
-
-
-def _of_energy() -> dict[str, Callable[..., Any]]:
-    from systems.physics.kernels import conserved, judge  # imports numba, when a program is built, not before
-
-    return {"conserved": conserved, "judge": judge}
-
-
-def _is_elastic(b: Bound) -> bool:
-    return isinstance(b.system, Law) and b.system.elastic

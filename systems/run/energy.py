@@ -43,7 +43,7 @@ class Energy:
 def opened(measures: Any, clock: Clock) -> tuple[Any, Any, Any]:
     """ENTRIES of an account that a run begins with: what energy there is, is its initial one.
 
-    measures: as of Dynamics, along the first axis.
+    measures: as of Program, along the first axis.
     """
     kinetic, elastic, potential = (measures[entry] for entry in ENERGIES)
     damping, plastic, impact = map(clock, DISSIPATED)

@@ -32,7 +32,7 @@ class MeasuredError:
 
 
 def work(simulation: Simulation) -> int:
-    """How many times the run evaluated the force of a rod, which running it again takes at least."""
+    """Number of evaluations of a rod's force in the run; running it again takes at least as many."""
     stages: int = simulation.integrator.constants.get("STAGES", 1)
     return simulation.model.clock.steps * max(simulation.model.rods.count, 1) * stages
 
@@ -49,14 +49,10 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     model = simulation.model
     clock, then = model.clock, beginning.columns
     met = clock.collisions > then["clock.collisions"][0] or clock.collision_state is not None
-    if (
-        met
-        or simulation.program.watches_events
-        or simulation.integrator.exact
-        or not clock.time > then["clock.time"][0]
-    ):
+    meaningless = met or simulation.program.watches_events or simulation.integrator.exact
+    if meaningless or not clock.time > then["clock.time"][0]:
         return None
-    program = simulation.step_program
+    program = simulation.programs.compiled
     reached, size, target = model.particles.displacement.copy(), clock.step_size, simulation.moved_until
     yielded = clock.dissipated_plastic > then["clock.dissipated_plastic"][0]
     with simulation.aside(beginning):
@@ -94,7 +90,7 @@ def _by_steps(simulation: Simulation, program: Program, target: float, size: flo
     """Run to a time by equal steps, at most half as long as `size`; returns as _pieces does."""
     clock = program.model.clock
     steps = math.ceil(2.0 * (target - clock.time) / size * (1.0 - 1e-9))
-    simulation.begin_step_size((target - clock.time) / steps)
+    simulation.step_size.begin((target - clock.time) / steps)
     if program.integrator.controlled:
         return _pieces(program, target)
     largest, piece = 0.0, -(-steps // PIECES)

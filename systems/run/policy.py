@@ -25,15 +25,10 @@ FIRST_SHARE = 0.1  # of 1/ω, the step at which error control begins
 FREE_STEP = 1e-3  # s, where nothing limits the step
 DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
 
-ERROR_CONTROL = (
-    "step_error",
-    "largest_displacement",
-    "largest_speed",
-)  # of the clock; 0 where steps begin anew
+ERROR_CONTROL = "step_error", "largest_displacement", "largest_speed"  # of the clock; 0 where steps begin anew
 
-SLEEP_INTERVAL = (
-    1024  # steps between reviews of islands; fewer: asleep sooner, but one costs as much as ten steps
-)
+# Steps between reviews of islands; fewer: asleep sooner, but a review costs as much as ten steps.
+SLEEP_INTERVAL = 1024
 
 
 # --- step sizes ------------------------------------------------------------------------------------------
@@ -49,14 +44,9 @@ class Limits:
 
     @classmethod
     def of(cls, integrator: Integrator, frequency: float, decay: float) -> Limits:
-        """Those of an integrator; infinite where nothing swings or decays."""
+        """The limits of an integrator; infinite where nothing swings or decays."""
         limited = frequency > 0.0 or decay > 0.0
         return cls(frequency, decay, integrator.stable_step(frequency, decay) if limited else math.inf)
-
-
-def not_shown() -> float:
-    """The longest step (s) that a person can follow, where nobody watches."""
-    return math.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,13 +54,13 @@ class StepPolicy:
     """How the steps of a run are chosen.
 
     fixed: the step (s) that a person chose; None: automatic. rods: how many the model has.
-    shown: gives the longest step (s) that a person can follow.
+    shown: gives the longest step (s) that a person can follow; infinite where nobody watches.
     """
 
     integrator: Integrator
     fixed: float | None
     rods: int
-    shown: Callable[[], float] = not_shown
+    shown: Callable[[], float] = lambda: math.inf
 
     @property
     def controls_error(self) -> bool:
@@ -151,7 +141,7 @@ def is_before(time: Any, target: float) -> Any:
 def residual(measures: Column) -> Column:
     """Largest unbalanced force on a free particle over the largest force of all, dampers apart.
 
-    measures: as of Dynamics, along the first axis.
+    measures: as of Program, along the first axis.
     """
     unbalanced, largest = measures[Measure.RESIDUAL], measures[Measure.LARGEST_FORCE]
     found: Column = np.divide(unbalanced, largest, out=np.zeros(largest.shape), where=largest > 0.0)
@@ -159,5 +149,5 @@ def residual(measures: Column) -> Column:
 
 
 def at_rest_since(time: float) -> str:
-    """What to say of a model that came to rest at this time (s)."""
+    """The message of a model that came to rest at this time (s)."""
     return f"At rest since t = {time:.6g} s."

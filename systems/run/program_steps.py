@@ -25,7 +25,7 @@ class ProgramSteps:
 
     @property
     def program(self) -> Program:
-        """What takes the next steps."""
+        """The program that takes the next steps."""
         whole = self._programs.compiled
         if not self._sleep.any_asleep:
             return whole
@@ -34,7 +34,7 @@ class ProgramSteps:
         return self._sleep.part(whole)
 
     def rebound(self) -> Program:
-        """What takes the next steps, now that an impact changed the plan or woke something."""
+        """The program that takes the next steps, now that an impact changed the plan or woke something."""
         self._programs.unbind()
         return self.program
 

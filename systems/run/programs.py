@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 
 from components.model import Model
 from components.rod import is_warm
@@ -19,30 +18,20 @@ from systems.program.binding import ProgramError
 from systems.program.culprit import blame_mod
 from systems.program.parallel import make_program
 from systems.program.program import Program
-from systems.program.stepper import Dynamics
 from systems.program.writer import form_of
 from systems.schedule import Plan, Schedule
 
 FREE_FLIGHT = FreeFlight()
 
 Key = tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Bound:
-    """What moves a model by one plan: exact flight, or else a compiled program. collides: particles may meet."""
-
-    dynamics: Dynamics
-    collides: bool
-    flight: Flight | None = None
-    program: Program | None = None
+Dynamics = Program | Flight  # what moves a model: forces and energies by the systems of its plan
 
 
 class Programs:
     """The step programs of one model, made once for each plan; the present plan's is bound to the model.
 
-    scene: the one whose systems act. bindings: how often one was bound. compile_seconds: spent in compiling or
-    loading them.
+    scene: the one whose systems act. collides: particles may meet, by the plan that was bound last. bindings: how often
+    a plan was bound. compile_seconds: spent in compiling or loading programs.
     """
 
     def __init__(self, model: Model, schedule: Schedule, impacts: Impacts, scene: str) -> None:
@@ -50,11 +39,12 @@ class Programs:
         self._model = model
         self._schedule = schedule
         self._impacts = impacts
+        self.collides = False
         self.bindings = 0
         self.compile_seconds = 0.0
-        self._made: dict[Key, Bound] = {}
+        self._made: dict[Key, Dynamics] = {}
         self._integrator: Integrator | None = None
-        self._bound: Bound | None = None
+        self._bound: Dynamics | None = None
 
     @property
     def plan(self) -> list[StepSystem]:
@@ -76,7 +66,7 @@ class Programs:
 
     @contextmanager
     def in_scene(self, scene: str) -> Iterator[None]:
-        """What is asked inside is answered as if the systems of this scene acted."""
+        """Questions inside the `with` are answered as if the systems of this scene acted."""
         integrator, before = self._integrator, self.scene
         self._integrator, self.scene = None, scene
         try:
@@ -118,36 +108,23 @@ class Programs:
     # --- the one that is bound -----------------------------------------------------------------------
 
     @property
-    def program(self) -> Dynamics:
-        """What moves the model, bound to it as it is now."""
-        return self._present.dynamics
-
-    @property
-    def flight(self) -> Flight | None:
-        """The same if it is exact flight, or None."""
-        return self._present.flight
+    def dynamics(self) -> Dynamics:
+        """The program or flight that moves the model, bound to it as it is now."""
+        return self._bound or self.bind()
 
     @property
     def compiled(self) -> Program:
-        """The same if it is a compiled program; exact flight has none."""
-        program = self._present.program
-        assert program is not None
+        """The compiled program that moves the model; exact flight has none."""
+        program = self.dynamics
+        assert isinstance(program, Program)
         return program
 
-    @property
-    def collides(self) -> bool:
-        """True if particles may meet."""
-        return self._present.collides
-
-    @property
-    def _present(self) -> Bound:
-        return self._bound or self.bind()
-
-    def bind(self) -> Bound:
+    def bind(self) -> Dynamics:
         """Have what moves the model bound to it, without mods whose systems cannot join it."""
         while self._bound is None:
+            plan = self.plan
             try:
-                self._bound = self._bound_to(self.plan)
+                self._bound, self.collides = self._bound_to(plan), _collides(plan)
                 self.bindings += 1
             except ProgramError as error:
                 if not blame_mod(error):
@@ -163,22 +140,20 @@ class Programs:
         """The document changed."""
         self._integrator = self._bound = None
 
-    def _bound_to(self, plan: list[StepSystem]) -> Bound:
+    def _bound_to(self, plan: list[StepSystem]) -> Dynamics:
         key = self._key(plan)
         if key in self._made:
-            self._made[key].dynamics.bind()
+            self._made[key].bind()
         else:
             self._made[key] = self._make(plan)
-            self.compile_seconds += self._made[key].dynamics.compile_seconds
+            self.compile_seconds += self._made[key].compile_seconds
         return self._made[key]
 
-    def _make(self, plan: list[StepSystem]) -> Bound:
-        if self.integrator.exact:
-            hand = next((system for system in plan if isinstance(system, Pull)), None)
-            flight = Flight(self._model, self._impacts, hand)
-            return Bound(flight, collides=True, flight=flight)
-        program = make_program(self._model, plan, self.integrator)
-        return Bound(program, collides=_collides(plan), program=program)
+    def _make(self, plan: list[StepSystem]) -> Dynamics:
+        if not self.integrator.exact:
+            return make_program(self._model, plan, self.integrator)
+        hand = next((system for system in plan if isinstance(system, Pull)), None)
+        return Flight(self._model, self._impacts, hand)
 
     def _key(self, plan: list[StepSystem]) -> Key:
         warmth = ("rods.misfit",) if is_warm(self._model) else ()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -14,18 +14,17 @@ from components.model import ADDED, Model
 from components.numeric_range import incomputable
 from components.snapshot import Snapshot
 from components.world import Derivation
-from systems.base import Event, Integrator, StepSystem, StopReason
+from systems.base import Integrator, StepSystem, StopReason
 from systems.collision.driven.stepper import DrivenCollisions
+from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
 from systems.collision.overlaps import part_overlaps
-from systems.program.program import Program
-from systems.program.stepper import Dynamics, Stepper
 from systems.program.writer import REVIEW_INTERVAL
 from systems.run.checkpoint import Checkpoint
 from systems.run.energy import Account, Energy
 from systems.run.policy import at_rest_since, is_before, is_sleep_review, residual
 from systems.run.program_steps import ProgramSteps
-from systems.run.programs import Programs
+from systems.run.programs import Dynamics, Programs
 from systems.run.recovery import Recovery
 from systems.run.sleep import Sleep
 from systems.run.step_size import StepSize
@@ -46,18 +45,13 @@ OBSERVED = (
 
 
 @dataclass(frozen=True)
-class Happening:
+class EventRecord:
     """An event of a run: its name, when (s), and the names of the elements whose quantity fell below 0 and rose."""
 
     event: str
     time: float
     fallen: tuple[str, ...]
     risen: tuple[str, ...]
-
-    @classmethod
-    def of(cls, event: Event, time: float, fallen: Iterable[Any], risen: Iterable[Any]) -> Happening:
-        """What happened to these elements now."""
-        return cls(event.name, time, tuple(h.name for h in fallen), tuple(h.name for h in risen))
 
 
 class Simulation:
@@ -66,8 +60,11 @@ class Simulation:
     reason: why the last advance ended; message: the same as a sentence, or "".
     note: what a person should know though the run goes on, or "".
     impacts: what collided so far. compute_seconds: spent so far in steps.
-    watchers: each is asked before steps are taken, and returns after how many at most it wants to be asked again.
-    happenings: the events so far, while nothing was taken back.
+    armed: all edits are accounted for, and the step size fits the document. armed_revision: changes whenever the
+    document that is run changed.
+    programs: by what steps are taken. step_size: how long they are, and what limits them.
+    before_steps: each is called before steps are taken, and returns how many may be taken before the next call.
+    events: what happened so far, without what was taken back.
     """
 
     def __init__(self, model: Model, schedule: Schedule, scene: str = "simulation") -> None:
@@ -77,27 +74,27 @@ class Simulation:
         self.message = ""
         self.note = ""
         self.compute_seconds = 0.0
-        self.watchers: list[Callable[[], int]] = []
-        self.happenings: list[Happening] = []
+        self.before_steps: list[Callable[[], int]] = []
+        self.events: list[EventRecord] = []
         self.impacts = Impacts(model)
-        self._programs = Programs(model, schedule, self.impacts, scene)
+        self.programs = Programs(model, schedule, self.impacts, scene)
         self._sleep = Sleep(model)
-        self._step_size = StepSize(model, self._programs, self._sleep)
-        self._steps = ProgramSteps(model, self._programs, self._sleep, self._step_size)
+        self.step_size = StepSize(model, self.programs, self._sleep)
+        self._steps = ProgramSteps(model, self.programs, self._sleep, self.step_size)
         self._driven_collisions = DrivenCollisions(model, self.impacts, self._steps)
         self._account = Account(model, self._measured)
-        self._recovery = Recovery(model, self._programs, self._sleep, self._step_size)
+        self._recovery = Recovery(model, self.programs, self._sleep, self.step_size)
         self._announces = True
         self._present: tuple[int, Snapshot] | None = None  # the state at this revision
         self._rested = 0.0  # s, when it came to rest last
-        self._armed = False  # the energy account and the step size fit the present document
-        self._armed_revision = -1
+        self.armed = False
+        self.armed_revision = -1
         model.before_change = self.before_change
         model.derive(Derivation(OBSERVED, self._sources(), lambda world: self.observe()))
         self.forget()  # a saved run goes on with the step size it had
 
     def _sources(self) -> tuple[str, ...]:
-        """What the derived columns follow from."""
+        """The columns that the derived ones follow from."""
         tables = ["particles", "rods", "loads", "environment", "settings", "clock"]
         tables += [kind.table for kind in ADDED.values() if kind.table in self.model.tables]
         return tuple(
@@ -109,72 +106,39 @@ class Simulation:
     # --- what takes the steps ------------------------------------------------------------------------
 
     @property
-    def scene(self) -> str:
-        """The name of the scene whose laws, commits and integrators act."""
-        return self._programs.scene
-
-    @property
     def plan(self) -> list[StepSystem]:
         """The laws and commits that act in its scene and that the model needs, in order."""
-        return self._programs.plan
+        return self.programs.plan
 
     def planned(self, scene: str = "") -> Plan:
         """All systems that run in a scene (none given: its own) with its model, and why the others do not."""
-        with self._programs.in_scene(scene or self.scene):
-            return self._programs.planned()
+        with self.programs.in_scene(scene or self.programs.scene):
+            return self.programs.planned()
 
     def act_in(self, scene: str) -> None:
         """Let the systems of a scene act from now on. What they do otherwise counts as an edit."""
-        if self._programs.differ_in(scene):
+        if self.programs.differ_in(scene):
             self.before_change()  # the edit starts from the energy under the laws until now
-        self._programs.scene = scene
+        self.programs.scene = scene
 
     @property
     def integrator(self) -> Integrator:
-        """What advances time: an integrator, or exact flight."""
-        return self._programs.integrator
+        """The integrator that advances time, or exact flight."""
+        return self.programs.integrator
 
     @property
     def program(self) -> Dynamics:
-        """What moves the model, bound to it as it is now."""
-        return self._programs.program
+        """The program or flight that moves the model, bound to it as it is now."""
+        return self.programs.dynamics
 
     @property
-    def step_program(self) -> Program:
-        """The same as a compiled step program; exact flight has none."""
-        return self._programs.compiled
-
-    @property
-    def ready(self) -> bool:
-        """False if the next step or observation needs a program that is not loaded yet."""
-        return self._programs.ready
-
-    @property
-    def collides(self) -> bool:
-        """True if particles may meet."""
-        return self._programs.collides
-
-    @property
-    def compile_seconds(self) -> float:
-        """Spent so far in compiling or loading programs."""
-        return self._programs.compile_seconds
-
-    @property
-    def _stepper(self) -> Stepper:
-        """What takes the steps: exact flight, or those of a program, ended at impacts if any may come."""
-        return self._programs.flight or (self._driven_collisions if self._programs.collides else self._steps)
+    def _stepper(self) -> Flight | DrivenCollisions | ProgramSteps:
+        """The stepper: exact flight, or the steps of a program, ended at impacts if any may come."""
+        if isinstance(self.program, Flight):
+            return self.program
+        return self._driven_collisions if self.programs.collides else self._steps
 
     # --- getting ready -------------------------------------------------------------------------------
-
-    @property
-    def armed(self) -> bool:
-        """True if all edits are accounted for and the step size fits the document."""
-        return self._armed
-
-    @property
-    def armed_revision(self) -> int:
-        """Changes whenever the document that is run changed."""
-        return self._armed_revision
 
     @property
     def _started(self) -> bool:
@@ -182,38 +146,34 @@ class Simulation:
 
     def before_change(self) -> None:
         """Before anything is edited, note the energy that the edit starts from; the program is void."""
-        if self._armed:
+        if self.armed:
             self._account.begin_edit()
-            self._armed = False
+            self.armed = False
         if self.model.clock.collision_state is not None:
             self.model.writable("clock.collision_state")[0] = None
-        self._programs.void()
+        self.programs.void()
         self._sleep.forget()
 
     def _arm(self) -> None:
         """Get ready to run after edits: account for them, choose the step size, keep a safe state."""
-        if not self._armed:
+        if not self.armed:
             problem = incomputable(self.model)
             if not problem:
-                self._part_overlaps()
+                collides = any(system.impulsive for system in self.plan)
+                self.note = part_overlaps(self.model) if collides else ""  # of what edits left in one place
                 self.program.commit()  # what edits left beyond a strength yields
                 self._account.close()
                 self._sleep.review(self.program)
-                self._step_size.begin(self._step_size.first())
-            self._armed = True
-            self._armed_revision = self.model.revision
+                self.step_size.begin(self.step_size.first())
+            self.armed = True
+            self.armed_revision = self.model.revision
             self._recovery.safe = None
             self.reason, self.message = StopReason.DIVERGED if problem else StopReason.DONE, problem
         elif self._recovery.safe is None:
-            self._step_size.look_up()
+            self.step_size.look_up()
         if self._recovery.safe is None:
             self._recovery.safe = self.present()
-        self._programs.bind()
-
-    def _part_overlaps(self) -> None:
-        """Particles that edits left in one another's place are moved apart; a note says so."""
-        collides = any(system.impulsive for system in self.plan)
-        self.note = part_overlaps(self.model) if collides else ""
+        self.programs.bind()
 
     def account_for_edits(self) -> None:
         """If the run was edited, account for it now, so that its state is complete."""
@@ -228,11 +188,11 @@ class Simulation:
 
     def forget(self) -> None:
         """The state was replaced (undo, a saved run) by one that fits the document, accounted for."""
-        self._programs.unbind()  # its plan may be another one: what is in contact is part of the state
+        self.programs.unbind()  # its plan may be another one: what is in contact is part of the state
         self._forget_run()
 
     def _forget_run(self) -> None:
-        self._armed = self._started
+        self.armed = self._started
         self._sleep.forget()
         self._account.before_edit = None
         self._recovery.forget()
@@ -256,62 +216,32 @@ class Simulation:
         return Checkpoint(
             Snapshot.take(self.model, *tables) if tables else self.present(),
             self.model.clock.steps,
-            self._armed,
+            self.armed,
             self._account.before_edit,
-            self.stable_step,
-            self.warning,
-            self._programs.bindings,
+            self.step_size.stable,
+            self.step_size.warning,
+            self.programs.bindings,
         )
 
     def resume(self, checkpoint: Checkpoint) -> None:
         """Return to a checkpoint in which the document was as it is now."""
         checkpoint.state.restore(self.model)
-        self.happenings = [
-            happening for happening in self.happenings if happening.time <= self.model.clock.time
-        ]
-        if checkpoint.binding != self._programs.bindings:
-            self._programs.unbind()
+        self.events = [event for event in self.events if event.time <= self.model.clock.time]
+        if checkpoint.binding != self.programs.bindings:
+            self.programs.unbind()
         self._forget_run()
-        self._armed, self._account.before_edit = checkpoint.armed, checkpoint.before_edit
+        self.armed, self._account.before_edit = checkpoint.armed, checkpoint.before_edit
         if checkpoint.whole:  # else what limits the step is found out anew
             self._recovery.safe = checkpoint.state
-            self._step_size.stable, self._step_size.warning = checkpoint.stable_step, checkpoint.warning
-        self._armed_revision = self.model.revision
-
-    # --- the step size -------------------------------------------------------------------------------
-
-    @property
-    def stable_step(self) -> float:
-        """The largest stable step (s) that was found last."""
-        return self._step_size.stable
-
-    @property
-    def warning(self) -> str:
-        """That the steps are longer than is stable, or ""."""
-        return self._step_size.warning
-
-    @property
-    def smooth(self) -> bool:
-        """True if steps are not longer than what is shown at once, even where accuracy would allow it.
-
-        Else they are too long to be watched, and to be interrupted.
-        """
-        return self._step_size.smooth
-
-    @smooth.setter
-    def smooth(self, smooth: bool) -> None:
-        self._step_size.smooth = smooth
-
-    def begin_step_size(self, size: float) -> None:
-        """From now on steps have this size (s); the guard against divergence compares with this moment."""
-        self._step_size.begin(size)
+            self.step_size.stable, self.step_size.warning = checkpoint.stable_step, checkpoint.warning
+        self.armed_revision = self.model.revision
 
     # --- running -------------------------------------------------------------------------------------
 
     @property
     def halted(self) -> bool:
         """True if the run ended by itself, at rest or diverged, and nothing was edited since."""
-        return self._armed and self.reason in ENDS
+        return self.armed and self.reason in ENDS
 
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> int:
         """Take up to `steps` steps, none of which ends after `until` (s); returns how many.
@@ -323,8 +253,8 @@ class Simulation:
         first, done = clock.steps, 0
         while done < steps and not self.halted:
             ahead = min(steps - done, self._sleep.steps_to_review(self.program))
-            for watch in self.watchers:
-                ahead = min(ahead, watch())
+            for call in self.before_steps:
+                ahead = min(ahead, call())
             self._arm()  # if they edited something
             if self.halted:
                 break
@@ -343,24 +273,23 @@ class Simulation:
 
     def _heed(self, reason: StopReason) -> None:
         """Do what a stepper that returned for this reason asks for."""
-        self.reason = reason
+        self.reason = StopReason.DONE if reason is StopReason.EVENT else reason
         if reason is StopReason.REST:
             self._rested = self.model.clock.time
             self.message = at_rest_since(self._rested)
         elif reason is StopReason.REVIEW:
             self._review()
-        elif reason is StopReason.EVENT:
-            self.reason = StopReason.DONE
-        elif reason is not StopReason.DONE:
+        elif self.reason is not StopReason.DONE:
             self._recover(reason)
 
     def _announce_events(self) -> None:
         """Let events have their consequences, which may be edits."""
         if self.program.watches_events and self._announces:
-            for event, fallen, risen in self.program.take_events():
-                self.happenings.append(Happening.of(event, self.model.clock.time, fallen, risen))
-                there = [[handle for handle in handles if handle.exists] for handles in (fallen, risen)]
-                event.happen(self.model, *there)
+            for event, *changed in self.program.take_events():
+                elements: list[list[Any]] = changed  # that fell, and that rose
+                names = (tuple(element.name for element in some) for some in elements)
+                self.events.append(EventRecord(event.name, self.model.clock.time, *names))
+                event.happen(self.model, *([e for e in some if e.exists] for some in elements))
                 if event.mod is not None and event.mod.off:
                     self.before_change()  # it fails and acts no more, which counts as an edit
 
@@ -370,7 +299,7 @@ class Simulation:
         if not moves and self.program.changes_end <= self.model.clock.time:
             self._heed(StopReason.REST)  # all that happened was lost in rounding
         else:
-            self._step_size.review()
+            self.step_size.review()
 
     def _recover(self, reason: StopReason) -> None:
         """Return to the last good state and go on without a mod or with shorter steps, or give up."""
@@ -390,7 +319,7 @@ class Simulation:
     def _review_sleep(self) -> None:
         """Let islands at rest sleep."""
         if self._sleep.may_happen(self.program) and self._sleep.review(self.program):
-            self._step_size.limit_anew()
+            self.step_size.limit_anew()
 
     def run_to(self, target: float, *, whole_steps: bool = False) -> None:
         """Advance to exactly this time (s) by a last, short step; or only by whole steps that end by then."""
@@ -443,10 +372,10 @@ class Simulation:
 
     @contextmanager
     def aside(self, beginning: Snapshot) -> Iterator[None]:
-        """What is run inside starts from another state, and is taken back as if it had not been."""
+        """A run inside the `with` starts from another state, and is taken back as if it had not been."""
         before, announces = self.checkpoint(), self._announces
         self._announces = False  # what happened is known
-        said = self.reason, self.message, self.note, self._armed_revision
+        said = self.reason, self.message, self.note, self.armed_revision
         self.resume(replace(before, state=beginning, armed=False, before_edit=None))
         try:
             self._arm()
@@ -454,7 +383,7 @@ class Simulation:
         finally:
             self.resume(before)
             self._announces = announces
-            self.reason, self.message, self.note, self._armed_revision = said
+            self.reason, self.message, self.note, self.armed_revision = said
 
     # --- reading -------------------------------------------------------------------------------------
 
@@ -463,14 +392,14 @@ class Simulation:
         self.program.observe()
 
     def _measured(self) -> Column:
-        """What the program measures in the present state."""
+        """The measures of the present state."""
         self.observe()
         return self.program.measures
 
     @property
     def energy(self) -> Energy:
         """The energy account now."""
-        return self._account.energy(edited=not self._armed)
+        return self._account.energy(edited=not self.armed)
 
     @property
     def moved_until(self) -> float:
@@ -485,7 +414,7 @@ class Simulation:
 
 
 def _why_not_at_rest(program: Dynamics, limit: float) -> str:
-    """What to say of a run that did not come to rest by the time `limit` (s)."""
+    """The message of a run that did not come to rest by the time `limit` (s)."""
     message = f"Not at rest within {limit:g} s of simulated time."
     if program.lasting:
         return f"{message} {program.lasting} changes with time, so it never will be; run to a time instead."

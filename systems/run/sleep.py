@@ -21,8 +21,8 @@ from systems.physics.rest import Array, Mask, RestMeasure
 from systems.program.parallel import make_program
 from systems.program.program import Program
 from systems.program.reordered import ReorderedProgram
-from systems.program.stepper import Dynamics
 from systems.run.policy import steps_to_sleep_review
+from systems.run.programs import Dynamics
 
 
 class Sleep:
@@ -43,10 +43,8 @@ class Sleep:
         """True if islands may sleep under this program, and there is more than one."""
         asked = program, self.model.newest(Role.DOCUMENT)
         if asked != self._asked:
-            self._asked, self._answer = (
-                asked,
-                (self.model.settings.sleeping and program.follows_state and not program.watches_events),
-            )
+            self._asked = asked
+            self._answer = self.model.settings.sleeping and program.follows_state and not program.watches_events
             if self._answer:
                 self._look_up()
                 self._answer = self._count > 1
@@ -134,7 +132,7 @@ class Sleep:
         self._bound = None
 
     def part(self, program: Program) -> Program:
-        """What takes the steps of a program: itself, or while some sleep one of those that are awake."""
+        """The program that takes the steps: the given one, or while some sleep its part that is awake."""
         if not self.any_asleep:
             return program
         asleep = self.model.particles.asleep

@@ -23,7 +23,8 @@ class StepSize:
     """Applies the policy of step sizes to one model's clock.
 
     stable: the largest stable step (s) that was found last. warning: that the steps are longer, or "".
-    smooth: steps are not longer than what is shown at once.
+    watched: steps are not longer than what is shown at once, even where accuracy would allow it; else they are too long
+    to be watched, and to be interrupted.
     """
 
     def __init__(self, model: Model, programs: Programs, sleep: Sleep) -> None:
@@ -32,7 +33,7 @@ class StepSize:
         self._sleep = sleep
         self.stable = math.inf
         self.warning = ""
-        self.smooth = True
+        self.watched = True
 
     @property
     def _policy(self) -> StepPolicy:
@@ -43,14 +44,13 @@ class StepSize:
 
     def _longest_shown(self) -> float:
         """The longest step (s) that a person can follow."""
-        watched = (
-            self.smooth or self._programs.program.watches_events
-        )  # so that these happen at the same time anywhere
+        # Events happen at the same time whether anybody watches or not.
+        watched = self.watched or self._programs.dynamics.watches_events
         return SHOWN * natural_pace(self._model) if watched else math.inf
 
     def begin(self, size: float) -> None:
         """From now on steps have this size (s); the guard against divergence compares with this moment."""
-        model, program = self._model, self._programs.program
+        model, program = self._model, self._programs.dynamics
         begin_steps(lambda name: model.writable(f"clock.{name}"), 0, size)
         program.observe()
         model.writable("clock.guard_energy")[0] = program.conserved_energy()
@@ -97,7 +97,7 @@ class StepSize:
             self._model.writable("clock.step_limit")[0] = self._policy.limit(self.look_up())
 
     def remedy(self, size: float | None) -> str:
-        """What to do about a run that is unstable with steps of this size (s), None: automatic."""
+        """The remedy for a run that is unstable with steps of this size (s), None: automatic."""
         integrator = self._programs.integrator
         name = integrator.name.rpartition(".")[2]
         if self.stable == 0.0:

@@ -96,7 +96,7 @@ def ours(problem: Problem, method: str) -> Run:
         choices = {"integrator": method, "collisions": False, knob: setting}
         session = Session.open(problem.document | {"settings": choices})
         simulation = session.simulation
-        simulation.smooth = False  # nobody watches
+        simulation.step_size.watched = False  # nobody watches
         simulation.advance(0)
         beginning = simulation.checkpoint()
 
@@ -113,7 +113,7 @@ def _steps(problem: Problem, method: str) -> list[float]:
     """Fixed steps that divide the time: from the largest stable one on, each half of the last."""
     session = Session.open(problem.document | {"settings": {"integrator": method, "collisions": False}})
     session.simulation.advance(0)
-    limit = session.simulation.stable_step
+    limit = session.simulation.step_size.stable
     longest = limit if 0.0 < limit < math.inf else problem.time / 64
     fewest = math.ceil(problem.time / longest) + 1
     return [problem.time / (fewest * 2**k) for k in range(20)]

@@ -35,7 +35,7 @@ class Hand:
         self.app = App(lattice(rods, damping=1.0), preparation=Preparation())
         self.session = self.app.session
         self._fresh = count(1)  # something else every time: a particle, a place
-        while not self.session.simulation.ready:  # nobody is that quick
+        while not self.session.simulation.programs.ready:  # nobody is that quick
             self.pause()
 
     def pause(self) -> None:

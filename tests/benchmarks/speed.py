@@ -24,7 +24,7 @@ from components.model import Model
 from game import Session
 from game.documents import models
 from game.documents.document import document
-from systems.program.cores import cores
+from systems.program.parallel import cores
 from systems.program.writer import MANY, VERY_MANY
 from tests.benchmarks import skipping
 from tests.benchmarks.ceiling import BYTES_PER_PARTICLE, BYTES_PER_ROD, bandwidth, seconds_per_rod

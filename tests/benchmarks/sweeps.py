@@ -13,7 +13,7 @@ from game.sweeps.execution import Worker, compute_all
 from game.sweeps.plan import Plan, plan_of
 from game.sweeps.run import sweep
 from game.sweeps.variant_runner import VariantRunner
-from systems.program.cores import cores
+from systems.program.parallel import cores
 from tests.benchmarks.models import lattice
 
 ANALYSES = {"settled": Analysis(load_factors=(1.0,)), "run to rest": Analysis()}

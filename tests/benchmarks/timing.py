@@ -12,8 +12,7 @@ import numpy as np
 from components.model import Model
 from systems.catalogue import step_systems
 from systems.physics.integrators import INTEGRATORS
-from systems.program.cores import VARIABLE
-from systems.program.parallel import make_program
+from systems.program.parallel import VARIABLE, make_program
 from systems.schedule import Schedule
 
 STEP = 1e-6  # s, stable in all models of benchmarks

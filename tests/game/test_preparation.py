@@ -189,10 +189,12 @@ def test_what_is_compiled_is_loaded_before_a_key_needs_it(
     saved = app.session.document.unsaved
     compiler.status = 0
     frames(app, 2)
-    assert not simulation.ready  # it could not be compiled there; here it is when it must be, not before
+    assert (
+        not simulation.programs.ready
+    )  # it could not be compiled there; here it is when it must be, not before
     monkeypatch.setattr(preparation, "has_program", lambda *plan: True)
     frames(app, 1)
-    assert simulation.ready
+    assert simulation.programs.ready
     assert app.session.model.newest(Role.DOCUMENT) == before
     assert app.session.document.unsaved == saved
 
@@ -235,7 +237,7 @@ def test_free_particles_have_their_program_loaded_too(
     app.session.adopt(models.load("collision_i"))
     compiler.status = 0
     frames(app, 3)
-    assert app.session.simulation.ready
+    assert app.session.simulation.programs.ready
 
 
 def test_what_free_particles_need_is_compiled_by_two_processes_at_once(
@@ -320,7 +322,7 @@ CHECK = f"""
 from game import Session
 session = Session.open({ALONE})
 session.simulation.program
-module = session.simulation.step_program.module
+module = session.simulation.programs.compiled.module
 for entry in (module.advance, module.observe):
     print(sum(entry.stats.cache_hits.values()), sum(entry.stats.cache_misses.values()))
 """

@@ -55,7 +55,7 @@ def test_a_mods_event_happens_at_the_same_time_to_the_bit_in_all_four_ways_of_ru
     file.write_text(json.dumps(pulled()), encoding="utf-8")
     run = Session.open(file)
     run.run(time=0.2)
-    expected = run.simulation.happenings
+    expected = run.simulation.events
     assert [(happening.event, happening.fallen) for happening in expected] == [("breaking.rods", ("AB",))]
 
     frames = Session.open(file)
@@ -65,14 +65,14 @@ def test_a_mods_event_happens_at_the_same_time_to_the_bit_in_all_four_ways_of_ru
     while frames.time < 0.1:
         frames.frame(1.0 / 144.0)
     frames.press("space")
-    assert frames.simulation.happenings == expected
+    assert frames.simulation.events == expected
 
     recording = tmp_path / "recorded.jsonl"
     recording.write_text(recorded.getvalue(), encoding="utf-8")
     script = Script(recording)
     played = Session.open(script.source)
     assert play(script, played) == []
-    assert played.simulation.happenings == expected
+    assert played.simulation.events == expected
     assert bits.state(played.model) == bits.state(frames.model)
 
     assert main(["run", str(file), "--at", "0.2", "--format", "json"]) == 0

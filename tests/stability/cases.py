@@ -62,7 +62,7 @@ def follow(case: Case, integrator: str, most_steps: int = 100_000) -> Outcome:
     """Run a case by one integrator, for its time or as many steps as are allowed."""
     settings = {"integrator": integrator, "collisions": False, "time_step": case.fixed_step}
     session = Session.open(case.document | {"settings": settings})
-    session.simulation.smooth = False  # nobody watches
+    session.simulation.step_size.watched = False  # nobody watches
     if session.simulation.advance(most_steps, case.time) < most_steps:
         status = session.run(time=max(case.time - session.time, 0.0))
     else:
@@ -71,7 +71,7 @@ def follow(case: Case, integrator: str, most_steps: int = 100_000) -> Outcome:
     wrong = float(np.abs(session.particles.displacement - case.exact(session.time)).max())
     return Outcome(
         status,
-        session.message or session.simulation.warning,
+        session.message or session.simulation.step_size.warning,
         wrong / largest if largest > 0.0 else wrong,
         all_finite(session),
         session.model.clock.steps,

@@ -99,7 +99,7 @@ def limit(document: Model) -> float:
     """The largest stable step in the initial state."""
     session = Session.open(document)
     session.simulation.advance(0)
-    return session.simulation.stable_step
+    return session.simulation.step_size.stable
 
 
 def stepping(document: Model, share: float, integrator: str = "velocity_verlet") -> Session:

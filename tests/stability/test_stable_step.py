@@ -94,10 +94,10 @@ def test_without_rods_only_drag_limits_the_step() -> None:
         model([particle("p", 0, 0)], [], environment={"drag": 50.0}, settings={"integrator": "velocity_verlet"})
     )
     session.simulation.advance(0)
-    assert session.simulation.stable_step == pytest.approx(2.0 / 50.0, rel=1e-12)
+    assert session.simulation.step_size.stable == pytest.approx(2.0 / 50.0, rel=1e-12)
     session = Session.open(model([particle("p", 0, 0)], []))
     session.simulation.advance(0)
-    assert session.simulation.stable_step == math.inf
+    assert session.simulation.step_size.stable == math.inf
 
 
 @pytest.mark.parametrize("zeta", [0.0, 0.1, 1.0, 10.0])
@@ -105,7 +105,9 @@ def test_the_limit_of_verlet_is_the_formula(zeta: float) -> None:
     """(2/ω) (√(1+ζ²) − ζ)."""
     session = Session.open(oscillator(100.0, zeta) | {"settings": {"integrator": "velocity_verlet"}})
     session.simulation.advance(0)
-    assert session.simulation.stable_step == pytest.approx(0.02 * (math.sqrt(1 + zeta**2) - zeta), rel=1e-9)
+    assert session.simulation.step_size.stable == pytest.approx(
+        0.02 * (math.sqrt(1 + zeta**2) - zeta), rel=1e-9
+    )
 
 
 def test_every_direction_of_a_rod_is_seen() -> None:
@@ -121,5 +123,5 @@ def test_every_direction_of_a_rod_is_seen() -> None:
 def test_automatic_steps_of_bundled_models_are_stable(name: str) -> None:
     session = Session.open(name)
     session.simulation.advance(0)
-    assert 0.0 < session.model.clock.step_size <= 0.9 * session.simulation.stable_step
-    assert session.simulation.warning == ""
+    assert 0.0 < session.model.clock.step_size <= 0.9 * session.simulation.step_size.stable
+    assert session.simulation.step_size.warning == ""

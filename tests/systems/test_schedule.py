@@ -194,12 +194,12 @@ def test_nothing_is_done_for_what_is_not_there() -> None:
 def test_the_plan_follows_edits() -> None:
     session = Session.open(oscillator(100.0, displacement=[0.01, 0]))
     session.run(steps=10)
-    names = [[s.name for s in session.simulation.step_program.systems]]
+    names = [[s.name for s in session.simulation.programs.compiled.systems]]
     session.environment.drag = 1.0
     session.run(steps=10)
-    names.append([s.name for s in session.simulation.step_program.systems])
+    names.append([s.name for s in session.simulation.programs.compiled.systems])
     session.undo()
     session.undo()
     session.run(steps=10)
-    names.append([s.name for s in session.simulation.step_program.systems])
+    names.append([s.name for s in session.simulation.programs.compiled.systems])
     assert names == [["physics.elasticity"], ["physics.elasticity", "physics.drag"], ["physics.elasticity"]]

@@ -231,7 +231,7 @@ def _step(document: Document, share: float) -> float:
     free = [body | {"fixed": [False, False]} for body in document["particles"]]
     session = Session.open(document | {"particles": free, "settings": {"integrator": "velocity_verlet"}})
     session.simulation.advance(0)
-    limit = session.simulation.stable_step
+    limit = session.simulation.step_size.stable
     return share * limit if math.isfinite(limit) else 1e-3 * share
 
 

@@ -63,7 +63,7 @@ def test_the_shown_error_of_verlet_is_within_a_factor_3_of_the_true_one(
     assume(_shortest(document, expected) > SHORTEST)
     session = Session.open(document)
     session.simulation.advance(0)
-    step = share * session.simulation.stable_step
+    step = share * session.simulation.step_size.stable
     session = Session.open(document | {"settings": document["settings"] | {"time_step": step}})
     session.run(time=duration)
     true = float(np.hypot(*(session.particles.displacement - expected).T).max())

@@ -40,7 +40,7 @@ PROBLEMS = {
 
 def _run(problem: Problem, **settings: Any) -> Session:
     session = Session.open(problem.document | {"settings": {"collisions": False} | settings})
-    session.simulation.smooth = False  # steps as long as accuracy allows
+    session.simulation.step_size.watched = False  # steps as long as accuracy allows
     session.run(time=problem.time)
     return session
 
@@ -52,7 +52,7 @@ def _true_error(session: Session, problem: Problem) -> float:
 def _limit(problem: Problem, integrator: str) -> float:
     session = Session.open(problem.document | {"settings": {"collisions": False, "integrator": integrator}})
     session.simulation.advance(0)
-    return session.simulation.stable_step
+    return session.simulation.step_size.stable
 
 
 @pytest.mark.parametrize("share", [0.9, 0.2])

@@ -58,7 +58,7 @@ class Analysis:
         session.run(steps=0)  # records the beginning, for theory beside the run
         with session.without_frames():
             found = self.run(session.simulation, name)
-        happened = [asdict(happening) for happening in session.simulation.happenings]
+        happened = [asdict(event) for event in session.simulation.events]
         error = session.document.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
         return {
             **found,
@@ -70,7 +70,7 @@ class Analysis:
 
 def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
     """Run until at rest, at most `limit` s of simulated time."""
-    simulation.smooth = False  # nobody watches
+    simulation.step_size.watched = False  # nobody watches
     simulation.run_until_rest(simulation.model.clock.time + limit)
     ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
     status = ended.get(simulation.reason, "limit reached")
@@ -88,7 +88,7 @@ def run_at(simulation: Simulation, name: str, times: Sequence[float]) -> Run:
             f"The model is at t = {present:.9g} s already, after {times[0]:.9g} s; ask for later times."
         )
     states: list[State] = []
-    simulation.smooth = False  # nobody watches
+    simulation.step_size.watched = False  # nobody watches
     for target in times:
         simulation.run_to(target, whole_steps=True)
         if simulation.reason is StopReason.DIVERGED:
@@ -155,13 +155,13 @@ def _run(
     return {
         "model": name,
         "status": status,
-        "message": simulation.message or simulation.warning,
+        "message": simulation.message or simulation.step_size.warning,
         "time": clock.time,
         "steps": clock.steps,
         "time_step": clock.step_size if moves else None,
         "integrator": simulation.integrator.key if moves else None,
         "wall_seconds": simulation.compute_seconds,
-        "compile_seconds": simulation.compile_seconds,
+        "compile_seconds": simulation.programs.compile_seconds,
         "events": [],
         "states": states,
     }

@@ -65,11 +65,11 @@ class Timeline:
     def recording(self) -> Iterator[None]:
         """Keep checkpoints of the time that passes inside."""
         self.begin()
-        self._simulation.watchers.append(self._watch)
+        self._simulation.before_steps.append(self._watch)
         try:
             yield
         finally:
-            self._simulation.watchers.remove(self._watch)
+            self._simulation.before_steps.remove(self._watch)
 
     def _watch(self) -> int:
         beyond = self._now % self._interval

@@ -8,10 +8,10 @@ from components.collision_state import PersistentContacts
 from components.model import Model
 from systems.base import StopReason
 from systems.broad_phase import Floats, Rows
-from systems.collision.columns import SHORTEST_SHARE, STEP_SHARE, TRAVEL, Contact, Group
+from systems.collision.columns import SHORTEST_SHARE, STEP_SHARE, TRAVEL, Contact
 from systems.collision.driven.compiled import kernels
 from systems.collision.driven.contacts import apply_contact_forces, raise_energy_scale
-from systems.collision.driven.impact import SETTLING_HEIGHT, ImpactResolver
+from systems.collision.driven.impact import SETTLING_HEIGHT, ImpactResolver, group_of
 from systems.collision.driven.neighbours import NeighbourList
 from systems.collision.driven.trial import TrialStep
 from systems.collision.system import persistent_contacts, support_forces
@@ -114,11 +114,7 @@ class ContactProblem:
         self._restitution: Floats = near.restitution[pairs[:, 1]]
         self._rate = near.rates(pairs, normal)
         self._tolerance = 0.1 * DEEPEST_OVERLAP * float(self.size.min(initial=np.inf))
-        self._members, links = np.unique(pairs, return_inverse=True)
-        self._group = Group.empty(len(self._members), len(pairs))
-        self._group.links[...] = links.reshape(-1, 2)
-        self._group.contacts[:, [Contact.NX, Contact.NY]] = normal
-        self._group.mobility[...] = near.weight[self._members]
+        self._group, self._members = group_of(near, pairs, normal)
 
     def choose_length(self, longest: float) -> None:
         """Choose a length (s) in which no two particles that are about to meet travel far relative to one another."""

@@ -81,17 +81,13 @@ class ImpactResolver:
         pairs = self._neighbours.pairs[chosen]
         fast = rate[chosen] < -slow[chosen]
         count, restitution = len(pairs), self._neighbours.restitution[pairs[fast, 1]].min(initial=1.0)
-        members, links = np.unique(pairs, return_inverse=True)
-        group = Group.empty(len(members), count)
-        group.links[:count] = links.reshape(-1, 2)
-        group.contacts[:count, [Contact.NX, Contact.NY]] = normal[chosen]
-        group.mobility[...] = self._neighbours.weight[members]
+        group, members = group_of(self._neighbours, pairs, normal[chosen])
         velocity = self.model.writable("particles.velocity")
         group.motion[...] = self._neighbours.everywhere(velocity)[members]
         kernels().resolve(len(members), count, restitution if fast.any() else 0.0, 0.0, group)
         moves = members < len(velocity)
         velocity[members[moves]] = group.motion[moves]
-        impulse = group.contacts[:count, Contact.TOTAL_IMPULSE]
+        impulse = group.contacts[:, Contact.TOTAL_IMPULSE]
         loss = -0.5 * float((impulse * (rate[chosen] + self._neighbours.rates(pairs, normal[chosen]))).sum())
         clock = self.model.clock
         self.model.writable("clock.dissipated_impact")[0] = clock.dissipated_impact + loss
@@ -123,6 +119,16 @@ class ImpactResolver:
             longest = known.longest_step
         self.model.writable("clock.collision_state")[0] = PersistentContacts(pairs, forces, longest)
         return True
+
+
+def group_of(near: NeighbourList, pairs: Rows, normal: Floats) -> tuple[Group, Rows]:
+    """The group of pairs with these unit vectors, in contact, and the particle or obstacle that each member is."""
+    members, links = np.unique(pairs, return_inverse=True)
+    group = Group.empty(len(members), len(pairs))
+    group.links[...] = links.reshape(-1, 2)
+    group.contacts[:, [Contact.NX, Contact.NY]] = normal
+    group.mobility[...] = near.weight[members]
+    return group, members
 
 
 def connected(pairs: Rows) -> list[Rows]:

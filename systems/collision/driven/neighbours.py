@@ -194,10 +194,8 @@ class NeighbourList:
         """Time (s) in which none of the listed pairs can collide, or separate if they are nodes that overlap."""
         gap, _ = self.gaps(self.pairs, displacement)
         room = np.where(self.kinds(displacement, None) == PairKind.LEFT_ALONE, -gap, np.maximum(gap, 0.0))
-        first, second = (
-            self.everywhere(values)[self.pairs].sum(axis=1) for values in (self._speed, self._pull)
-        )
-        return _soonest(room, first, second)
+        of_pairs = (self.everywhere(values)[self.pairs].sum(axis=1) for values in (self._speed, self._pull))
+        return _soonest(room, *of_pairs)
 
     def _covered(self, displacement: Floats) -> float:
         """Time (s) for which the list is complete; negative if it no longer is."""

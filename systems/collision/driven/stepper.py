@@ -30,7 +30,6 @@ from systems.collision.overlaps import part_overlaps
 from systems.collision.system import persistent_contacts
 from systems.program.compiler import CompiledUnit
 from systems.program.program import Program
-from systems.program.stepper import Stepper
 
 FEWEST_CLEAR_STEPS = 4  # a time without impacts that is shorter is not worth a search for it
 UNKNOWN_FORCE_STEPS = 16  # steps taken at once without examination where laws of mods decide the forces
@@ -38,15 +37,18 @@ UNKNOWN_FORCE_SHARE = 8.0  # or as many steps as end within this part (1/8) of t
 MOST_IMPACT_TRIES = 60  # of the length of a step that ends at an impact
 
 
-class Steps(Stepper, Protocol):
-    """The steps of a program, which end at no impact."""
+class Steps(Protocol):
+    """The steps of a program, which end at no impact; see systems/run/program_steps.py."""
 
     @property
     def program(self) -> Program:
-        """What takes the next steps."""
+        """The program that takes the next steps."""
 
     def rebound(self) -> Program:
-        """What takes the next steps, now that an impact changed the plan."""
+        """The program that takes the next steps, now that an impact changed the plan."""
+
+    def land(self, target: float) -> StopReason:
+        """Take the last, short step, to exactly the time `target` (s)."""
 
 
 class DrivenCollisions:

@@ -6,36 +6,19 @@ pulls, or gravity, forms.
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable
 from functools import cache, partial
 from typing import Any
 
 from systems.collision.columns import Count
 from systems.collision.free.discs import Discs
-from systems.program.compiler import CompiledUnit
-
-_SOURCE = '''\
-"""A part of the engine of collisions. Generated; safe to delete."""
-
-from numba import njit
-
-entry = njit(error_model="numpy", _nrt=False, cache=True)
+from systems.program.compiler import CompiledUnit, entries_to
 
 
-@entry
-def {part}({arguments}):
-    return kernel({arguments})
-'''
+def _contents(name: str) -> tuple[str, dict[str, Callable[..., Any]]]:
+    from systems.collision.kernels import flight, horizon
 
-
-def _contents(name: str) -> tuple[str, dict[str, Callable[..., int]]]:
-    from systems.collision.kernels.flight import fly, take_steps
-    from systems.collision.kernels.horizon import open_horizon
-
-    kernel = {"fly": fly, "open_horizon": open_horizon, "take_steps": take_steps}[name]
-    arguments = ", ".join(inspect.signature(kernel.py_func).parameters)
-    return _SOURCE.format(part=name, arguments=arguments), {"kernel": kernel}
+    return entries_to({name: horizon.open_horizon if name == "open_horizon" else getattr(flight, name)})
 
 
 def _warm_up(name: str) -> None:

@@ -23,6 +23,7 @@ from systems.collision.columns import (
     STEP_SHARE,
     Constraints,
     Count,
+    Detail,
     Disc,
     Entry,
     Floats,
@@ -83,7 +84,7 @@ class Discs:
         rest_height: float = REST_HEIGHT,
         joined: Sequence[tuple[int, int]] | NDArray[Any] = (),
         time: float = 0.0,
-        obstacles: Obstacles | None = None,
+        obstacles: Obstacles = NO_OBSTACLES,
         lost: float = 0.0,
     ) -> None:
         """Take over the state at `time` (s).
@@ -95,7 +96,7 @@ class Discs:
         never move; in pairs their numbers follow those of the discs. lost: energy lost so far, J.
         """
         place = np.atleast_2d(np.asarray(position, dtype=np.float64))
-        self._obstacles = obstacles if obstacles is not None else NO_OBSTACLES
+        self._obstacles = obstacles
         self.count = len(place)
         n = self.count + len(self._obstacles)
         self.rows = np.zeros((n, len(Disc)))
@@ -159,7 +160,9 @@ class Discs:
             if self.counts[Count.REPORTED]:
                 taken.append(self._take())
             if reason in (Reason.DONE, Reason.BUSY):
-                return reason, _concatenated(taken)
+                pairs, details = (np.concatenate(parts) for parts in zip(*taken, strict=True))
+                time, impulse, loss = details[:, : Detail.X].T
+                return reason, ImpactColumns(pairs, time, impulse, loss, details[:, Detail.X :])
             self._make_room(reason)
 
     def _go_on(self, until: float, most_events: int) -> Reason:
@@ -201,16 +204,9 @@ class Discs:
         radius = self.rows[: self.count, Disc.RADIUS]
         owners, entries = self._persistent_entries()
         pushing = np.sort(np.column_stack([owners, self.constraints.persistent[entries, Entry.OTHER]]), axis=1)
-        end = EquilibriumSearch(
-            place,
-            radius,
-            weight,
-            pull,
-            self._may_collide,
-            self._obstacles,
-            pushing,
-            self.constraints.forces[entries],
-        ).solve()
+        forces = self.constraints.forces[entries]
+        among = self._may_collide, self._obstacles
+        end = EquilibriumSearch(place, radius, weight, pull, *among, pushing, forces).solve()
         if end is None:
             self.counts[Count.PATIENCE] = self.counts[Count.CALM] + MORE_PATIENCE
             return
@@ -234,13 +230,11 @@ class Discs:
         may: NDArray[np.bool_] = np.isin(pairs @ [n, 1], owners * n + self.constraints.partners, invert=True)
         return may
 
-    def _take(self) -> ImpactColumns:
+    def _take(self) -> tuple[Integers, Floats]:
+        """The impacts reported since the last call: pairs, and columns of Detail."""
         k = int(self.counts[Count.REPORTED])
         self.counts[Count.REPORTED] = 0
-        details = self.report.details[:k].copy()
-        return ImpactColumns(
-            self.report.pairs[:k].copy(), details[:, 0], details[:, 1], details[:, 2], details[:, 3:]
-        )
+        return self.report.pairs[:k].copy(), self.report.details[:k].copy()
 
     # --- the state to resume from -------------------------------------------------------------------
 
@@ -351,8 +345,3 @@ def _shared_ends(others: Obstacles) -> Floats:
     shared = (owner[spot.ravel()] < rows).reshape(2, -1)
     found: Floats = SHARED_START * shared[0] + SHARED_END * shared[1]
     return found
-
-
-def _concatenated(parts: list[ImpactColumns]) -> ImpactColumns:
-    columns = ("pairs", "time", "impulse", "loss", "point")
-    return ImpactColumns(*(np.concatenate([getattr(part, name) for part in parts]) for name in columns))

@@ -41,17 +41,20 @@ class PullingHand(Protocol):
 class Flight:
     """The particles of one model on their exact paths from impact to impact.
 
-    measures, compile_seconds, follows_state: as of Dynamics. unbalanced: force on each particle as last observed (kN).
+    measures, compile_seconds: as of Program. unbalanced: force on each particle as last observed (kN).
     The paths are part of the model's state: clock.collision_state. pull: a hand's force, constant during a step, so that
     paths are exact within it.
     """
+
+    lasting = ""  # nothing changes with time for ever
+    watches_events = False
+    follows_state = False  # contacts keep particles at rest, too
 
     def __init__(self, model: Model, impacts: Impacts, pull: PullingHand | None = None) -> None:
         started = time.perf_counter()
         self.model = model
         self.measures = np.zeros(len(Measure))
         self.unbalanced = np.zeros((model.particles.count, 2))
-        self.follows_state = False  # contacts keep particles at rest, too
         self._impacts = impacts
         self._pull = pull
         for unit in (EVENTS, HORIZONS):
@@ -67,20 +70,13 @@ class Flight:
         return loads_end(self.model)
 
     @property
-    def lasting(self) -> str:
-        """Nothing changes with time for ever."""
-        return ""
-
-    @property
     def resists_motion(self) -> bool:
         """True if impacts take energy."""
         least = obstacles(self.model).restitution.min(initial=self.model.settings.restitution)
         return bool(least < 1.0)
 
-    watches_events = False
-
     def take_events(self) -> list[tuple[Event, list[Handle], list[Handle]]]:
-        """None: a plan with events has a step program."""
+        """Nothing: a plan with events has a step program."""
         return []
 
     def bind(self) -> None:

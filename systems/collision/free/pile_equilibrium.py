@@ -106,10 +106,6 @@ class EquilibriumSearch:
         self._inertia = np.broadcast_to(inertia, place.shape)[self._free]
         self._gaps = self._listed(pushing, forces)
 
-    def _near(self) -> Rows:
-        pairs = near_pairs(self._place, (1.0 + AROUND) * self._radius, self._obstacles)
-        return pairs[self._moves[pairs].any(axis=1) & self._may_collide(pairs)]
-
     def solve(self) -> PileEquilibrium | None:
         """The equilibrium, if it is near and no disc in it rests on a flying one; else None."""
         if len(self._force) == 0 or not self._iterate():
@@ -149,7 +145,8 @@ class EquilibriumSearch:
 
     def _listed(self, pushing: Rows, forces: Floats) -> _Gaps:
         """The pairs that are near, with the forces of the pushing ones, and gaps such that λ s = μ where gaps are small."""
-        pairs = self._near()
+        near = near_pairs(self._place, (1.0 + AROUND) * self._radius, self._obstacles)
+        pairs = near[self._moves[near].any(axis=1) & self._may_collide(near)]
         size = self._size[pairs].min(axis=1)
         scale = self._weight[pairs].min(axis=1) * size
         known, count = np.zeros(len(pairs)), len(self._moves)

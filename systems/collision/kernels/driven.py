@@ -86,8 +86,15 @@ def first_impact(h, pairs, kinds, position, before, velocity, after, radius, spa
 
 
 @compiled
-def resolve_impact(members, count, restitution, group):
-    """Resolve the impact of a group whose links, normals and velocities are set; see kernels/impact.py."""
+def resolve(members, count, restitution, tolerance, group):
+    """Resolve the impact of a group whose links, normals and velocities are set; see kernels/impact.py.
+
+    Where the restitution is negative the motion is separated instead: by one kernel, so that what both share is compiled
+    once.
+    """
+    if restitution < 0.0:
+        separate_motion(members, count, tolerance, group)
+        return
     for c in range(count):
         group.contacts[c, Contact.BIAS] = 0.0
         group.contacts[c, Contact.COMPLIANCE] = compliance(c, c, group)

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from systems.collision.columns import NONE, SPEED_NOISE, Contact, Count, Detail, Disc, Entry, Number, Reason
+from systems.collision.columns import NONE, SPEED_NOISE, Contact, Count, Disc, Entry, Number, Reason
 from systems.collision.kernels import compiled
 from systems.collision.kernels.grid import (
     enclose,
@@ -32,7 +32,7 @@ from systems.collision.kernels.persistent_contact import (
     stop_sinking,
     support,
 )
-from systems.collision.kernels.pile import begin_steps, crowded, step
+from systems.collision.kernels.pile import begin_steps, crowded, enter_impact, step
 from systems.collision.kernels.pile_pairs import enter_pushing_pairs
 from systems.collision.kernels.projection import compliance, opening_rate
 from systems.collision.kernels.time_of_impact import (
@@ -278,15 +278,8 @@ def _report(touching, discs, group, report, numbers, counts):
         i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
         slow = max(group.noise[0], touch_speed(discs, i, j, numbers[Number.NOW]))
         if impulse * group.contacts[c, Contact.COMPLIANCE] > slow:
-            k = counts[Count.REPORTED]
-            report.pairs[k, 0], report.pairs[k, 1] = min(i, j), max(i, j)
-            report.details[k, Detail.TIME] = numbers[Number.NOW]
-            report.details[k, Detail.IMPULSE] = impulse
-            report.details[k, Detail.LOSS] = loss * (impulse / impulses)
-            x, y = _place(i, group.contacts[c], discs, numbers[Number.NOW])
-            report.details[k, Detail.X], report.details[k, Detail.Y] = x, y
-            counts[Count.REPORTED] += 1
-            counts[Count.IMPACTS] += 1
+            place = _place(i, group.contacts[c], discs, numbers[Number.NOW])
+            enter_impact(i, j, numbers[Number.NOW], impulse, loss * (impulse / impulses), place, report, counts)
 
 
 @compiled

@@ -168,15 +168,22 @@ def _report_impacts(active, h, discs, pile, report, numbers, counts):
             if bounces(before, i, j, h, discs, pile, numbers):
                 (ivx, ivy), (jvx, jvy) = velocity_after(i, pile), velocity_after(j, pile)
                 vx, vy = jvx - ivx, jvy - ivy
-                r = counts[Count.REPORTED]
-                report.pairs[r, 0], report.pairs[r, 1] = min(i, j), max(i, j)
-                report.details[r, Detail.TIME] = numbers[Number.NOW]
-                report.details[r, Detail.IMPULSE] = impulse
-                report.details[r, Detail.LOSS] = -0.5 * impulse * (before + nx * vx + ny * vy)
-                report.details[r, Detail.X] = discs[i, Disc.OX] + discs[i, Disc.UX] + discs[i, Disc.RADIUS] * nx
-                report.details[r, Detail.Y] = discs[i, Disc.OY] + discs[i, Disc.UY] + discs[i, Disc.RADIUS] * ny
-                counts[Count.REPORTED] += 1
-                counts[Count.IMPACTS] += 1
+                loss = -0.5 * impulse * (before + nx * vx + ny * vy)
+                x = discs[i, Disc.OX] + discs[i, Disc.UX] + discs[i, Disc.RADIUS] * nx
+                y = discs[i, Disc.OY] + discs[i, Disc.UY] + discs[i, Disc.RADIUS] * ny
+                enter_impact(i, j, numbers[Number.NOW], impulse, loss, (x, y), report, counts)
+
+
+@compiled
+def enter_impact(i, j, time, impulse, loss, place, report, counts):
+    """Report an impact of two discs at a time (s) and place (m)."""
+    k = counts[Count.REPORTED]
+    report.pairs[k, 0], report.pairs[k, 1] = min(i, j), max(i, j)
+    report.details[k, Detail.TIME], report.details[k, Detail.IMPULSE] = time, impulse
+    report.details[k, Detail.LOSS] = loss
+    report.details[k, Detail.X], report.details[k, Detail.Y] = place
+    counts[Count.REPORTED] += 1
+    counts[Count.IMPACTS] += 1
 
 
 @compiled

@@ -131,11 +131,8 @@ def place_noise(discs, i, j, time):
 @compiled
 def pull_on(discs, i, j):
     """The larger acceleration (m/s²) of two discs without contacts."""
-    first, second = (
-        math.hypot(discs[i, Disc.GX], discs[i, Disc.GY]),
-        math.hypot(discs[j, Disc.GX], discs[j, Disc.GY]),
-    )
-    return max(first, second)
+    first = math.hypot(discs[i, Disc.GX], discs[i, Disc.GY])
+    return max(first, math.hypot(discs[j, Disc.GX], discs[j, Disc.GY]))
 
 
 @compiled

@@ -26,9 +26,9 @@ compile.
                              arrays with the entries of systems/entries.py
 
 Constants of every program: RATES (something depends on velocity), POWERS (some account gains by the step), LOADS
-(some load varies), SHADOW (see judge() in systems/physics/kernels.py), CHECK_INTERVAL and REVIEW_INTERVAL (steps);
-of one that controls its steps also EVENTS (some law of rods has branches), COMMITS (something has a history) and
-those of its integrator.
+(some load varies), STOPS (there are Events, at which runs stop), SHADOW (see judge() in systems/physics/kernels.py),
+CHECK_INTERVAL and REVIEW_INTERVAL (steps); of one that controls its steps also EVENTS (there are Events, or some law of
+rods has branches), COMMITS (something has a history) and those of its integrator.
 
     fixed_steps.py   integrators whose steps are all alike, and when a state is checked
     runge_kutta.py   integrators that control their steps: one loop for every tableau

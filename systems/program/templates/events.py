@@ -53,49 +53,32 @@ def look():
     low = min(low, gap)
 
 
-def margin_and_slope():
-    """gap: the margin of a rod; slope: its rate, by a small part of the step."""
+def of_rod():
+    """gap: the margin of a rod, or its quantity on the side that it is on; slope: its rate, by a small part of the step."""
+    insert(axial_force)
     gap = insert(margin)
     here = elongation
     elongation = here + rate * (insert(ahead) * dt)
+    insert(axial_force)
     slope = (insert(margin) - gap) / (insert(ahead) * dt)
     elongation = here
 
 
-def rod_quantity():
-    """gap: how far the quantity of a rod is from changing sign; slope: its rate, by a small part of the step."""
-    insert(axial_force)
-    gap = branch * insert(quantity)
-    here = elongation
-    elongation = here + rate * (insert(ahead) * dt)
-    insert(axial_force)
-    slope = (branch * insert(quantity) - gap) / (insert(ahead) * dt)
-    elongation = here
-
-
-def particle_quantity():
-    """The same of a particle, at its displacement (x, y)."""
+def of_particle():
+    """The same for a particle, at its displacement (x, y)."""
     x = displacement[r, 0]
     y = displacement[r, 1]
-    gap = branch * insert(quantity)
+    gap = insert(margin)
     x += velocity[r, 0] * (insert(ahead) * dt)
     y += velocity[r, 1] * (insert(ahead) * dt)
-    slope = (branch * insert(quantity) - gap) / (insert(ahead) * dt)
+    slope = (insert(margin) - gap) / (insert(ahead) * dt)
 
 
-def happened(displacement, velocity, marks, *columns):
+def happened(displacement, velocity, scratch, *columns):
     """True if the quantity of an Event changed sign in the step that ends here, of which the sides take note.
 
-    A step ends within EVENT_FLOOR of the change: a quantity that close counts as changed if it came from afar.
+    A controlled step ends within EVENT_FLOOR of the change: a quantity that close counts as changed if it came from afar.
     """
-    changed = False
-    insert(rods)
-    insert(particles)
-    return changed
-
-
-def happened_by_now(displacement, velocity, *columns):
-    """True if the quantity of an Event has changed sign at the end of a step of fixed length."""
     changed = False
     insert(rods)
     insert(particles)

@@ -158,7 +158,7 @@ def advance(
             done = 1 if since == end else 0
         else:
             now, after, since, size = min(steps - taken, steps_to_check(total + taken, age)), age, origin, dt
-            if HAPPENINGS:
+            if STOPS:
                 now = 1
             while now > 1 and origin + (age + now) * dt > breaks[coming]:
                 now //= 2
@@ -169,7 +169,7 @@ def advance(
             continue
         taken += done
         age += done
-        happening = HAPPENINGS and happened(displacement, velocity, *columns)
+        happening = STOPS and happened(displacement, velocity, *scratch, *columns)
         # The early checks guard whole steps: the energy that Euler conserves is another one in a piece.
         if is_check_due(total + taken, age if after >= 0 else CHECK_INTERVAL):
             measure(displacement, velocity, force, resisting, measures, *columns)

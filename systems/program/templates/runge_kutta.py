@@ -258,7 +258,7 @@ def controlled(steps, first, origin, tolerance, limit, bounds, control, state, s
             follow(control, h, limit, error, rejected)
         elif time >= goal or time == landing:
             taken += 1
-        if HAPPENINGS and happened(displacement, velocity, marks, *columns):
+        if STOPS and happened(displacement, velocity, *scratch, *columns):
             control[Control.TIME] = time
             return taken, StopReason.EVENT.value
     control[Control.TIME] = time

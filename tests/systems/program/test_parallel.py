@@ -18,7 +18,7 @@ from systems.program import blocks as layout
 from systems.program import parallel as in_blocks
 from systems.program import writer
 from systems.program.blocks import Layout
-from systems.program.cores import VARIABLE, cores
+from systems.program.parallel import VARIABLE, cores
 from tests.benchmarks.models import lattice
 from tests.reference import bits
 
@@ -107,7 +107,7 @@ def test_few_rods_are_between_blocks_however_a_model_is_numbered(monkeypatch: py
 
 def test_the_number_of_cores_changes_no_bit(small_blocks: None) -> None:
     one, several = run(on=1), run(on=8)
-    assert one.simulation.step_program.form == writer.VERY_MANY
+    assert one.simulation.programs.compiled.form == writer.VERY_MANY
     assert one.model.clock.dissipated_plastic > 0.0
     assert_same(one, several)
 
@@ -116,7 +116,7 @@ def test_blocks_find_what_loops_over_all_rods_find(small_blocks: None, monkeypat
     blocks = run(on=8)
     monkeypatch.setattr(writer, "SMALL", 200)
     whole = run(on=1)
-    assert whole.simulation.step_program.form == writer.FEW
+    assert whole.simulation.programs.compiled.form == writer.FEW
     for name in ("displacement", "velocity", "reaction"):
         found, expected = (getattr(s.particles, name) for s in (blocks, whole))
         assert np.abs(found - expected).max() <= 1e-9 * np.abs(expected).max()

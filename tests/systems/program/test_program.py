@@ -78,7 +78,7 @@ def test_loops_of_large_models_give_the_same_bits_with_any_integrator(
     large.run(steps=300)
     monkeypatch.setattr(writer, "SMALL", 200)
     small.run(steps=300)
-    assert large.simulation.step_program.form != small.simulation.step_program.form
+    assert large.simulation.programs.compiled.form != small.simulation.programs.compiled.form
     assert bits.different(bits.columns(large.model), bits.columns(small.model)) == []
 
 
@@ -87,7 +87,7 @@ def assert_identical(document: Model, integrator: str, mods: list[Any], steps: i
     document = document | {"settings": {"integrator": integrator, "time_step": size}}
     session = Session.open(document, mods)
     session.simulation.advance(0)
-    stages = Stages(session.model, session.simulation.step_program.systems)
+    stages = Stages(session.model, session.simulation.programs.compiled.systems)
     assert session.run(steps=steps) == "time reached"
     stages.run(integrator, size, steps)
     nodes, clock = session.particles, session.model.clock
@@ -423,7 +423,7 @@ from game import Session
 alone = {"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}]}
 session = Session.open(alone)
 session.run(steps=1)
-print(session.simulation.compile_seconds)
+print(session.simulation.programs.compile_seconds)
 """
 
 

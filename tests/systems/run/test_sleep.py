@@ -131,7 +131,7 @@ def test_what_sleeps_does_not_limit_controlled_steps() -> None:
         chosen = {"integrator": "dop853", "sleeping": sleeping, "collisions": False}
         gravity = {"acceleration": [0, -9.81]}
         session = Session.open(together(stiff, swings, environment=gravity, settings=chosen))
-        session.simulation.smooth = False
+        session.simulation.step_size.watched = False
         session.run(time=0.5)
         runs.append(session)
     on, off = runs
@@ -145,7 +145,7 @@ def test_what_sleeps_does_not_limit_controlled_steps() -> None:
 
 def test_an_impact_limits_controlled_steps_at_once_by_what_it_wakes() -> None:
     session = struck(sleeping=True, integrator="dop853", time_step=None)
-    session.simulation.smooth = False
+    session.simulation.step_size.watched = False
     session.run(time=0.39)
     assert asleep(session) == {"struck", "beside"}
     assert session.model.clock.step_limit == 0.0  # a falling disc has none
@@ -210,7 +210,7 @@ def test_what_is_beyond_all_numbers_stays_awake_without_a_warning(beyond: float)
 def test_an_island_is_at_rest_by_the_rule_by_which_a_run_ends() -> None:
     """judge() of a model with one island, in states from motion to rest."""
     session = Session.open(vee("one", 0.0, 20.0) | {"settings": STEPS | {"sleeping": False}})
-    program, state = session.simulation.step_program, session.model
+    program, state = session.simulation.programs.compiled, session.model
     of_particle = islands(state)
     of_rod = of_particle[state.rods.between].max(axis=1)
 
