@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -160,34 +160,36 @@ class Session(Context):
         time = None if time is None else _forward("time", time)
         steps = None if steps is None else int(_forward("steps", steps, whole=True))
         self.act_in_scene()
-        self.document.note_beginning()
-        self.history.begin_run()
-        self.timeline.begin()
+        document = self.document
+        simulation = document.simulation
+        document.note_beginning()
+        document.history.begin_run()
+        document.timeline.begin()
         reached = "time reached"
         with self.without_frames():
             if until is not None:
                 reached = "limit reached"
-                self.simulation.run_until_rest(self.time + limit)
+                simulation.run_until_rest(self.time + limit)
             elif time is not None:
-                self.simulation.run_to(self.time + time)
+                simulation.run_to(self.time + time)
             elif steps is not None:
-                self.simulation.advance(steps)
-        if self.simulation.reason is not StopReason.REST and steps is None:
-            self.timeline.clear()  # the last step was a short one, which stepping back does not take again
+                simulation.advance(steps)
+        if simulation.reason is not StopReason.REST and steps is None:
+            document.timeline.clear()  # the last step was a short one, which stepping back does not take again
         if not self.time_passes:
-            self.history.end_run()
+            document.history.end_run()
         ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
-        return ended.get(self.simulation.reason, reached)
+        return ended.get(simulation.reason, reached)
+
+    def without_frames(self) -> AbstractContextManager[None]:
+        """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
+        scene = self.simulation.programs.scene
+        follows = not self.performing and self.schedule.runs_headless(Phase.EVENTS, scene, self.model)
+        return self._followed() if follows else nullcontext()
 
     @contextmanager
-    def without_frames(self) -> Iterator[None]:
-        """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
+    def _followed(self) -> Iterator[None]:
         simulation, frame = self.simulation, Unseen(self, 0.0)
-        if self.performing or not self.schedule.runs_headless(
-            Phase.EVENTS, simulation.programs.scene, self.model
-        ):
-            yield
-            return
 
         def follow() -> int:
             beyond = self.model.clock.steps % EVENT_INTERVAL

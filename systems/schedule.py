@@ -64,6 +64,13 @@ class Schedule:
         self.seconds: dict[str, float] = defaultdict(float)
         self._check_names()
         self._ordered = {phase: self._order_phase(phase) for phase in Phase}
+        of_frames = {p: [s for s in some if not isinstance(s, StepSystem)] for p, some in self._ordered.items()}
+        self._of_frames = {
+            (phase, headless): tuple(system for system in systems if system.headless or not headless)
+            for phase, systems in of_frames.items()
+            for headless in (False, True)
+        }
+        self._active: dict[tuple[System, str], bool] = {}
 
     def _check_names(self) -> None:
         names = [system.name for system in self._systems]
@@ -140,8 +147,12 @@ class Schedule:
 
     def is_active(self, system: System, scene: str) -> bool:
         """True if a system acts in a scene: it names the scene, or the scene names it."""
-        named = system.scenes is None or scene in system.scenes
-        return named or any(fnmatchcase(system.name, wanted) for wanted in self._wanted.get(scene, ()))
+        known = self._active.get((system, scene))
+        if known is None:
+            known = system.scenes is None or scene in system.scenes
+            known = known or any(fnmatchcase(system.name, wanted) for wanted in self._wanted.get(scene, ()))
+            self._active[system, scene] = known
+        return known
 
     def _reason(self, system: System, scene: str, model: Model) -> str:
         """Why a system does not run in a scene with a model; "" if it does."""
@@ -191,17 +202,14 @@ class Schedule:
 
     def runs_headless(self, phase: Phase, scene: str, model: Model) -> bool:
         """True if systems of a phase run in a scene where there are no frames."""
-        systems = (system for system in self._ordered[phase] if not isinstance(system, StepSystem))
-        return any(s.headless and self.is_active(s, scene) and s.needs(model) for s in systems)
+        return any(self.is_active(s, scene) and s.needs(model) for s in self._of_frames[phase, True])
 
     def run(self, phase: Phase, frame: Moving, *, headless: bool = False) -> None:
         """Run one phase of a frame, timing each system; each is asked for when its turn comes.
 
         headless: only systems that also run where there are no frames.
         """
-        for system in self._ordered[phase]:
-            if isinstance(system, StepSystem) or (headless and not system.headless):
-                continue
+        for system in self._of_frames[phase, headless]:
             if self.is_active(system, frame.scene) and system.needs(frame.model):
                 frame.model.activate()
                 started = time.perf_counter()

@@ -436,7 +436,9 @@ class Context:
 
     def act_in_scene(self) -> None:
         """Let time pass under the systems of the active scene; where time stands still, under those of simulation."""
-        self.simulation.act_in(self.scene if self.time_passes else "simulation")
+        scene = self.scene if self.time_passes else "simulation"
+        if scene != self.simulation.programs.scene:
+            self.simulation.act_in(scene)
 
     def get_ready(self) -> None:
         """Account for edits as if a frame had begun, so that what follows does not depend on when frames do."""
