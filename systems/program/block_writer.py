@@ -37,8 +37,8 @@ class BlockWriter(Writer):
         super()._add_columns(bound)
         self.columns += [*self.BLOCK, *(f"block_{b.prefix}" for b in self.of[StepRole.LOAD])]
 
-    def _constants(self) -> str:
-        return super()._constants() + _PARALLEL
+    def _head(self) -> str:
+        return super()._head() + _PARALLEL
 
     def _rod_loop(self, loop: RodLoop) -> list[str]:
         return loop.in_stages(self._is_float, _RODS)

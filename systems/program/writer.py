@@ -74,8 +74,8 @@ _HEAD = '''\
 
 Python calls three functions: advance() takes steps, observe() reads a state, commit() brings history up to date
 after an edit (where anything has a history). advance() comes first, then what it calls, from the loop over steps
-down to the kernels of one rod. Functions hand on arrays one by one, since tuples would cost twice as much;
-systems/program/templates/__init__.py says what each array is.
+down to the kernels of one rod; constants come last. Functions hand on arrays one by one, since tuples would cost
+twice as much; systems/program/templates/__init__.py says what each array is.
 
 Put in by name are
 
@@ -172,7 +172,7 @@ class Writer:
     def source(self) -> str:
         """The program's source."""
         parts = [
-            self._constants(),
+            self._head(),
             self._pasted(f"{self.integrator.entry}=advance", "entered"),
             self._integrate(),
             *(self._pasted(part, "inlined") for part in reversed(self.integrator.parts)),
@@ -181,6 +181,7 @@ class Writer:
             self._measure(),
             self._observe(),
             *([self._commit()] if self.commits else []),
+            "".join(f"{name} = {_literal(value)}\n" for name, value in self._values().items()),
         ]
         return expanded("\n\n\n".join(part.rstrip() for part in parts), self.groups)
 
@@ -201,11 +202,9 @@ class Writer:
         """Arrays that steps write to and nobody reads afterwards."""
         return ("predicted", "power", "gained")
 
-    def _constants(self) -> str:
+    def _head(self) -> str:
         kernels = "\n".join(f"    {name} = {_origin(function)}" for name, function in self.names.items())
-        return _HEAD.format(kernels=kernels, may_allocate=self._may_allocate) + "".join(
-            f"{name} = {_literal(value)}\n" for name, value in self._values().items()
-        )
+        return _HEAD.format(kernels=kernels, may_allocate=self._may_allocate)
 
     def _values(self) -> dict[str, Any]:
         """The constants of the module."""
