@@ -25,30 +25,45 @@ def source_of(function: Callable[..., Any]) -> str:
     return _ON_LINES.sub(lambda match: f"({' '.join(match[1].split())})", source)
 
 
-def pasted(function: Callable[..., Any], decorator: str, name: str = "", **inserts: str | Sequence[str]) -> str:
-    """A template with a decorator, under its own or another name."""
+@cache
+def _head_and_body_of(function: Callable[..., Any]) -> tuple[str, Sequence[str]]:
+    """The head of a function, stars before its groups, and the lines of its body."""
     head, body = source_of(function).split(":\n", 1)
     head = re.sub(r"(?<=[(\s])(state|forces|scratch|bounds|observed)(?=[,)])", r"*\1", head)
-    if name:
-        head = head.replace(f"def {function.__name__}(", f"def {name}(", 1)
-    return "\n".join([f"@{decorator}", f"{head}:", *_filled(body.splitlines(), inserts)])
+    return head, body.splitlines()
 
 
-def fragment(function: Callable[..., Any], **inserts: str | Sequence[str]) -> list[str]:
-    """The lines of a template without its head and its docstring."""
+@cache
+def _statements_of(function: Callable[..., Any]) -> Sequence[str]:
+    """The lines of a function without its head and its docstring."""
     source = source_of(function)
     definition = ast.parse(source).body[0]
     assert isinstance(definition, ast.FunctionDef)
     statements = definition.body[ast.get_docstring(definition) is not None :]
     if not statements:
         return []
-    lines = source.splitlines()[statements[0].lineno - 1 :]
-    return _filled(textwrap.dedent("\n".join(lines)).splitlines(), inserts)
+    return textwrap.dedent("\n".join(source.splitlines()[statements[0].lineno - 1 :])).splitlines()
+
+
+def pasted(function: Callable[..., Any], decorator: str, name: str = "", **inserts: str | Sequence[str]) -> str:
+    """A template with a decorator, under its own or another name."""
+    head, body = _head_and_body_of(function)
+    if name:
+        head = head.replace(f"def {function.__name__}(", f"def {name}(", 1)
+    return "\n".join([f"@{decorator}", f"{head}:", *_filled(body, inserts)])
+
+
+def fragment(function: Callable[..., Any], **inserts: str | Sequence[str]) -> list[str]:
+    """The lines of a template without its head and its docstring."""
+    return _filled(_statements_of(function), inserts)
 
 
 def _filled(lines: Iterable[str], inserts: Inserts) -> list[str]:
     filled: list[str] = []
     for line in lines:
+        if "insert(" not in line:
+            filled.append(line)
+            continue
         whole = _LINE.fullmatch(line)
         if whole and not isinstance(inserts[whole[2]], str):
             filled += [whole[1] + inserted for inserted in inserts[whole[2]]]
@@ -62,7 +77,7 @@ def expanded(source: str, groups: Mapping[str, Sequence[str]]) -> str:
     argument = re.compile(rf"(?<=[(\s])\*({'|'.join(groups)})\b")
     lines: list[str] = []
     for line in source.splitlines():
-        text = argument.sub(lambda match: ", ".join(groups[match[1]]), line)
+        text = argument.sub(lambda match: ", ".join(groups[match[1]]), line) if "*" in line else line
         lines += [line] if text == line else _wrapped(text)
     return "\n".join(lines) + "\n"
 
@@ -70,7 +85,11 @@ def expanded(source: str, groups: Mapping[str, Sequence[str]]) -> str:
 def _wrapped(line: str) -> list[str]:
     """A definition or a call in lines that are not too long."""
     deeper = " " * (len(line) - len(line.lstrip()) + 8)
-    return textwrap.wrap(line, _WIDTH, subsequent_indent=deeper, break_long_words=False, break_on_hyphens=False)
+    lines: list[str] = []
+    while len(line) > _WIDTH and (space := line.rfind(" ", len(deeper), _WIDTH + 1)) > 0:
+        lines.append(line[:space])
+        line = deeper + line[space + 1 :]
+    return [*lines, line]
 
 
 def indented(lines: Iterable[str], levels: int = 1) -> list[str]:
