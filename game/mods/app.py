@@ -41,7 +41,8 @@ from systems.input.bindings import (
     remove_tool,
 )
 from systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
-from systems.render.icons import ICONS, Part
+from systems.render.icons import ADDED as ADDED_ICONS
+from systems.render.icons import Part
 from systems.render.sheet import ABOVE, BELOW, Layer
 
 T = TypeVar("T")
@@ -104,9 +105,9 @@ class App:
             TOOLS[name].use
         )
         if icon:
-            ICONS[name] = tuple(icon)
+            ADDED_ICONS[name] = tuple(icon)
             add_tool(name)
-            self._undo += [lambda: ICONS.pop(name), lambda: remove_tool(name)]
+            self._undo += [lambda: ADDED_ICONS.pop(name), lambda: remove_tool(name)]
 
     def shape(self, kind: type[Handle], shape: Shape) -> None:
         """Let particles collide with elements of a kind: `shape(table)` returns the Pieces that they are."""

@@ -7,13 +7,24 @@ Every part is a kind and its numbers: "line" x, y, x, y, …; "area" x, y, x, y,
 from __future__ import annotations
 
 import json
+from functools import cache
 from importlib.resources import files
 
 Part = tuple[str, tuple[float, ...]]
 
 STROKE = 1.8  # the width of lines
-_DRAWN = json.loads((files("assets") / "icons" / "toolbar.json").read_text(encoding="utf-8"))
 
-ICONS: dict[str, tuple[Part, ...]] = {
-    name: tuple((kind, tuple(at)) for kind, *at in parts) for name, parts in _DRAWN.items()
-}
+
+ADDED: dict[str, tuple[Part, ...]] = {}  # icons of mods
+
+
+def icon(name: str) -> tuple[Part, ...]:
+    """The parts of an icon. Raises KeyError."""
+    return ADDED[name] if name in ADDED else icons()[name]
+
+
+@cache
+def icons() -> dict[str, tuple[Part, ...]]:
+    """The parts of the icons that the program brings, by name."""
+    drawn = json.loads((files("assets") / "icons" / "toolbar.json").read_text(encoding="utf-8"))
+    return {name: tuple((kind, tuple(at)) for kind, *at in parts) for name, parts in drawn.items()}

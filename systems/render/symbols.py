@@ -11,7 +11,7 @@ from functools import cache
 
 import numpy as np
 
-from systems.render.icons import ICONS, STROKE
+from systems.render.icons import STROKE, icon
 from systems.render.marks import Points
 
 Parts = list[tuple[str, Points]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
@@ -29,15 +29,15 @@ def symbol_parts(symbol: str, size: float, unit: float) -> Parts:
 
     The size of an icon is how many pixels the unit of its square takes.
     """
-    if symbol in ICONS:
-        return [("ink", polygon * size) for polygon in _icon(symbol)]
-    return _SYMBOLS[symbol](size, unit)
+    if symbol in _SYMBOLS:
+        return _SYMBOLS[symbol](size, unit)
+    return [("ink", polygon * size) for polygon in _icon(symbol)]
 
 
 @cache
 def _icon(symbol: str) -> list[Points]:
     """The polygons of an icon in the units of its square; every colour of it needs them."""
-    return [polygon for part in ICONS[symbol] for polygon in _icon_part(*part)]
+    return [polygon for part in icon(symbol) for polygon in _icon_part(*part)]
 
 
 def _icon_part(kind: str, numbers: tuple[float, ...]) -> list[Points]:
