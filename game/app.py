@@ -96,7 +96,7 @@ def _autosave() -> tuple[Autosave | None, str]:
         return None, unkept(library.data_folder(), error)
 
 
-def unseen_systems(folder: Path) -> list[System]:
+def window_systems(folder: Path) -> list[System]:
     """The systems that a window adds to a session, without a window; unsaved work would go to the folder."""
     return [PygameInput(), Hover(), Autosave(folder), Preparation(), PygameRender(pygame.Surface((1, 1)))]
 

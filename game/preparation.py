@@ -1,4 +1,4 @@
-"""Preparation: what must be compiled is, in another process, before it is needed; the window goes on meanwhile."""
+"""Preparation: another process compiles step programs, collisions and drawing before they are needed."""
 
 from __future__ import annotations
 
@@ -35,11 +35,10 @@ AHEAD: tuple[Units, ...] = (RASTER,), (DRIVEN,), *PULLED  # which any model may 
 
 
 class Preparation(System):
-    """Has the step program of the model that is open compiled as soon as it is known, and the drawing.
+    """Compiles the step program of the open model as soon as the model is known, and the drawing.
 
-    First the compiler itself is loaded, in a thread: that takes as long as a person takes to press a key.
-    What is compiled is loaded as soon as nobody waits for anything else, and what other models may need is
-    compiled once nothing else is.
+    First a thread loads the compiler, which takes as long as a person needs to press a key. Compiled programs are
+    loaded while nobody waits for another; then programs that other models may need are compiled.
     """
 
     name = "programs.preparation"
@@ -53,11 +52,11 @@ class Preparation(System):
         self._seen = -1  # the model's revision in the last frame
         self._structure = -1  # when anything was made or deleted last, as of the last frame
         self._compiler = threading.Thread(target=_load_libraries, daemon=True)
-        self._blank = is_blank()  # then it is known without the compiler that nothing is compiled
-        self._loaded = False  # the program was, in the last frame
+        self._blank = is_blank()  # the cache is empty, which is known without loading the compiler
+        self._loaded = False  # whether the program was loaded in the last frame
         self._driven = False  # the kernels of driven collisions are loaded
-        self._looked = -1  # the model's revision when it was seen to what a hand needs
-        self._pulled: set[Job] = set()  # what a hand needs, as far as it was loaded
+        self._looked = -1  # the revision for which the program of a pulling hand was last looked up
+        self._pulled: set[Job] = set()  # programs of a pulling hand that were looked up
         self._running: dict[Job, subprocess.Popen[bytes]] = {}
         self._since: dict[Job, float] = {}
         self._done: set[Job] = set()
@@ -65,7 +64,7 @@ class Preparation(System):
     def process(self, frame: Any) -> None:
         """Begin with what the session needs next."""
         self._frames += 1
-        if self._frames == 2:  # the first picture comes first
+        if self._frames == 2:  # after the first picture
             self._compiler.start()
         simulation = frame.session.simulation
         before, self._structure = self._structure, simulation.model.structure
@@ -96,7 +95,7 @@ class Preparation(System):
                     return
 
     def _load_pulled(self, simulation: Simulation) -> None:
-        """While nothing happens: what takes the steps while a hand pulls, for loading it takes two frames."""
+        """While nothing happens, load the program that takes steps while a hand pulls; loading takes two frames."""
         if self._seen == self._looked or simulation.integrator.exact:
             return
         plan = simulation.plan
@@ -120,12 +119,14 @@ class Preparation(System):
         job = _job(simulation, simulation.plan)
         waited = self._waits(job, lambda: _is_compiled(simulation))
         others = self._waits_for_meetings(simulation)
-        if waited is None and job in self._running:  # then it is new, with a hand that pulls as well
+        if (
+            waited is None and job in self._running
+        ):  # a new kind of model: compile its program with a pulling hand, too
             self._waits((*job, Pull.name), lambda: False)
         return others if waited is None else waited
 
     def _waits_for_meetings(self, simulation: Simulation) -> float | None:
-        """Seconds since the programs were wanted by which particles of structures meet and rest on others, or None."""
+        """Seconds since the programs for contacts with structures were wanted; None if they are ready or not needed."""
         if not _may_meet(simulation):
             return None
         waited = self._waits_for_units((DRIVEN,))
@@ -154,7 +155,7 @@ class Preparation(System):
             self._running[job] = _started(job)
         if loading or (job in self._running and self._running[job].poll() is None):
             return waited
-        self._done.add(job)  # and if it could not be compiled there, it is tried, and explained, here
+        self._done.add(job)  # if the other process failed, this one compiles the program and reports the error
         return None
 
     def close(self) -> None:

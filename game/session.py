@@ -24,7 +24,7 @@ from game.documents import models
 from game.documents.open_documents import ModelFile, Source, file_of
 from game.editor.actions import ACTIONS, WHILE_DRAWING
 from game.editor.context import FAULTS, Context, Stage
-from game.editor.frame import Actions, Frame, ShowView, Unseen
+from game.editor.frame import Actions, Frame, HeadlessFrame, ShowView
 from game.editor.scenes import all_scenes, scene_systems
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
@@ -38,7 +38,7 @@ from systems.input.bindings import FORMS, TEXT, action_for, key_named
 from systems.run.system import Time
 from systems.schedule import Plan, Schedule
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # they import scipy
     from systems.statics.path import Curve
     from systems.statics.verify import Comparison
 
@@ -48,7 +48,7 @@ DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come
 
 
 class Session(Context):
-    """The program without a window: open documents with their runs, scenes and undo logs, as scripts drive them.
+    """The program as scripts drive it, with or without a window: open documents with their runs, scenes and undo logs.
 
     >>> s = Session.open("isostatic")
     >>> s.run(until="rest")
@@ -71,8 +71,10 @@ class Session(Context):
             wanted={scene.name: scene.systems for scene in scenes},
         )
         super().__init__(model, schedule, pull, scenes, view or View(), file)
-        self.on_press: Callable[[str, Vector | None], None] | None = None  # a recorder listens here
-        self.on_resize: Callable[[], None] | None = None  # and here
+        self.on_press: Callable[[str, Vector | None], None] | None = (
+            None  # called with every press; set by a recorder
+        )
+        self.on_resize: Callable[[], None] | None = None  # called after every change of size; set by a recorder
         self._blank = Model()  # what the footer is drawn over
         self.offer_tools()
         self.begin_document()
@@ -128,7 +130,11 @@ class Session(Context):
 
     @property
     def message(self) -> str:
-        """The question or refusal of the scene, the reason why the run stopped, or a warning; "" if none."""
+        """What the window says now; "" if nothing.
+
+        The fault of a mod, the question or refusal of the scene, why the run stopped, a warning or a notice, then the
+        remarks on a run at rest.
+        """
         simulation = self.simulation
         said = (
             self.fault
@@ -189,7 +195,7 @@ class Session(Context):
 
     @contextmanager
     def _followed(self) -> Iterator[None]:
-        simulation, frame = self.simulation, Unseen(self, 0.0)
+        simulation, frame = self.simulation, HeadlessFrame(self, 0.0)
 
         def follow() -> int:
             beyond = self.model.clock.steps % EVENT_INTERVAL

@@ -48,7 +48,7 @@ class Phase(Enum):
 
     INPUT = "input"  # input devices report pressed keys and buttons
     EDIT = "edit"  # presses become actions, actions become commands; scenes change; hovering
-    STEP = "step"  # time passes; laws, commits and the integrator are compiled into one program
+    STEP = "step"  # time passes; laws, commits, events and the integrator are compiled into one program
     EVENTS = "events"  # what follows from what happened in the steps: probes, autosave, edits by mods
     RENDER = "render"  # the view is brought up to date, and drawn; the model is only read
 
@@ -72,7 +72,7 @@ class Mod(Protocol):
         """True if it was left out or switched off."""
 
     def switch_off(self, reason: str, error: BaseException | None = None) -> None:
-        """Let nothing of it be called any more."""
+        """Call no code of the mod any more."""
 
 
 EVENT_INTERVAL = 16  # steps, at multiples of which systems of phase EVENTS run where there are no frames
@@ -115,11 +115,11 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
 
 
 class StepSystem(System):
-    """Compiled behaviour inside the fixed steps: a law, a commit or an integrator.
+    """Compiled behaviour inside the steps: a law, a commit, an event or an integrator.
 
     kernel: "module:function" of a numba-compiled function, or the function itself. Its parameters are
         bound by name: `<table>_<column>`, `time`, `dt`, an entry of `arrays`, or one of the quantities
-        that the role provides. "": what it does is not part of the step program.
+        that the role provides. "": the system adds nothing to the step program.
     impulsive: it acts at instants, by impacts, at which steps have to end.
     """
 

@@ -1,4 +1,4 @@
-"""The laws and commits that Pinjoint brings along, and the systems that mods add."""
+"""The step systems that Pinjoint brings along, and the systems that mods add."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SYSTEMS: list[Callable[[], System]] = []  # that mods add; made anew for every s
 
 
 def step_systems() -> list[StepSystem]:
-    """All of them, in order of registration."""
+    """The laws, the commits and the collisions of Pinjoint, in order of registration."""
     return [
         Elasticity(),
         ElasticityAfterYielding(),
@@ -38,5 +38,5 @@ def step_systems() -> list[StepSystem]:
 
 
 def all_systems() -> list[System]:
-    """Laws and commits, then the systems of mods, frame systems among them."""
+    """The step systems of Pinjoint, then the systems of mods, frame systems among them."""
     return [*step_systems(), *(make() for make in SYSTEMS)]

@@ -6,13 +6,12 @@ All of them: IEEE division (no exceptions), no fastmath, so that the same input 
     part       a kernel that only other kernels call
     entry      a function by which Python enters a program that consists of parts; its machine code is kept on disk
 
-numba would optimise every part with all that it calls and make machine code of it, although nothing but the entry is
-ever entered. Here, a part is only translated; the entry that it is linked into is optimised, and made machine code
-of, as a whole. Large programs compile in a fraction of the time. Since nobody else calls the parts of an entry, they
-are handed only the arguments that they use: an array consists of nine, and steps of a few rods would spend a third
-of their time on the others.
+Plain numba optimises each part with everything that it calls, and makes machine code of it, although only the entry
+is called from Python. Here a part is only translated to LLVM code; the entry is linked with its parts, then optimised
+and compiled as a whole, in a fraction of the time. Only the entry's parts call one another, so that arguments which a
+part does not use are dropped: an array has nine, which would cost steps of a few rods a third of their time.
 
-This takes inner classes of numba (below PLAIN). With the environment variable PINJOINT_PLAIN_NUMBA=1 all three
+This uses inner classes of numba (below PLAIN). With the environment variable PINJOINT_PLAIN_NUMBA=1 all three
 decorators are numba's own `njit` with the same options: programs compute the same bits and take longer to compile.
 """
 

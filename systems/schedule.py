@@ -20,14 +20,14 @@ from graphlib import CycleError, TopologicalSorter
 from typing import Protocol
 
 from components.model import Model
-from systems.base import Commit, Integrator, Law, Phase, StepSystem, System
+from systems.base import Commit, Event, Integrator, Law, Phase, StepSystem, System
 
 
 class ScheduleError(ValueError):
     """Systems that cannot be put in order; the message names them and says what to declare."""
 
 
-class Moving(Protocol):
+class SceneFrame(Protocol):
     """A frame as the schedule sees it: the active scene and the open model, which systems may change on the way."""
 
     @property
@@ -175,7 +175,7 @@ class Schedule:
         return Plan(scene, phases, {name: reason for name, reason in reasons.items() if reason})
 
     def step_plan(self, scene: str, model: Model) -> list[StepSystem]:
-        """Laws and commits that act in a scene and that the model needs, in order."""
+        """The step systems, integrators apart, that act in a scene and that the model needs, in order."""
         return [
             system
             for system in self._ordered[Phase.STEP]
@@ -204,7 +204,7 @@ class Schedule:
         """True if systems of a phase run in a scene where there are no frames."""
         return any(self.is_active(s, scene) and s.needs(model) for s in self._of_frames[phase, True])
 
-    def run(self, phase: Phase, frame: Moving, *, headless: bool = False) -> None:
+    def run(self, phase: Phase, frame: SceneFrame, *, headless: bool = False) -> None:
         """Run one phase of a frame, timing each system; each is asked for when its turn comes.
 
         headless: only systems that also run where there are no frames.
@@ -218,8 +218,8 @@ class Schedule:
 
 
 def _role(system: System) -> type:
-    """Laws, commits and integrators are kept apart by the step program itself."""
-    return next((role for role in (Law, Commit, Integrator) if isinstance(system, role)), System)
+    """The role of a step system, since the step program itself keeps roles apart; System for all others."""
+    return next((role for role in (Law, Commit, Event, Integrator) if isinstance(system, role)), System)
 
 
 def _contested(one: System, other: System) -> list[str]:

@@ -13,7 +13,7 @@ from game.commands.arguments import Parser, UsageError, count, finite
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
 from game.commands.output import Row, add_output, write_result
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # it imports scipy
     from systems.statics.path import Curve
 
 

@@ -24,10 +24,10 @@ def command(words: Sequence[str]) -> int:
     parser.add_argument("--scene", default="simulation", metavar="NAME", help="default: simulation")
     add_output(parser)
     options = parser.parse_args(words)
-    from game.app import unseen_systems  # pygame takes a while to import
+    from game.app import window_systems  # pygame takes a while to import
 
     with tempfile.TemporaryDirectory() as folder:
-        found = plan(session_of(options, unseen_systems(Path(folder))), options.scene)
+        found = plan(session_of(options, window_systems(Path(folder))), options.scene)
     write_result(options, found, _rows, lambda found: _lines(found, options.model))
     return ANSWERED
 

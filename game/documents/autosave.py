@@ -62,7 +62,7 @@ class Autosave(System):
         self._written: dict[OpenDocument, int] = {}  # revision of what the recovery file of a document holds
         self._due = 0.0
         self._trouble = ""  # why the last recovery file could not be written
-        self._said = ""  # the trouble that was told last
+        self._said = ""  # the trouble that was reported last
         self._thread: threading.Thread | None = None
         self._folder.mkdir(parents=True, exist_ok=True)
         lock = lock_file(self._folder / f"{self._id}.lock")

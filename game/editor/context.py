@@ -1,6 +1,6 @@
-"""Context: a session as actions, gestures and scenes know it; and what these three are.
+"""Context: what actions, gestures and scenes read and change; the base of gestures and scenes, and the table of actions.
 
-They are given the context of the session and change it; `game.session.Session` is a context that scripts drive.
+`game.session.Session` is the context that scripts drive.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from game.documents.history.history import History
 from game.documents.history.timeline import Timeline
 from game.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
 from game.editor.clipboard import Part
-from game.editor.host import Prepares, Window
+from game.editor.host import ProgramPreparation, Window
 from game.scripts.script import Script
 from systems.base import Mod
 from systems.collision.impacts import Impacts
@@ -263,7 +263,7 @@ class Context:
         self.notice = ""
         self.window: Window | None = None
         self.autosave: Autosave | None = None
-        self.preparation: Prepares | None = None
+        self.preparation: ProgramPreparation | None = None
         self.performing = False
         self.footer: View | None = None
         self.lesson: Script | None = None
@@ -419,7 +419,7 @@ class Context:
             return False
         self.history.end_run()
         self.history.begin_run(single=True)
-        self.get_ready()  # so that the checkpoint to which stepping back may return is
+        self.get_ready()  # so that there is a checkpoint to step back to
         if steps >= 0:
             with self.timeline.recording():
                 self.simulation.advance(steps)

@@ -1,4 +1,4 @@
-"""Frame: what frame systems are given, and the systems by which a session takes part in it."""
+"""Frame: the argument of frame systems, and the systems that perform presses and update the view."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Frame:
         return self.session.model
 
 
-class Unseen(Frame):
+class HeadlessFrame(Frame):
     """A frame of a run without frames: nothing is pressed or drawn, and systems of the run's scene are active."""
 
     @property

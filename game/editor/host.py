@@ -1,4 +1,4 @@
-"""Host: what a window gives a session, which does without elsewhere."""
+"""Host: what a window offers to a session; without a window there is none."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Window(Protocol):
         """Put a text on the system's clipboard."""
 
 
-class Prepares(Protocol):
+class ProgramPreparation(Protocol):
     """Compiles step programs in another process, so that the window goes on meanwhile."""
 
     def waits_for(self, simulation: Simulation) -> float | None:

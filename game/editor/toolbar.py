@@ -11,7 +11,7 @@ from game.editor.context import Context
 from game.editor.gestures.drawing import Drawing
 from systems.input.bindings import Binding, toolbar
 
-Condition = Callable[["Context"], bool]
+Condition = Callable[[Context], bool]
 
 
 def toolbar_of(context: Context) -> Toolbar:

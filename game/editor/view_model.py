@@ -1,4 +1,4 @@
-"""View model: what the view says of a session, brought up to date once a frame."""
+"""View model: status line, panels, previews and flashes of a session, brought up to date once a frame."""
 
 from __future__ import annotations
 

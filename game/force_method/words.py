@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, overload
 from components.view import BETWEEN
 from game.force_method import PARTS
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # they import scipy
     from game.force_method.guide import Guide
     from systems.statics.force_method import Solution, Unknown
 

@@ -1,4 +1,4 @@
-"""Mods: extensions by others, and those of ours that are written as theirs are; assets/mods/README.md is their guide.
+"""Mods: extensions by others, and parts of Pinjoint that are written as mods; assets/mods/README.md is their guide.
 
 >>> from game import mods
 >>> [mod.name for mod in mods.MODS if mod.problem]

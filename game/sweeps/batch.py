@@ -1,7 +1,7 @@
 """Batch: many variants of a small model on their way through time together, with the bits of single runs.
 
-Each variant goes as Simulation goes with one model, by its own steps and checks and the same policies. A variant whose
-way leads to what only Simulation can deal with (it diverges, or never comes to rest) is left to a run of its own.
+Each variant takes its own steps and checks by the same policies as Simulation. A variant that only Simulation can deal
+with (it diverges, or never comes to rest) is computed by a run of its own.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ class Batch:
         self._begin_steps(np.flatnonzero(~self.alone), sizes)
 
     def _leave_sleepers(self, variants: Rows) -> None:
-        """Leave those to runs of their own in which an island at rest would sleep now while others move."""
+        """Leave to runs of their own the variants in which an island at rest would sleep now while others move."""
         if not (self._may_sleep and len(variants)):
             return
         self.observe()
@@ -216,7 +216,7 @@ class Batch:
 
     def _run(self, until: float, variants: Rows) -> None:
         while len(variants := variants[is_before(self.clock("time")[variants], until)]):
-            # Each goes on until Simulation would stop next to look at it.
+            # Each variant goes on until Simulation would next review it.
             steps = steps_to_sleep_review(self.clock("steps")) if self._may_sleep else REVIEW_INTERVAL
             taken, reason = self._advance(variants, steps, until)
             reason = reason[variants]

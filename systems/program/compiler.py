@@ -134,11 +134,11 @@ def _name_of(source: str, kernels: Mapping[str, Callable[..., Any]]) -> str:
 
 @dataclass(frozen=True)
 class CompiledUnit:
-    """A generated module that is the same for every model: the drawing, or one of the engines of collisions.
+    """A generated module that is the same for every model: the drawing, or kernels of collisions.
 
-    name: by which a process that compiles ahead of need knows it. contents: gives its source, and the kernels by the
-    names that the source calls them; imports these. warm_up: calls all its functions, whereby numba compiles them or
-    loads them from the cache; not needed where their types are declared.
+    name: the name that a compiling process is given. contents: returns the source, and the kernels by their names in
+    the source; the call imports them. warm_up: calls all functions, so that numba compiles or loads them; not needed
+    where types are declared.
     """
 
     name: str

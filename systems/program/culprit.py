@@ -1,4 +1,4 @@
-"""Culprits: the mod that broke a step program or its numbers is switched off, and the run goes on."""
+"""Culprits: finding and switching off the mod that broke a step program or its numbers."""
 
 from __future__ import annotations
 

@@ -118,7 +118,7 @@ class ReorderedProgram(Program):
     # --- the copies and the model's columns -----------------------------------------
 
     def _load(self) -> None:
-        """Bring the copies up to date: of systems' arrays, and of the state if anything else changed it."""
+        """Copy the arrays of systems, and the state if anything but this program changed it."""
         changed = self._held_revision != self.model.newest(Role.STATE)
         for own, rows, held in (*self._of_kernels, *(self._of_state if changed else ())):
             np.take(own, rows, axis=0, out=held)

@@ -10,12 +10,13 @@ from components.snapshot import Snapshot
 
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
-    """The state at a fixed step, and how far edits are accounted for in it. The document is not part of it.
+    """The state after a step, and how far edits are accounted for in it. The document is not part of it.
 
     state: all of it, or only the clock's where nothing else can have changed since.
     armed: the energy account and the step size fit the document.
     before_edit: measures of the state before edits that are not accounted for yet.
-    stable_step, warning: of the simulation then. binding: which of its programs it ran by.
+    stable_step, warning: of the simulation then. binding: `Programs.bindings` at that time; another
+    number means that another plan is bound.
     """
 
     state: Snapshot

@@ -10,7 +10,7 @@ from components.field import Column
 from components.model import Model
 from systems.entries import Measure
 
-ENERGIES = (Measure.KINETIC, Measure.ELASTIC, Measure.POTENTIAL)  # what the account takes of the measures
+ENERGIES = (Measure.KINETIC, Measure.ELASTIC, Measure.POTENTIAL)  # the measures that enter the account
 DISSIPATED = ("dissipated_damping", "dissipated_plastic", "dissipated_impact")
 ENTRIES = ("initial_energy", "work", "potential_reference")  # of the clock; as `opened` returns them
 
@@ -41,7 +41,7 @@ class Energy:
 
 
 def opened(measures: Any, clock: Clock) -> tuple[Any, Any, Any]:
-    """ENTRIES of an account that a run begins with: what energy there is, is its initial one.
+    """The ENTRIES with which a run's account begins: the energy that the model has then is the initial one.
 
     measures: as of Program, along the first axis.
     """
@@ -75,13 +75,13 @@ class Account:
         self.before_edit = self._measure().copy()
 
     def close(self) -> None:
-        """Enter what was edited."""
+        """Enter the energy that edits added; afterwards no edit is open."""
         for name, value in zip(ENTRIES, self._edited(self._measure().tolist()), strict=True):
             self._model.writable(f"clock.{name}")[0] = value
         self.before_edit = None
 
     def energy(self, *, edited: bool) -> Energy:
-        """The account now; edited: something was, since it was closed."""
+        """The account now. edited: the model was edited since `close`."""
         measures = self._measure().tolist()
         initial, work, reference = self._edited(measures) if edited else tuple(map(self._clock, ENTRIES))
         return energy_of(measures, self._clock, (initial, work, reference))

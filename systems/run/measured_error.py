@@ -15,7 +15,7 @@ from systems.run.simulation import Simulation
 
 FINER_TOLERANCE = 1e-2  # of the run's, by which it is taken again where the error is controlled
 FINEST_TOLERANCE = 1e-13
-PIECES = 64  # of a run, at whose ends it is looked how far particles have moved
+PIECES = 64  # parts of a run at whose ends the displacements are compared
 # Evaluations of the forces of rods up to which the error is measured without being asked for:
 IN_A_FRAME, IN_A_COMMAND = 5_000_000, 60_000_000  # about 0.2 s and 3 s
 
@@ -43,8 +43,8 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     The run is taken again by half its steps, or where the error is controlled by a hundredth of the
     tolerance and half the longest step, and taken back. By Richardson's argument the error of a method of
     order p is the difference times 2^p / (2^p − 1). Yielding, which only Runge–Kutta methods locate inside a
-    step, leaves order 1. There is none where particles met (the slightest difference grows from impact to
-    impact), or where events might change the model, and none that is below what numbers can tell.
+    step, leaves order 1. There is no estimate where particles met (the slightest difference grows from impact
+    to impact), where events might change the model, or where the error is below round-off.
     """
     model = simulation.model
     clock, then = model.clock, beginning.columns

@@ -17,7 +17,7 @@ from systems.base import Integrator, StopReason
 from systems.entries import Measure
 from systems.physics.automatic import SMALL
 
-GOING_ON = (StopReason.DONE, StopReason.REVIEW)  # reasons for which nothing ends
+GOING_ON = (StopReason.DONE, StopReason.REVIEW)  # stop reasons after which a run simply goes on
 
 SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
 ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square
@@ -25,7 +25,11 @@ FIRST_SHARE = 0.1  # of 1/ω, the step at which error control begins
 FREE_STEP = 1e-3  # s, where nothing limits the step
 DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
 
-ERROR_CONTROL = "step_error", "largest_displacement", "largest_speed"  # of the clock; 0 where steps begin anew
+ERROR_CONTROL = (
+    "step_error",
+    "largest_displacement",
+    "largest_speed",
+)  # columns of the clock; 0 where error control begins anew
 
 # Steps between reviews of islands; fewer: asleep sooner, but a review costs as much as ten steps.
 SLEEP_INTERVAL = 1024

@@ -1,4 +1,4 @@
-"""Steps of a step program: by all of it, or while islands sleep by the part that is awake."""
+"""Steps of a step program: of the whole, or while islands sleep of the awake part."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from systems.run.step_size import StepSize
 
 
 class ProgramSteps:
-    """The stepper of one model's step program; it does not look out for what meets."""
+    """The stepper of one model's step program, without collision detection."""
 
     def __init__(self, model: Model, programs: Programs, sleep: Sleep, step_size: StepSize) -> None:
         self._model = model

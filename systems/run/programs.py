@@ -1,4 +1,4 @@
-"""Programs: by what the steps of one model are taken, chosen by its plan and bound to its columns."""
+"""Programs: the step programs, or exact flight, of one model, one for each plan; that of the present plan is bound."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ Dynamics = Program | Flight  # what moves a model: forces and energies by the sy
 
 
 class Programs:
-    """The step programs of one model, made once for each plan; the present plan's is bound to the model.
+    """What moves one model, made once for each plan; that of the present plan is bound to the model.
 
-    scene: the one whose systems act. collides: particles may meet, by the plan that was bound last. bindings: how often
-    a plan was bound. compile_seconds: spent in compiling or loading programs.
+    scene: the scene whose systems act in the run. collides: particles may meet, by the plan that was bound last.
+    bindings: how often a plan was bound. compile_seconds: spent in compiling or loading programs.
     """
 
     def __init__(self, model: Model, schedule: Schedule, impacts: Impacts, scene: str) -> None:
@@ -48,7 +48,7 @@ class Programs:
 
     @property
     def plan(self) -> list[StepSystem]:
-        """The laws and commits that act in the scene and that the model needs, in order."""
+        """The step systems, integrators apart, that act in the scene and that the model needs, in order."""
         return self._schedule.step_plan(self.scene, self._model)
 
     def planned(self) -> Plan:
@@ -93,7 +93,7 @@ class Programs:
 
     @property
     def _chosen(self) -> Integrator:
-        """The one that the settings name; one that suits if they name none, or one that does not act now."""
+        """The integrator that the settings name; the automatic choice if they name none, or one that does not act here."""
         named = INTEGRATORS.get(self._model.settings.integrator)
         off = named is None or (named.mod is not None and named.mod.off)
         if named is None or off or not self._schedule.is_active(named, self.scene):
@@ -120,7 +120,7 @@ class Programs:
         return program
 
     def bind(self) -> Dynamics:
-        """Have what moves the model bound to it, without mods whose systems cannot join it."""
+        """Bind what moves the model to its columns. A mod whose system cannot join the program is switched off."""
         while self._bound is None:
             plan = self.plan
             try:
@@ -129,15 +129,15 @@ class Programs:
             except ProgramError as error:
                 if not blame_mod(error):
                     raise
-                self._integrator = None  # it may be the one
+                self._integrator = None  # the integrator may be that mod's
         return self._bound
 
     def unbind(self) -> None:
-        """The plan may be another one."""
+        """Release what is bound, since the plan may have changed."""
         self._bound = None
 
     def void(self) -> None:
-        """The document changed."""
+        """Release what is bound and the chosen integrator, since the document changed."""
         self._integrator = self._bound = None
 
     def _bound_to(self, plan: list[StepSystem]) -> Dynamics:

@@ -9,7 +9,7 @@ LONGEST_FRAME = 0.1  # s of real time that one frame may catch up
 BUDGET = 0.012  # s of a frame that steps may take
 FIRST_STEPS = 1000  # that the first frame may take, when their cost is not known yet
 FASTEST, SLOWEST = 1e3, 1e-5  # simulated seconds per second shown, times the natural pace at 1
-MANY, SHARE = 2000, 0.1  # elements from which on a change by a smaller share leaves the pace as it is
+MANY, SHARE = 2000, 0.1  # above MANY elements, a change of their number by a smaller share keeps the pace
 
 
 class TimeScale:
@@ -70,7 +70,7 @@ class RealTimeRunner:
         self.clock = TimeScale()
         self._pace_revision = -1
         self._pace_size = 0
-        self._waited = False  # for a picture
+        self._waited = False  # the last frame took no steps, so that the edit was drawn first
 
     def frame(self, elapsed: float) -> None:
         """Take the steps of one frame that comes `elapsed` seconds after the last."""

@@ -40,7 +40,7 @@ class Recovery:
         return before is None or not all(same(before.columns[name], state.columns[name]) for name in MOVING)
 
     def without_mod(self) -> bool:
-        """Return to the good state without the mod whose numbers were not finite; False if none's were."""
+        """Switch off the mod whose numbers were not finite, and return to the good state; False if no mod is to blame."""
         assert self.safe is not None
         if find_culprit(self._programs.compiled, self.safe) is None:
             return False
@@ -50,7 +50,7 @@ class Recovery:
     def with_shorter_steps(self) -> bool:
         """Return to the good state and halve an automatic step, which proved too long as the geometry changed.
 
-        False if the step is not automatic, or was halved in vain.
+        False if the step is not automatic, or was halved MOST_HALVINGS times already.
         """
         chosen = self._model.settings.time_step is not None or self._programs.integrator.estimates_error
         if chosen or self._halvings == MOST_HALVINGS:

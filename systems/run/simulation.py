@@ -1,4 +1,4 @@
-"""Simulation: one model on its way through time, by fixed steps that no frame rate can change."""
+"""Simulation: one model on its way through time, by steps that no frame rate can change."""
 
 from __future__ import annotations
 
@@ -59,12 +59,12 @@ class Simulation:
 
     reason: why the last advance ended; message: the same as a sentence, or "".
     note: what a person should know though the run goes on, or "".
-    impacts: what collided so far. compute_seconds: spent so far in steps.
-    armed: all edits are accounted for, and the step size fits the document. armed_revision: changes whenever the
-    document that is run changed.
-    programs: by what steps are taken. step_size: how long they are, and what limits them.
-    before_steps: each is called before steps are taken, and returns how many may be taken before the next call.
-    events: what happened so far, without what was taken back.
+    impacts: the impacts so far. compute_seconds: time spent in steps so far.
+    armed: all edits are accounted for, and the step size fits the document. armed_revision: the revision
+    of the model when edits were last accounted for.
+    programs: the step programs of the model. step_size: the length of steps and what limits it.
+    before_steps: functions called before steps are taken; each returns the number of steps until its next call.
+    events: the events so far, without those in time that was taken back.
     """
 
     def __init__(self, model: Model, schedule: Schedule, scene: str = "simulation") -> None:
@@ -107,7 +107,7 @@ class Simulation:
 
     @property
     def plan(self) -> list[StepSystem]:
-        """The laws and commits that act in its scene and that the model needs, in order."""
+        """The step systems, integrators apart, that act in its scene and that the model needs, in order."""
         return self.programs.plan
 
     def planned(self, scene: str = "") -> Plan:
@@ -161,7 +161,7 @@ class Simulation:
             if not problem:
                 collides = any(system.impulsive for system in self.plan)
                 self.note = part_overlaps(self.model) if collides else ""  # of what edits left in one place
-                self.program.commit()  # what edits left beyond a strength yields
+                self.program.commit()  # rods that edits left beyond a strength yield
                 self._account.close()
                 self._sleep.review(self.program)
                 self.step_size.begin(self.step_size.first())
@@ -181,14 +181,14 @@ class Simulation:
             self._arm()
 
     def wake(self) -> None:
-        """Something acts on the model from outside: that it was at rest, or diverged, counts no more."""
+        """Let the run go on although it was at rest or had diverged, since something acts on the model from outside."""
         self.reason, self.message = StopReason.DONE, ""
 
     # --- going back ----------------------------------------------------------------------------------
 
     def forget(self) -> None:
-        """The state was replaced (undo, a saved run) by one that fits the document, accounted for."""
-        self.programs.unbind()  # its plan may be another one: what is in contact is part of the state
+        """Begin anew from a state that undo or a file put in place; all edits are accounted for in it."""
+        self.programs.unbind()  # the plan may differ: persistent contacts are part of the state
         self._forget_run()
 
     def _forget_run(self) -> None:
@@ -199,7 +199,7 @@ class Simulation:
         self.wake()
 
     def start_anew(self) -> None:
-        """The state was replaced by one from before edits: a new run begins with it."""
+        """Begin a new run with a state from before edits."""
         for name in CHOSEN:
             self.model.writable(f"clock.{name}")[0] = 0.0
         self.forget()
@@ -212,7 +212,7 @@ class Simulation:
         return self._present[1]
 
     def checkpoint(self, *tables: str) -> Checkpoint:
-        """The present, to return to: the state of these tables (none given: of all)."""
+        """A checkpoint of the present, with the state of these tables (none given: of all tables)."""
         return Checkpoint(
             Snapshot.take(self.model, *tables) if tables else self.present(),
             self.model.clock.steps,
@@ -224,14 +224,14 @@ class Simulation:
         )
 
     def resume(self, checkpoint: Checkpoint) -> None:
-        """Return to a checkpoint in which the document was as it is now."""
+        """Return to a checkpoint; the document must be the one that it was taken with."""
         checkpoint.state.restore(self.model)
         self.events = [event for event in self.events if event.time <= self.model.clock.time]
         if checkpoint.binding != self.programs.bindings:
             self.programs.unbind()
         self._forget_run()
         self.armed, self._account.before_edit = checkpoint.armed, checkpoint.before_edit
-        if checkpoint.whole:  # else what limits the step is found out anew
+        if checkpoint.whole:  # else the stable step is determined anew
             self._recovery.safe = checkpoint.state
             self.step_size.stable, self.step_size.warning = checkpoint.stable_step, checkpoint.warning
         self.armed_revision = self.model.revision
@@ -255,7 +255,7 @@ class Simulation:
             ahead = min(steps - done, self._sleep.steps_to_review(self.program))
             for call in self.before_steps:
                 ahead = min(ahead, call())
-            self._arm()  # if they edited something
+            self._arm()  # in case one of them edited the model
             if self.halted:
                 break
             taken, reason = self._stepper.advance(ahead, until, landing)
@@ -272,7 +272,7 @@ class Simulation:
         return done
 
     def _heed(self, reason: StopReason) -> None:
-        """Do what a stepper that returned for this reason asks for."""
+        """React to the reason for which the stepper returned."""
         self.reason = StopReason.DONE if reason is StopReason.EVENT else reason
         if reason is StopReason.REST:
             self._rested = self.model.clock.time
@@ -283,7 +283,7 @@ class Simulation:
             self._recover(reason)
 
     def _announce_events(self) -> None:
-        """Let events have their consequences, which may be edits."""
+        """Call the handlers of the events that ended the step; handlers may edit the model."""
         if self.program.watches_events and self._announces:
             for event, *changed in self.program.take_events():
                 elements: list[list[Any]] = changed  # that fell, and that rose
@@ -374,7 +374,7 @@ class Simulation:
     def aside(self, beginning: Snapshot) -> Iterator[None]:
         """A run inside the `with` starts from another state, and is taken back as if it had not been."""
         before, announces = self.checkpoint(), self._announces
-        self._announces = False  # what happened is known
+        self._announces = False  # the events of this run were announced before
         said = self.reason, self.message, self.note, self.armed_revision
         self.resume(replace(before, state=beginning, armed=False, before_edit=None))
         try:

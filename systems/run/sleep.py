@@ -3,7 +3,7 @@
 An island falls asleep where a run is reviewed, which is at fixed step counts and after edits, if it is at rest by
 itself and no load on it still varies. Its particles keep their places and have no velocity; what was left of their
 kinetic energy is dissipated. It wakes when an edit disturbs its rest, when something strikes it, and when forces
-come in that follow from more than the state: a hand, lasting contacts.
+appear that depend on more than the state: a pulling hand, persistent contacts.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Sleep:
         self.model = model
         self._asked: tuple[Dynamics, int] | None = None
         self._versions: tuple[int, int] | None = None
-        self._looked_at = -1  # the version of who is asleep that any_asleep is about
+        self._looked_at = -1  # the version of particles.asleep for which any_asleep was determined
         self._parts: dict[Program, ReorderedProgram] = {}
         self._bound: ReorderedProgram | None = None  # to the model as it is
         self._left_out: Mask = np.zeros(0, dtype=bool)  # asleep when it was bound
@@ -60,13 +60,13 @@ class Sleep:
         return self._any_asleep
 
     def steps_to_review(self, program: Dynamics) -> int:
-        """After how many steps a run is to be reviewed again."""
+        """Number of steps until the islands are reviewed again."""
         if not self.may_happen(program):
             return sys.maxsize
         return int(steps_to_sleep_review(self.model.clock.steps))
 
     def _look_up(self) -> None:
-        """Find the islands anew where that changed which they follow from."""
+        """Find the islands anew if supports or rods have changed."""
         model = self.model
         versions = model.particles.version("fixed"), model.rods.version("between")
         if versions != self._versions:
@@ -76,7 +76,7 @@ class Sleep:
             self._count = int(self._of_particle.max(initial=IMMOVABLE))
 
     def review(self, program: Dynamics) -> bool:
-        """Let those islands sleep, and no others, that are at rest; True if others do than before."""
+        """Put exactly the islands at rest to sleep; True if the set of sleeping particles changed."""
         if not self.may_happen(program):
             return self._wake()
         measure = self._observed(program)
@@ -128,11 +128,11 @@ class Sleep:
     # --- what takes the steps --------------------------------------------------------------------------
 
     def forget(self) -> None:
-        """The document, or the state of who sleeps, was changed or replaced."""
+        """Release the bound part, since the document or particles.asleep was changed."""
         self._bound = None
 
     def part(self, program: Program) -> Program:
-        """The program that takes the steps: the given one, or while some sleep its part that is awake."""
+        """The program that takes the steps: the given one, or while islands sleep a program of the awake part."""
         if not self.any_asleep:
             return program
         asleep = self.model.particles.asleep

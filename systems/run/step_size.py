@@ -1,4 +1,4 @@
-"""The step size of one model's run: what limits it now, which one suits, and what to say of one that does not."""
+"""Step size of one model's run: its limit by stability, its automatic choice, and the warning if it is too long."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ DEFAULT_INTEGRATOR = "velocity_verlet"
 class StepSize:
     """Applies the policy of step sizes to one model's clock.
 
-    stable: the largest stable step (s) that was found last. warning: that the steps are longer, or "".
-    watched: steps are not longer than what is shown at once, even where accuracy would allow it; else they are too long
-    to be watched, and to be interrupted.
+    stable: the largest stable step (s) that was found last. warning: the sentence that the
+    chosen step is too long, or "". watched: a person watches, so that no step lasts longer than SHOWN on screen even
+    where accuracy would allow it: else the run could neither be followed nor interrupted.
     """
 
     def __init__(self, model: Model, programs: Programs, sleep: Sleep) -> None:

@@ -207,6 +207,14 @@ def test_systems_of_phase_events_run_without_frames_at_fixed_step_counts() -> No
     assert sorted(set(one.steps)) == sorted(set(other.steps))
 
 
+def test_an_event_may_read_what_collisions_change() -> None:
+    class Fast(Crossing):
+        name = "test.fast"
+        reads = ("particles.displacement", "particles.velocity")
+
+    Session.open("ball_on_truss", [Fast()]).run(steps=2)
+
+
 def test_an_event_for_neither_rods_nor_particles_is_refused_by_name() -> None:
     class Wrong(Breaking):
         name = "test.wrong"

@@ -95,7 +95,7 @@ class History:
         if run is None or self._add_run(run) or self._simulation.halted:
             return  # halted: a run that diverged at once stays so
         if self._model.newest(Role.STATE) != self._run_revision:
-            self._simulation.resume(run.before)  # it only got ready
+            self._simulation.resume(run.before)  # no step was taken: getting ready alone changed the state
 
     def _add_run(self, run: Run) -> bool:
         """Enter a run in the log; False if no time passed in it."""

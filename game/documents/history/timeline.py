@@ -96,11 +96,11 @@ class Timeline:
         self.begin()
         anew = self._change_hand(hand)
         self._hands.append((self._now, hand))
-        if anew or self._now in self._checkpoints:  # what is kept of a step is what follows from the hand there
+        if anew or self._now in self._checkpoints:  # a checkpoint at this step must hold the new hand
             self._checkpoints[self._now] = self._simulation.checkpoint()
 
     def _change_hand(self, hand: Hand | None) -> bool:
-        """True if the run goes on by another program, which takes longer to get ready than many steps do."""
+        """Let the hand change; True if another step program takes over, which takes longer to bind than many steps."""
         held = self._pull.hand
         if held is not None and hand is not None and held.particle is hand.particle:
             self._pull.move(self._simulation.model, hand.anchor)

@@ -17,7 +17,9 @@ from systems.program.program import Program
 
 CLOSED_GAP = 1e-13  # of the smaller radius: contacts with a smaller gap are closed
 LOOSELY_CLOSED_GAP = 1e-11  # instead, after STRICT_TRIES: gaps in a row between walls hardly follow forces
-COMPLIANCE_GAP = 2e-11  # of how far forces move particles: a gap that small is closed, too; see FIRM
+COMPLIANCE_GAP = (
+    2e-11  # of how far forces move particles: a gap that small is closed; see FIRM in complementarity.py
+)
 STRICT_TRIES, MOST_FORCE_TRIES = 3, 8  # tries of the forces in a step
 STEP_CUT = 0.25  # of a step whose forces are not found: the length of the step taken instead
 MOST_STEP_CUTS = 12  # after which forces no longer matter, and those of the step before are good enough
@@ -31,7 +33,7 @@ class ContactStepper:
         self._neighbours = neighbours
 
     def step(self, trial: TrialStep, end: float | None) -> StopReason:
-        """Take a trial step, whole or up to a time (s), or less of it.
+        """Take a trial step: a whole one, one that ends at a time (s), or a shorter one.
 
         Forces F ≥ 0, constant during the step and along the lines of centres at its start, are such that the particles
         that they push apart are no farther apart at the end, and no particle is deeper in another. As distances are
@@ -63,7 +65,7 @@ class ContactStepper:
     def _try(
         self, trial: TrialStep, end: float | None, contacts: PersistentContacts, *, anyhow: bool = False
     ) -> tuple[StopReason, bool]:
-        """Take such a step: why it stopped, and True if its forces were found; `anyhow`, those of the step before do.
+        """Take a trial step with contact forces: why it stopped, and True if forces were found. anyhow: accept the last.
 
         All tries end at the same time: where the error is controlled, other forces would choose another step, and gaps
         would jump with it.
@@ -98,7 +100,7 @@ class ContactStepper:
         return reason, False
 
     def _keep(self, pairs: Rows, forces: Floats, gap: Floats, later: Floats, size: Floats) -> None:
-        """Keep the contacts that push or touch; among many, also those that are hardly open now and later."""
+        """Keep the contacts that push or touch; among many, also those with a small gap now and a step later."""
         persists = (forces > 0.0) | (gap <= CLOSED_GAP * size)
         if len(pairs) >= SETTLING_CONTACTS:
             persists |= np.maximum(gap, later) <= SETTLING_HEIGHT * size

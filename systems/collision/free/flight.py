@@ -92,7 +92,7 @@ class Flight:
 
     @property
     def discs(self) -> Discs:
-        """The engine, in the present state of the model."""
+        """The flying discs, in the present state of the model."""
         if not self._fresh:
             particles, clock = self.model.particles, self.model.clock
             self._flying = engine()(
@@ -131,8 +131,8 @@ class Flight:
     def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
         """Let the time of up to `steps` steps pass, none of which ends after `until` (s), as every stepper does.
 
-        None is cut at `landing`: steps are only where one looks. What happens does not depend on them, unless a
-        hand pulls.
+        No step is cut at `landing`: steps are only the times at which the state is observed, and the motion does not
+        depend on them unless a hand pulls.
         """
         return self._take(steps, until, math.inf)
 
@@ -152,7 +152,7 @@ class Flight:
         return taken, reason
 
     def _pulled_step(self, until: float, landing: float) -> int:
-        """A step in which the hand's force stays as it is; its work is accounted for."""
+        """Take one step with the hand's force held constant, and enter its work."""
         force, particles = self._hands_force(), self.model.particles
         self._flying, before = None, particles.displacement.copy()
         taken, _ = self._pass(1, until, landing)
@@ -224,9 +224,11 @@ class Flight:
     # --- reading -----------------------------------------------------------------------------------
 
     def commit(self) -> None:
-        """Nothing here has a history."""
+        """Do nothing: free particles have no history."""
 
-    @np.errstate(over="ignore", invalid="ignore")  # of forces that are too large to compute with, as is said
+    @np.errstate(
+        over="ignore", invalid="ignore"
+    )  # forces too large to compute with are reported by the check of the model
     def observe(self) -> None:
         """Bring forces, reactions and measures up to date."""
         particles = self.model.particles
@@ -245,5 +247,5 @@ class Flight:
         measures[Measure.POWER] = 1000.0 * (free * velocity).sum()
 
     def conserved_energy(self) -> float:
-        """Energy is exact to round-off: nothing guards it."""
+        """0: flight keeps energy to round-off, and no check compares it."""
         return 0.0

@@ -311,10 +311,9 @@ def advance(
 ):
     """Take up to `steps` steps that end by `until` (s); returns (steps taken, StopReason).
 
-    fresh: the forces are still those of the present state. total: all steps so far. first: steps since the
-    time origin, which moves with every step whose size is controlled. Checks happen after 1, 2, 4, … steps in
-    all, and whenever the total is a multiple of CHECK_INTERVAL: at counts that do not depend on how the steps
-    are divided into calls.
+    fresh: the forces are still those of the present state. total: all steps so far. first: steps since the time origin,
+    which moves with every step whose size is controlled. Checks happen after 1, 2, 4, … steps in all, and whenever the
+    total is a multiple of CHECK_INTERVAL: at counts that do not depend on how the steps are divided into calls.
     """
     if not fresh:
         evaluate(control[Control.TIME], control[Control.STEP_SIZE], *state, power, *columns)
