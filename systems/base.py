@@ -89,7 +89,8 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
     scenes: names of the scenes it is active in; None: all. A scene may name further systems (`Scene.systems`).
     unneeded: why a model for which `needs` is False leaves the system out, such as "the model has no cables".
     headless: of a system in phase EVENTS: it also runs where there are no frames, in `Session.run` and on the
-        command line, every EVENT_INTERVAL steps and at the end of a run.
+        command line, every EVENT_INTERVAL steps and at the end of a run; only an Event acts at the same instant
+        however a run is divided.
     mod: the mod that brought it, if one did; set by the program.
     """
 
@@ -189,7 +190,7 @@ class Event(StepSystem):
     Integrators that control their steps end one where a quantity passes 0, within 1e-11; the others end the first
     step that has passed it. The run stops there, and `happen` may change the model by commands, before it goes on:
     at the same time, with the same bits, in the window at any frame rate, in scripts and on the command line.
-    clock.events keeps, in the state, which rows are negative.
+    clock.events keeps, in the state, which elements are negative, by name: one that is renamed counts as a new one.
 
     each: "rods" or "particles".
     """

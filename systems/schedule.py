@@ -160,10 +160,11 @@ class Schedule:
             return self.inactive(system, scene)
         return "" if system.needs(model) else system.unneeded
 
-    @staticmethod
-    def inactive(system: System, scene: str) -> str:
+    def inactive(self, system: System, scene: str) -> str:
         """The reason why a system is not active in a scene: where it is."""
-        return f"not active in {scene}, only in {', '.join(system.scenes or ())}"
+        wanted = [other for other in self._wanted if self.is_active(system, other)]
+        named = dict.fromkeys((*(system.scenes or ()), *wanted))
+        return f"not active in {scene}, only in {', '.join(named) or 'no scene'}"
 
     def plan(self, scene: str, model: Model) -> Plan:
         """Which systems run in a scene with a model, and why the others do not."""

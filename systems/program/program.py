@@ -165,7 +165,7 @@ class Program:
 
     def take_events(self) -> list[tuple[Event, list[Handle], list[Handle]]]:
         """The events since the last call, in order, with the elements that fell and that rose; the state notes them."""
-        found, noted = [], {}
+        found, noted = [], dict(self.model.clock.events or {})  # those of other scenes stay
         for b, sides in self._sides:
             assert isinstance(b.system, Event)
             elements = self.model.tables[b.each].handles

@@ -64,7 +64,6 @@ class Simulation:
     of the model when edits were last accounted for.
     programs: the step programs of the model. step_size: the length of steps and what limits it.
     before_steps: functions called before steps are taken; each returns the number of steps until its next call.
-    events: the events so far, without those in time that was taken back.
     """
 
     def __init__(self, model: Model, schedule: Schedule, scene: str = "simulation") -> None:
@@ -75,7 +74,7 @@ class Simulation:
         self.note = ""
         self.compute_seconds = 0.0
         self.before_steps: list[Callable[[], int]] = []
-        self.events: list[EventRecord] = []
+        self._events: list[EventRecord] = []  # also those that undo took back, until time passes again
         self.impacts = Impacts(model)
         self.programs = Programs(model, schedule, self.impacts, scene)
         self._sleep = Sleep(model)
@@ -226,7 +225,6 @@ class Simulation:
     def resume(self, checkpoint: Checkpoint) -> None:
         """Return to a checkpoint; the document must be the one that it was taken with."""
         checkpoint.state.restore(self.model)
-        self.events = [event for event in self.events if event.time <= self.model.clock.time]
         if checkpoint.binding != self.programs.bindings:
             self.programs.unbind()
         self._forget_run()
@@ -237,6 +235,11 @@ class Simulation:
         self.armed_revision = self.model.revision
 
     # --- running -------------------------------------------------------------------------------------
+
+    @property
+    def events(self) -> list[EventRecord]:
+        """The events of this session's run so far, without those in time that was taken back."""
+        return [event for event in self._events if event.time <= self.model.clock.time]
 
     @property
     def halted(self) -> bool:
@@ -251,6 +254,8 @@ class Simulation:
         self._arm()
         started, clock = time.perf_counter(), self.model.clock
         first, done = clock.steps, 0
+        if self._events and steps > 0:
+            self._events = self.events
         while done < steps and not self.halted:
             ahead = min(steps - done, self._sleep.steps_to_review(self.program))
             for call in self.before_steps:
@@ -259,9 +264,7 @@ class Simulation:
             if self.halted:
                 break
             taken, reason = self._stepper.advance(ahead, until, landing)
-            self._heed(reason)
-            self._announce_events()
-            self._arm()
+            self._heed_and_announce(reason)
             now = clock.steps
             if is_sleep_review(now) and not self.halted:
                 self._review_sleep()
@@ -282,13 +285,20 @@ class Simulation:
         elif self.reason is not StopReason.DONE:
             self._recover(reason)
 
+    def _heed_and_announce(self, reason: StopReason) -> None:
+        """React to the reason, and to events unless the state in which they happened was given up."""
+        self._heed(reason)
+        if reason not in (StopReason.DIVERGED, StopReason.UNRESOLVED):
+            self._announce_events()
+        self._arm()
+
     def _announce_events(self) -> None:
         """Call the handlers of the events that ended the step; handlers may edit the model."""
         if self.program.watches_events and self._announces:
             for event, *changed in self.program.take_events():
                 elements: list[list[Any]] = changed  # that fell, and that rose
                 names = (tuple(element.name for element in some) for some in elements)
-                self.events.append(EventRecord(event.name, self.model.clock.time, *names))
+                self._events.append(EventRecord(event.name, self.model.clock.time, *names))
                 event.happen(self.model, *([e for e in some if e.exists] for some in elements))
                 if event.mod is not None and event.mod.off:
                     self.before_change()  # it fails and acts no more, which counts as an edit
@@ -329,10 +339,11 @@ class Simulation:
             landing = math.inf if whole_steps else target
             if self.advance(REVIEW_INTERVAL, target, landing) == 0 and not self.halted:
                 if not whole_steps:
-                    self._heed(self._stepper.land(target))
-                    self._announce_events()
+                    self._heed_and_announce(self._stepper.land(target))
                 elif self._event_comes_before(target):
-                    self.advance(1)  # it ends that step before the time
+                    self._heed_and_announce(
+                        self._stepper.advance(1)[1]
+                    )  # the event ends the step before the time
                 else:
                     return
 

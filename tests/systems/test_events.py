@@ -207,6 +207,43 @@ def test_systems_of_phase_events_run_without_frames_at_fixed_step_counts() -> No
     assert sorted(set(one.steps)) == sorted(set(other.steps))
 
 
+def test_steps_that_diverge_break_nothing() -> None:
+    breaking = Breaking()
+    session = Session.open("isostatic", [breaking])
+    session.settings.integrator, session.settings.time_step = "velocity_verlet", 0.001
+    assert session.run(time=0.01) == "diverged"
+    assert (breaking.times, session.rods.count, session.time) == ([], 3, 0.0)
+
+
+def test_a_report_within_a_fixed_step_that_an_event_ends_is_of_its_time() -> None:
+    document = pulled("rk4", time_step=0.004)
+    plain, reported = Breaking(), Breaking()
+    run = Session.open(document, [plain])
+    run.run(time=0.0275)
+    session = Session.open(document, [reported])
+    (state,) = Analysis(times=(0.0275,)).run_in(session, "held")["states"]
+    assert state["time"] == 0.0275
+    assert reported.times == pytest.approx(plain.times, rel=1e-12)
+    moved = state["particles"][run.particles[1].name]["displacement"]
+    assert moved == pytest.approx(run.particles[1].displacement, rel=1e-12)
+
+
+def test_what_happened_is_listed_without_what_was_taken_back() -> None:
+    session = Session.open(pulled(), [Breaking()])
+    session.run(time=0.1)
+    (event,) = session.simulation.events
+    while session.can_undo:
+        session.undo()
+    assert session.simulation.events == []
+    while session.can_redo:
+        session.redo()
+    assert session.simulation.events == [event]
+    session.restart()
+    assert session.simulation.events == []
+    session.run(time=0.1)
+    assert session.simulation.events == []  # the rod is broken
+
+
 def test_an_event_may_read_what_collisions_change() -> None:
     class Fast(Crossing):
         name = "test.fast"

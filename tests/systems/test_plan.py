@@ -18,6 +18,7 @@ from game.editor.scenes import PHYSICS, SCENES, Scene
 from systems.base import Commit, Law, Phase, System
 from systems.physics.integrators import SemiImplicitEuler, register_integrator, remove_integrator
 from tests.reference.models import model, particle
+from tests.systems.test_events import Crossing
 
 BALL = model([particle("A", 0.0, 0.0)], [])
 
@@ -256,3 +257,25 @@ def test_an_integrator_acts_in_its_scenes_and_another_elsewhere(
         assert np.isfinite(session.particles.displacement).all()
     finally:
         remove_integrator("mine")
+
+
+def test_what_an_event_noted_in_its_scene_is_kept_in_others(arcade: Callable[..., Session]) -> None:
+    class Here(Crossing):
+        name = "test.here"
+        scenes = ("arcade",)
+
+    class There(Crossing):
+        name = "test.there"
+        scenes = ("simulation",)
+
+    here, there = Here(), There()
+    session = arcade(model([particle("A", 0.0, 0.0, velocity=[-1.0, 0.0])], []), here, there)
+    for scene in ("arcade", "simulation", "arcade"):
+        go(session, scene)
+        session.run(time=0.01)
+    assert [len(event.seen) for event in (here, there)] == [1, 1]
+
+
+def test_the_reason_names_all_scenes_in_which_a_system_is_active(arcade: Callable[..., Session]) -> None:
+    reasons = arcade(BALL).plan("pause").left_out
+    assert reasons["run.time"] == "not active in pause, only in simulation, arcade"
