@@ -19,6 +19,7 @@ from systems.collision.driven.stepper import DrivenCollisions
 from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
 from systems.collision.overlaps import part_overlaps
+from systems.program.program import OBSERVED
 from systems.program.writer import REVIEW_INTERVAL
 from systems.run.checkpoint import Checkpoint
 from systems.run.energy import Account, Energy
@@ -33,15 +34,6 @@ from systems.schedule import Plan, Schedule
 CHOSEN = ("step_size", "guard_energy", "initial_energy", "potential_reference")  # of the clock, as a run begins
 
 ENDS = (StopReason.REST, StopReason.DIVERGED)  # of a run
-
-OBSERVED = (
-    "rods.axial_force",
-    "rods.length",
-    "rods.strain",
-    "rods.yielding",
-    "particles.applied_force",
-    "particles.reaction",
-)
 
 
 @dataclass(frozen=True)
@@ -89,7 +81,8 @@ class Simulation:
         self.armed = False
         self.armed_revision = -1
         model.before_change = self.before_change
-        model.derive(Derivation(OBSERVED, self._sources(), lambda world: self.observe()))
+        observed = tuple(f"{table}.{name}" for table, names in OBSERVED.items() for name in names)
+        model.derive(Derivation(observed, self._sources(), lambda world: self.observe()))
         self.forget()  # a saved run goes on with the step size it had
 
     def _sources(self) -> tuple[str, ...]:
@@ -260,7 +253,7 @@ class Simulation:
             ahead = min(steps - done, self._sleep.steps_to_review(self.program))
             for call in self.before_steps:
                 ahead = min(ahead, call())
-            self._arm()  # in case one of them edited the model
+                self._arm()  # in case it edited the model
             if self.halted:
                 break
             taken, reason = self._stepper.advance(ahead, until, landing)
