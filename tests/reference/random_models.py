@@ -113,7 +113,7 @@ def _structure(lot: Lot, kind: Kind) -> Model:
     for island in range(kind.islands):
         places, pairs = _truss(lot, kind) if kind.shape == "truss" else _graph(lot, kind)
         names = [f"{'abc'[island]}{k}" for k in range(len(places))]
-        made = _nodes(lot, kind, names, [*places, 20.0 * island, 0.0])
+        made = _nodes(lot, kind, names, np.add(places, (20.0 * island, 0.0)))
         if kind.shape == "truss":
             made[0]["fixed"], made[1]["fixed"] = [True, True], [False, True]
         for each in made:
