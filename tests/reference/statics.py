@@ -120,7 +120,7 @@ def path(
 ) -> Iterator[Document]:
     """The same, one state after the other. largest_increment: of the way to the next factor; in smaller ones rods that
     unload do so nearer to where they should."""
-    followed = _Path(model, geometry, largest_increment)
+    followed = Path(model, geometry, largest_increment)
     followed.settle_initial_state()
     yield from (followed.follow_to(factor) for factor in factors)
 
@@ -130,7 +130,7 @@ def least_energy(model: Model, factor: float = 1.0) -> Document:
 
     Raises NoEquilibrium where there is no end of it.
     """
-    followed = _Path(model, "exact")
+    followed = Path(model)
     free, force = followed.free, (factor * followed.patterns[0] + followed.patterns[1])
     at = followed.u.copy()
 
@@ -169,7 +169,7 @@ def least_energy(model: Model, factor: float = 1.0) -> Document:
 
 def stability(model: Model, displacement: np.ndarray) -> float:
     """The least eigenvalue of an elastic structure's tangent at displacements (n, 2), relative to the largest."""
-    followed = _Path(model, "exact")
+    followed = Path(model)
     free = followed.free
     eigenvalues = np.linalg.eigvalsh(followed.respond(displacement.ravel()).tangent[np.ix_(free, free)])
     return float(eigenvalues[0] / max(abs(eigenvalues[-1]), 1e-300)) if free.any() else 1.0
@@ -185,14 +185,14 @@ class _Response:
     plastic_strain: list[float]
 
 
-class _Path:
+class Path:
     """The equilibrium path: the last state in equilibrium, and the way on to the next factor.
 
     The external force is `amounts @ patterns`: so much of the forces and loads, of the accelerations' forces,
     and of the forces that hold the given initial state.
     """
 
-    def __init__(self, model: Model, geometry: str, largest_increment: float = 1.0):
+    def __init__(self, model: Model, geometry: str = "exact", largest_increment: float = 1.0):
         self.largest_increment = largest_increment
         if geometry not in ("exact", "linear"):
             raise ValueError(f"The geometry {geometry!r} is unknown; use 'exact' or 'linear'.")
