@@ -14,14 +14,14 @@ from itertools import combinations, pairwise
 
 import numpy as np
 from scipy.integrate import DOP853
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from tests.reference.elements import Elements, Model, read
 
 TIGHT = 1e-13  # relative tolerance of one step
 MOST_EVENTS = 2000
 AT_STRENGTH = 1e-12  # of it, within which a force is at a strength
-CHECKS = 5  # parts of a step at whose ends events are looked for
+CHECKS = 8  # parts of a step at whose ends events are looked for
 NOISE = 1e-14  # of a margin, which tells nothing
 SHORTEST = 0.02  # m; a rod that shrinks to a point turns at once and magnifies round-off without limit
 ELASTIC, TENSION, COMPRESSION, SLACK = 0, 1, -1, 2  # the branch of its law that a rod is on
@@ -266,7 +266,7 @@ class _Transient:
         """Advance to the next event, or to the time `stop`; loads are those before `stop`."""
         before = math.nextafter(stop, -math.inf)
         rates = lambda time, y: self.rates(min(time, before), y)  # noqa: E731
-        options = {"rtol": self.tolerance, "atol": self.floors}
+        options = {"rtol": self.tolerance, "atol": self.floors, "max_step": self._clear_time()}
         solver = DOP853(rates, self.time, self.y, stop, **options)
         while solver.status == "running":
             if problem := solver.step():
@@ -285,19 +285,47 @@ class _Transient:
             self.y, self.time = solver.y, solver.t
             self.note(self.y)
 
+    def _clear_time(self) -> float:
+        """The longest step in which no disc can pass another unnoticed (s), about."""
+        if not len(self.pairs) and not len(self.walls):
+            return math.inf
+        _, v = self.kinematics(self.y)
+        fastest = (
+            np.hypot(*v.T).max() + 0.01 * np.abs(self.acceleration(self.time, *self.kinematics(self.y))).max()
+        )
+        return float(self.radius.min() * CHECKS / 4.0 / max(fastest, 1e-9))
+
     def _first_event(self, solver: DOP853) -> tuple[float, int] | None:
         """The time and number of the first event in a step."""
         path = solver.dense_output()
-        times = np.linspace(solver.t_old, solver.t, CHECKS + 1)
-        early = self.margins(self.y)
-        for start, end in pairwise(times):
-            late = self.margins(path(end) if end < solver.t else solver.y)
+        times = np.linspace(solver.t_old, solver.t, CHECKS + 1).tolist()
+        margins = [self.margins(self.y), *(self.margins(path(time)) for time in times[1:-1])]
+        margins.append(self.margins(solver.y))
+        times, margins = self._with_dips(path, times, margins)
+        for (start, early), (end, late) in pairwise(zip(times, margins, strict=True)):
             passed = np.flatnonzero(late < -NOISE)
             found = [(self._passes(path, k, start, end, early[k]), int(k)) for k in passed]
             if found:
                 return min(found)
-            early = late
         return None
+
+    def _with_dips(self, path, times: list[float], margins: list[Array]) -> tuple[list[float], list[Array]]:
+        """The same and what lies below zero between two times at which a margin is above."""
+        before, at, after = (np.array(margins[k : len(margins) - 2 + k]) for k in range(3))
+        with np.errstate(invalid="ignore"):
+            fall, rise = before - at, after - at
+            lowest = (fall >= 0.0) & (rise >= 0.0) & (at > 0.0) & (at < fall + rise)
+        dips = []
+        for row, event in np.argwhere(lowest).tolist():
+            around = (times[row], times[row + 2])
+            value = lambda time, event=event: self.margins(path(time))[event]  # noqa: E731
+            found = minimize_scalar(
+                value, bounds=around, method="bounded", options={"xatol": 1e-6 * (around[1] - around[0])}
+            )
+            if found.fun < -NOISE:
+                dips.append((float(found.x), self.margins(path(found.x))))
+        both = sorted([*zip(times, margins, strict=True), *dips], key=lambda pair: pair[0])
+        return [time for time, _ in both], [margin for _, margin in both]
 
     def _passes(self, path, event: int, start: float, end: float, margin: float) -> float:
         """When a margin passes zero; one that begins at zero may first become positive."""
