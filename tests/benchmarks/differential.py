@@ -19,7 +19,7 @@ import numpy as np
 from game import Session
 from game.documents import models
 from systems.statics.path import Goal, load_path
-from systems.statics.settle import StaticState, settle
+from systems.statics.settle import Settlement, StaticState, settle
 from tests.reference import statics, transients
 from tests.reference.elements import Document
 from tests.reference.random_models import KINDS, Case, case
@@ -35,6 +35,7 @@ FLOOR = 1e-11  # of the largest value: smaller errors are the reference's as wel
 SURE = 0.1  # of what is promised: a larger error of the reference decides nothing
 COARSER = 1e-11  # a tolerance at which the reference shows how sure it is
 NUDGE = 1e-9  # of the largest displacement, by which a model is begun otherwise to see what becomes of it
+JUMPS = {"snap-through", "bifurcation", "mechanism"}
 SOFT = 1e-9  # of the largest stiffness: what is softer may as well be stable
 INCREMENTS = (100, 1600)  # per load factor, where rods yield; the second where the first decides nothing
 
@@ -157,7 +158,7 @@ def _equilibria(found: Finding) -> None:
         for k, s in enumerate(states)
     ]
     found.errors["balance"] = max(balances, default=0.0)
-    jumps = sorted({event.kind for event in settlement.events} & {"snap-through", "bifurcation", "mechanism"})
+    jumps = _jumps(settlement)
     expected, reason = _followed(given, INCREMENTS[0])
     if len(expected) > len(states):
         found.wrong.append(f"{settlement.status}, but there is an equilibrium. {settlement.message}")
@@ -178,8 +179,13 @@ def _equilibria(found: Finding) -> None:
     if states and not given.kind.yields:
         _in_a_valley(found, states[-1], compares=not expected)
     if len(given.kind.factors) == 1 and settlement.status == "equilibrium":
-        _curve(found, jumps)
+        _curve(found)
     _judge(found, IN_EQUILIBRIUM)
+
+
+def _jumps(settlement: Settlement) -> bool:
+    """True if the path of equilibria ended on the way, and settling went on elsewhere."""
+    return not JUMPS.isdisjoint(event.kind for event in settlement.events)
 
 
 def _in_a_valley(found: Finding, state: StaticState, *, compares: bool) -> None:
@@ -251,27 +257,27 @@ def _out_of_balance(
     return float(max(off, np.abs(balance[free]).max(initial=0.0))) / (largest or 1.0)
 
 
-def _curve(found: Finding, jumps: list[str]) -> None:
-    """A curve to the load factor 1 is complete; an elastic one is in balance at each point, and ends where settled."""
+def _curve(found: Finding) -> None:
+    """A curve to the load factor 1 is complete where nothing jumps on the way, and ends where settled; an elastic one
+    is in balance at each point."""
     document = found.case.document
-    model = models.load(document)
     if not (statics.Path(document).patterns[0] != 0.0).any():
         return  # nothing to scale
-    try:
-        curve = load_path(model, Goal(1.0))
-    except ValueError as refusal:
-        if "There is no equilibrium to start from" not in str(refusal) or not jumps:
-            found.wrong.append(f"curve: {refusal}")
+    model = models.load(document)
+    settled = settle(model, (0.0, 1.0))  # as along the curve, where accelerations act before the load
+    jumps = _jumps(settled)
+    if settled.states[0].status != "equilibrium":
         return
+    curve = load_path(model, Goal(1.0))
     if not curve.complete:
         found.ends_early = True
-        if not jumps:
+        if settled.status == "equilibrium" and not jumps:
             found.wrong.append(
                 f"the curve ends at {curve.load_factor[-1]:.6g}, {len(curve.load_factor)} points"
             )
         return
-    final = settle(model, (0.0, 1.0)).final  # as along the curve, where accelerations act before the load
-    if not jumps and final.status == "equilibrium":
+    final = settled.final
+    if settled.status == "equilibrium" and not jumps:
         largest = np.abs(final.axial_force).max(initial=0.0) or 1.0
         found.errors["curve"] = (
             float(np.abs(curve.axial_force[-1] - final.axial_force).max(initial=0.0)) / largest
