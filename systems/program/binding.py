@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import importlib
 import inspect
-from collections.abc import Callable, Iterable, Mapping
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -28,6 +29,8 @@ PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called f
 }
 PROVIDED = {name for names in PROVIDED_TO.values() for name in names}
 TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
+
+WIDEST_ROW = 64  # numbers of an array that a kernel gets, as a tuple; more would take long to compile
 
 _KINDS = ("rods", "particles", "loads")
 _RESULTS = {
@@ -84,6 +87,15 @@ class Bound:
     def prefix(self) -> str:
         """The system's name as a Python name."""
         return self.system.name.replace(".", "_")
+
+    def stored(self, name: str) -> str:
+        """What the program calls one of its arrays: no other system's array, and nothing else there, is called so."""
+        return name if self.each == "loads" else f"{self.prefix}_{name}"
+
+    @property
+    def stored_arrays(self) -> dict[str, NDArray[Any]]:
+        """Its own arrays, by their names in the program."""
+        return {self.stored(name): array for name, array in self.arrays.items()}
 
     @property
     def each(self) -> str:
@@ -175,6 +187,18 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     return bound
 
 
+def written_row(name: str, index: str, shape: Sequence[int]) -> str:
+    """A row of a column or an array in the source of a program: a number, or a tuple of numbers or of tuples.
+
+    >>> written_row("rods_curve", "r", (3,))
+    '(rods_curve[r, 0], rods_curve[r, 1], rods_curve[r, 2])'
+    """
+    if not shape:
+        return f"{name}[{index}]"
+    parts = [written_row(name, f"{index}, {k}", shape[1:]) for k in range(shape[0])]
+    return f"({', '.join(parts)}{',' if len(parts) == 1 else ''})"
+
+
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
     """A view that kernels cannot write to; the system itself may write to the array between steps."""
     view = array.view()
@@ -186,7 +210,7 @@ def check_names(bound: Iterable[Bound]) -> None:
     """Raise ProgramError if two kernels or arrays would have the same name in the program."""
     owner: dict[str, str] = {}
     for b in bound:
-        for name in (b.call, *b.arrays):
+        for name in (b.call, *b.stored_arrays):
             if name in owner:
                 raise ProgramError(
                     f"{owner[name]} and {b.system.name} are both '{name}' in the step program; rename one.",
@@ -243,6 +267,11 @@ def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
             raise ProgramError(
                 f"The array '{parameter}' of {name} has {len(b.arrays[parameter])} rows for"
                 f" {model.tables[rows].count} {rows}; give it one row for each."
+            )
+        width = math.prod(b.arrays[parameter].shape[1:])
+        if not 0 < width <= WIDEST_ROW:
+            raise ProgramError(
+                f"The array '{parameter}' of {name} has {width} numbers in a row; a kernel takes 1 to {WIDEST_ROW}."
             )
         return
     table, _, column = parameter.partition("_")
@@ -311,8 +340,10 @@ def _result_type(b: Bound, model: Model) -> Any:
             table, _, column = parameter.partition("_")
             field = model.tables[table].fields[column]
             storage, shape = field.storage, field.shape
-        scalar = from_dtype(storage)
-        return types.UniTuple(scalar, 2) if shape else scalar  # type: ignore[no-untyped-call]
+        made: Any = from_dtype(storage)
+        for width in reversed(shape):
+            made = types.UniTuple(made, width)  # type: ignore[no-untyped-call]
+        return made
 
     of_load = (types.float64, types.Array(types.float64, 1, "C", readonly=True), types.uint32)
     signature = of_load if b.each == "loads" else tuple(map(type_of, b.parameters))

@@ -124,7 +124,7 @@ class Program:
         model = self.model
         extra: dict[str, Any] = {}
         for system in self.systems:
-            extra.update(bind(system, model).arrays)
+            extra.update(bind(system, model).stored_arrays)
         written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
         extra |= {name: self._storage(path) for name, path in written.items()}
         self._sides = [(b, self._sides_of(b)) for b in self._writer.events]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from components.model import Model
 from systems.base import StepSystem
-from systems.program.binding import Bound, StepRole, bind, by_role
+from systems.program.binding import Bound, StepRole, bind, by_role, written_row
 from systems.program.loops import RodLoop
 from systems.program.pasting import fragment
 from systems.program.templates import rods
@@ -52,9 +52,8 @@ class KernelRows:
 
     def _arguments(self, bound: Bound) -> Iterator[Sequence[Any]]:
         """The arguments of the kernel, row by row."""
-        columns = [column.tolist() for column in self._columns(bound)]
-        vectors = [[tuple(v) if isinstance(v, list) else v for v in column] for column in columns]
-        rows = zip(*vectors, strict=True) if vectors else [()] * self._count(bound)
+        columns = [list(map(_as_tuples, column.tolist())) for column in self._columns(bound)]
+        rows = zip(*columns, strict=True) if columns else [()] * self._count(bound)
         if bound.each == "loads":
             values = bound.arrays[f"{bound.prefix}_values"]
             return ((time, values, first) for time, first in rows)
@@ -82,15 +81,18 @@ class KernelRows:
         return np.repeat(column, count, axis=0) if self.model.tables[table].kind.single else column
 
 
+def _as_tuples(value: Any) -> Any:
+    """A row as kernels get it."""
+    return tuple(map(_as_tuples, value)) if isinstance(value, list) else value
+
+
 def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..., float]:
     """A compiled function of these columns that calls the kernel for each row and adds up what it gives."""
     from numba import njit
 
     names = [f"c{index}" for index in range(len(columns))]
     scope: dict[str, Any] = {"kernel": bound.function}
-    arguments = [
-        f"({n}[i, 0], {n}[i, 1])" if c.ndim > 1 else f"{n}[i]" for n, c in zip(names, columns, strict=True)
-    ]
+    arguments = [written_row(n, "i", c.shape[1:]) for n, c in zip(names, columns, strict=True)]
     if bound.each == "loads":
         scope["values"] = bound.arrays[f"{bound.prefix}_values"]
         arguments.insert(1, "values")

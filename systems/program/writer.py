@@ -26,6 +26,7 @@ from systems.program.binding import (
     by_role,
     check_names,
     find,
+    written_row,
 )
 from systems.program.loops import RodLoop
 from systems.program.pasting import expanded, fragment, indented, pasted, source_of
@@ -144,7 +145,8 @@ class Writer:
             if b.role is StepRole.LOAD:
                 names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in ("on", "force", "values", "first")))
             else:
-                names.update(dict.fromkeys(p for p in b.parameters if p not in PROVIDED and p not in TRIAL))
+                taken = (p for p in b.parameters if p not in PROVIDED and p not in TRIAL)
+                names.update(dict.fromkeys(b.stored(p) if p in b.arrays else p for p in taken))
             if b.role is StepRole.EVENT:
                 names[sides_of(b)] = None
         self.columns = list(names)
@@ -157,12 +159,12 @@ class Writer:
             return parameter
         name = TRIAL.get(parameter, parameter)
         if parameter in b.arrays:
-            shape = b.arrays[parameter].shape[1:]
+            name, shape = b.stored(parameter), b.arrays[parameter].shape[1:]
         else:
             table, _, column = parameter.partition("_")
             index = "0" if self.model.tables[table].kind.single else index
             shape = self.model.tables[table].fields[column].shape
-        return f"({name}[{index}, 0], {name}[{index}, 1])" if shape else f"{name}[{index}]"
+        return written_row(name, index, shape)
 
     def _apply(self, b: Bound, index: str) -> str:
         return f"{b.call}({', '.join(self._argument(b, p, index) for p in b.parameters)})"
@@ -295,8 +297,8 @@ class Writer:
         if name == "direction":
             return True
         for b in self.bound:
-            if name in b.arrays:
-                return bool(b.arrays[name].dtype == np.float64)
+            if name in b.stored_arrays:
+                return bool(b.stored_arrays[name].dtype == np.float64)
         table, _, column = name.partition("_")
         return bool(np.dtype(self.model.tables[table].fields[column].storage) == np.float64)
 
