@@ -260,6 +260,11 @@ def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
     """Raise ProgramError unless the parameter is provided, an array of the system or a column that it declares."""
     rows, name = b.each or "rods", b.system.name
     provided = PROVIDED_TO[b.purpose]
+    if parameter in ("time", "dt") and getattr(b.system, "elastic", False):
+        raise ProgramError(
+            f"{name} is elastic, so that the energy it stores depends on the state alone, but takes '{parameter}';"
+            " drop `elastic` or the parameter."
+        )
     if parameter in provided:
         return
     if parameter in b.arrays:

@@ -133,7 +133,8 @@ class Writer:
         self.names |= {"conserved": conserved, "judge": judge}
         self.names |= {kind.__name__: kind for kind in _ENTRIES}
         self.rates = bool(self.of[StepRole.RATE] or self.of[StepRole.RESISTANCE])
-        self.working = [b for b in self.of[StepRole.SUMMED] if not getattr(b.system, "elastic", False)]
+        in_rods = [*self.of[StepRole.SUMMED], *self.of[StepRole.REPLACING]]
+        self.working = [b for b in in_rods if not getattr(b.system, "elastic", False)]
         self.powers = self.rates or bool(self.of[StepRole.PARTICLE_FORCE] or self.working)
         # All arrays that the functions read or write besides the integrator's own.
         self.columns = [*_ALWAYS, *(["rods_misfit"] if self.warm else [])]
@@ -311,7 +312,17 @@ class Writer:
     def _axial_force(self, *, without: Sequence[Bound] = ()) -> list[str]:
         lines = ["axial_force = 0.0"]
         lines += [f"axial_force += {self._apply(b, 'r')}" for b in self.of[StepRole.SUMMED] if b not in without]
-        return lines + [f"axial_force = {self._apply(b, 'r')}" for b in self.of[StepRole.REPLACING]]
+        replacing = [b for b in self.of[StepRole.REPLACING] if b not in without]
+        return lines + [f"axial_force = {self._apply(b, 'r')}" for b in replacing]
+
+    def _working_forces(self) -> list[str]:
+        """Lines that give the force that stores energy, then with the working laws of one account after the other."""
+        lines = [*self._axial_force(without=self.working), "stored_force = axial_force"]
+        later = list(self.working)
+        for name in accounts_of(self.working)[:-1]:
+            later = [b for b in later if b.account != name]
+            lines += [*self._axial_force(without=later), f"force_{name} = axial_force"]
+        return lines
 
     def _forces(self, name: str, commits: Sequence[Bound]) -> str:
         lines = self._with_losses(commits, self._rod_loop(self._rod_forces(commits)))
@@ -327,7 +338,7 @@ class Writer:
     def _rod_forces(self, commits: Sequence[Bound], powers: bool = False) -> RodLoop:
         compute, lost = self._histories(commits)
         if powers and self.working:
-            compute += [*self._axial_force(without=self.working), "stored_force = axial_force"]
+            compute += self._working_forces()
         compute += [*self._axial_force(), *_along_axis("pull", "axial_force")]
         pull = RodLoop(
             SHIFT,
@@ -359,9 +370,13 @@ class Writer:
             if powers:
                 gains[f"gain_{b.prefix}"] = f"power_{b.account} {_sign(b, '-', '+')}= gain_{b.prefix}"
                 compute.append(f"gain_{b.prefix} = part * rate")
-        if powers and self.working:
-            gains["gain_working"] = "power_work -= gain_working"
-            compute.append("gain_working = (axial_force - stored_force) * rate")
+        if powers:
+            before, accounts = "stored_force", accounts_of(self.working)
+            for name in accounts:
+                force = "axial_force" if name == accounts[-1] else f"force_{name}"
+                gains[f"taken_{name}"] = f"power_{name} {'-' if name == 'work' else '+'}= taken_{name}"
+                compute.append(f"taken_{name} = ({force} - {before}) * rate")
+                before = force
         compute += _along_axis("drag", "damping_force")
         scatter = [*gains.values(), *_scatter("resisting", "drag")]
         return RodLoop(DRIFT, compute, ["drag_x", "drag_y", *gains], scatter)
@@ -381,8 +396,7 @@ class Writer:
             needed = {parameter for b in acting for parameter in b.parameters}
             drag = self._dampers(powers=True)
             if self.working or needed & {"elongation", "axial_force"}:
-                stored = [*self._axial_force(without=self.working), "stored_force = axial_force"]
-                compute = [*(stored if self.working else []), *self._axial_force()]
+                compute = [*(self._working_forces() if self.working else []), *self._axial_force()]
                 body += self._rod_loop(RodLoop(SHIFT, [*self.geometry(), *compute]) + drag)
             else:  # too little is computed to gain from stages
                 axis = RodLoop({}, ["nx = direction[r, 0]", "ny = direction[r, 1]"])

@@ -283,7 +283,26 @@ class Hardening(Law):
     adds = ("rods.axial_force",)
 
 
-@pytest.mark.parametrize("law", [Hardening(), ProgressiveDamper()])
+class Damaged(Law):
+    """A rod that bears less the farther it is stretched: takes what the others give."""
+
+    name = "mod.damaged"
+    kernel = staticmethod(njit(lambda axial_force, elongation: axial_force / (1.0 + 1e5 * elongation**2)))
+    adds = ("rods.axial_force",)
+
+
+class Lost(Hardening):
+    """The same force, but what it takes counts as lost."""
+
+    name = "mod.lost"
+    account = "dissipated_plastic"
+
+
+def test_laws_of_rods_of_several_accounts_are_told_apart() -> None:
+    assert_identical(nothing(), "velocity_verlet", [Hardening(), Lost(), Damaged(), Heat()], steps=100)
+
+
+@pytest.mark.parametrize("law", [Hardening(), ProgressiveDamper(), Damaged(), Lost()])
 def test_energy_balances_with_any_law_of_rods(law: Law) -> None:
     """What is missing is an error of second order."""
     missing = []
@@ -292,7 +311,8 @@ def test_energy_balances_with_any_law_of_rods(law: Law) -> None:
         session = Session.open(document, [law])
         session.run(steps=steps)
         energy = session.energy
-        assert abs(energy.work) + energy.dissipated_damping > 0.1 * energy.initial
+        moved = abs(energy.work) + energy.dissipated_damping + abs(energy.dissipated_plastic)
+        assert moved > 0.1 * energy.initial
         missing.append(abs(energy.imbalance) / energy.initial)
     assert missing[0] < 1e-3
     assert missing[0] / missing[1] == pytest.approx(4.0, rel=0.1)
@@ -433,6 +453,7 @@ class WideArray(OwnArray):
 @pytest.mark.parametrize(
     ("system", "says"),
     [
+        (law(njit(lambda elongation, time: time), elastic=True), "drop `elastic` or the parameter"),
         (WideArray(), "has 65 numbers in a row; a kernel takes 1 to 64"),
         (law(of_mass, each="particles"), "reads 'particles.mass'; add it to `reads`"),
         (law(of_charge, reads=("rods.charge",)), "no column rods.charge"),
