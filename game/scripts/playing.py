@@ -61,7 +61,9 @@ def check_mods(script: Script) -> str:
     ]
     if not others:
         return ""
-    return f"{script.path} was recorded with other mods, there is now {', '.join(others)}: it may play otherwise."
+    return (
+        f"{script.path} was recorded with other mods, there is now {', '.join(others)}: it may play otherwise."
+    )
 
 
 def _loaded_mods() -> dict[str, str]:

@@ -72,7 +72,9 @@ def test_other_mods_than_recorded_are_told(
     mods.MODS[-1].version = "1.1"
     assert main(["play", str(file)]) == 0
     assert "there is now breeze 1.1 instead of 1.0: it may play otherwise." in capsys.readouterr().err
-    assert session_of(Script(without)).notice.endswith("there is now breeze 1.1 besides: it may play otherwise.")
+    assert session_of(Script(without)).notice.endswith(
+        "there is now breeze 1.1 besides: it may play otherwise."
+    )
 
 
 def test_scripts_that_say_nothing_of_mods_are_played_with_any(write_mod: Write, tmp_path: Path) -> None:
@@ -89,5 +91,5 @@ def test_scripts_that_say_nothing_of_mods_are_played_with_any(write_mod: Write, 
 def test_what_a_header_says_of_mods_is_checked(tmp_path: Path) -> None:
     file = tmp_path / "wrong.jsonl"
     file.write_text('{"format": "pinjoint session", "version": 1, "mods": ["breeze"]}\n', encoding="utf-8")
-    with pytest.raises(ScriptError, match="mods is .*; write names and versions"):
+    with pytest.raises(ScriptError, match=r"mods is .*; write names and versions"):
         Script(file)
