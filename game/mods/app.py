@@ -35,14 +35,16 @@ from systems.input.bindings import (
     LIVE,
     Binding,
     add_binding,
+    add_button,
     add_tool,
     key_named,
     remove_binding,
+    remove_button,
     remove_tool,
 )
 from systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
 from systems.render.icons import ADDED as ADDED_ICONS
-from systems.render.icons import Part
+from systems.render.icons import Part, check_icon
 from systems.render.sheet import ABOVE, BELOW, Layer
 
 T = TypeVar("T")
@@ -105,9 +107,9 @@ class App:
             TOOLS[name].use
         )
         if icon:
-            ADDED_ICONS[name] = tuple(icon)
+            self._icon(name, icon)
             add_tool(name)
-            self._undo += [lambda: ADDED_ICONS.pop(name), lambda: remove_tool(name)]
+            self._undo.append(lambda: remove_tool(name))
 
     def shape(self, kind: type[Handle], shape: Shape) -> None:
         """Let particles collide with elements of a kind: `shape(table)` returns the Pieces that they are."""
@@ -181,10 +183,12 @@ class App:
         scenes: Sequence[str] = LIVE,
         title: str = "",
         while_drawing: bool = False,
+        icon: Sequence[Part] = (),
     ) -> Callable[[Action], Action]:
-        """Register a function(session, pixel) as a named action, and perhaps a key for it.
+        """Register a function(session, pixel) as a named action, and perhaps a key and a button for it.
 
-        Everything that it changes in the model is one step of undo, dropped whole if it raises.
+        Everything that it changes in the model is one step of undo, dropped whole if it raises. icon: of its button
+        in the toolbar of these scenes, as that of a tool; none, no button.
         """
         self._check_prefix("action", name)
 
@@ -195,6 +199,10 @@ class App:
             self._undo += [lambda: ACTIONS.pop(name), lambda: WHILE_DRAWING.discard(name)]
             if key:
                 self.key(key, name, scenes, title)
+            if icon:
+                self._icon(name, icon)
+                add_button(Binding(key, name, tuple(scenes), title or name))
+                self._undo.append(lambda: remove_button(name))
             return function
 
         return register
@@ -240,6 +248,14 @@ class App:
         """Show small panels beside the model: `read(session)` returns a Readout, several, or None."""
         checked = _readouts(read)
         self._add(PANELS, lambda session: self._mod.call("its panel", checked, session, otherwise=()))
+
+    def _icon(self, name: str, icon: Sequence[Part]) -> None:
+        try:
+            check_icon(icon)
+        except ValueError as error:
+            raise ModError(f"The icon of '{name}': {error}") from None
+        ADDED_ICONS[name] = tuple(icon)
+        self._undo.append(lambda: ADDED_ICONS.pop(name))
 
     # --- all or nothing ------------------------------------------------------------------------------------
 
