@@ -25,6 +25,8 @@ from components.rod import Rod
 from components.settings import Settings
 from components.suggestions import missing, remedy
 from components.table import fields_of
+from game.documents.mod_data import DATA as FOREIGN
+from game.documents.mod_data import MODS, upgraded, versions_of
 
 FORMAT = "pinjoint model"
 VERSION = 1
@@ -46,8 +48,6 @@ SECTIONS: Mapping[str, type[Handle]] = MappingProxyType(
 REQUIRED: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {"particles": ("name", "position"), "rods": ("name", "between"), "loads": ("on",)}
 )
-FOREIGN = "components"  # the key of the data of mods, at elements and in the document
-
 _HEADER = ("format", "version", "title", "description")
 _SAVED = (Role.DOCUMENT, Role.STATE)
 
@@ -98,8 +98,10 @@ class _Section:
 
 def _parsed(document: Any) -> Model:
     document = _migrated(document)
-    _refuse_unknown(document, (*_HEADER, *SECTIONS, FOREIGN), "$")
+    document = _with_data_of_mods(document)
+    _refuse_unknown(document, (*_HEADER, *SECTIONS, FOREIGN, MODS), "$")
     model = Model()
+    model.foreign_versions = dict(document.get(MODS, {}))
     model.title = _text(document, "title")
     model.description = _text(document, "description")
     for name, kind in SECTIONS.items():
@@ -108,6 +110,14 @@ def _parsed(document: Any) -> Model:
     if FOREIGN in document:
         _read_added(model, document[FOREIGN])
     return model
+
+
+def _with_data_of_mods(document: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The document with the data of mods in their present versions."""
+    try:
+        return upgraded(document)
+    except ValueError as error:
+        _fail(f"$.{MODS}", str(error))
 
 
 def _read_added(model: Model, kinds: Any) -> None:
@@ -424,7 +434,12 @@ def document(model: Model) -> dict[str, Any]:
             made[name] = elements[0]
     added = {name: _elements(model, kind) for name, kind in ADDED.items() if kind.table in model.tables}
     added = {name: elements for name, elements in added.items() if elements} | model.foreign_kinds
-    return made | ({FOREIGN: dict(sorted(added.items()))} if added else {})
+    return _with_versions(model, made | ({FOREIGN: dict(sorted(added.items()))} if added else {}))
+
+
+def _with_versions(model: Model, made: dict[str, Any]) -> dict[str, Any]:
+    versions = versions_of(made, model.foreign_versions)
+    return made | ({MODS: versions} if versions else {})
 
 
 def document_of(model: Model, parts: Mapping[type[Handle], NDArray[np.int64]]) -> dict[str, Any]:
@@ -433,7 +448,7 @@ def document_of(model: Model, parts: Mapping[type[Handle], NDArray[np.int64]]) -
     elements = {kind: _elements(model, kind, rows) for kind, rows in parts.items() if len(rows)}
     added = {name: elements.pop(kind) for name, kind in ADDED.items() if kind in elements}
     made |= {kind.table: found for kind, found in elements.items()}
-    return made | ({FOREIGN: added} if added else {})
+    return _with_versions(model, made | ({FOREIGN: added} if added else {}))
 
 
 def _elements(model: Model, kind: type[Handle], rows: NDArray[np.int64] | None = None) -> list[dict[str, Any]]:

@@ -6,7 +6,7 @@ import inspect
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -21,12 +21,13 @@ from components.view import Readout
 from game.commands import COMMANDS, Command
 from game.commands.arguments import BAD_INPUT, UsageError
 from game.documents import models
+from game.documents.mod_data import UPGRADES, VERSIONS, Upgrade
 from game.editor.actions import ACTIONS, WHILE_DRAWING, Action, action
 from game.editor.context import PANELS, Context
 from game.editor.gestures.drawing import TOOL_HINTS, TOOLS, drawing_of
 from game.editor.scenes import SCENES, Scene, all_scenes
 from game.mods.guard import guarded_history, guarded_integrator, guarded_scene, guarded_system
-from game.mods.mod import Mod, ModError
+from game.mods.mod import INCLUDED, Mod, ModError
 from game.paths import PathError
 from systems.base import Integrator, System
 from systems.catalogue import SYSTEMS
@@ -77,6 +78,7 @@ class App:
         except ValueError as error:
             raise ModError(str(error)) from None
         self._undo += [partial(delattr, component.of, name) for name in names]
+        self._keeps_data()
 
     def kind(self, kind: type[Handle]) -> None:
         """Add a kind of elements: a class with Fields, whose table every model has; see components.Handle.
@@ -89,6 +91,26 @@ class App:
         except ValueError as error:
             raise ModError(str(error)) from None
         self._undo.append(lambda: ADDED.pop(name))
+        self._keeps_data()
+
+    def upgrade(self, upgrade: Upgrade) -> None:
+        """Bring data of earlier versions of the mod in files up to date, such as Fields that were renamed.
+
+        upgrade(document, version) changes the document, what a model file says, before it is read. version: of the
+        mod that wrote the file, older than the present one; "" if the file does not say.
+        """
+        name, what = self.name, "upgrading its data in a file"
+
+        def upgraded(document: dict[str, Any], version: str) -> None:
+            self._mod.call(what, upgrade, document, version)
+            if self._mod.off:
+                wrote = version or "of an unknown version"
+                raise ValueError(
+                    f"the data of {name} {wrote} could not be upgraded; --no-mods opens it without the mod."
+                )
+
+        UPGRADES[name] = upgraded
+        self._undo.append(lambda: UPGRADES.pop(name))
 
     def tool(self, kind: type[Handle], *, key: str, title: str = "", icon: Sequence[Part] = ()) -> None:
         """Let a person draw elements of a kind with two points, from one to the other, by a key and a button.
@@ -256,6 +278,12 @@ class App:
             raise ModError(f"The icon of '{name}': {error}") from None
         ADDED_ICONS[name] = tuple(icon)
         self._undo.append(lambda: ADDED_ICONS.pop(name))
+
+    def _keeps_data(self) -> None:
+        """Note the version, which files state that hold data of the mod."""
+        if self._mod.source != INCLUDED and self.name not in VERSIONS:
+            VERSIONS[self.name] = self._mod.version
+            self._undo.append(lambda: VERSIONS.pop(self.name))
 
     # --- all or nothing ------------------------------------------------------------------------------------
 
