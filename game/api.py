@@ -80,7 +80,7 @@ from systems.render.marks import (
     Text,
     boxes,
 )
-from systems.render.sheet import Layer, Sheet
+from systems.render.sheet import Sheet
 from systems.render.theme import Colour, Theme, faded
 
 __all__ = [
@@ -116,7 +116,6 @@ __all__ = [
     "ImplicitRungeKutta4",
     "Integrator",
     "Law",
-    "Layer",
     "Load",
     "Mark",
     "Mod",
