@@ -170,6 +170,7 @@ class _Still:
         self.description = model.description
         self.foreign = dict(model.foreign)
         self.foreign_kinds = dict(model.foreign_kinds)
+        self.foreign_versions = dict(model.foreign_versions)
         self.tables = {name: _StillTable(table) for name, table in model.tables.items()}
 
     def describe(self, handle: Handle) -> str:

@@ -26,6 +26,8 @@ from components.rod import Rod
 from components.settings import Settings
 from components.suggestions import missing, remedy
 from components.table import Table, fields_of
+from game.documents.mod_data import DATA as FOREIGN
+from game.documents.mod_data import MODS, known_versions, upgraded, versions_in
 
 FORMAT = "pinjoint model"
 VERSION = 1
@@ -48,8 +50,6 @@ SECTIONS: Mapping[str, type[Handle]] = MappingProxyType(
 REQUIRED: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {"particles": ("name", "position"), "rods": ("name", "between"), "loads": ("on",)}
 )
-FOREIGN = "components"  # the key of the data of mods, at elements and in the document
-
 _HEADER = ("format", "version", "title", "description")
 _SAVED = (Role.DOCUMENT, Role.STATE)
 
@@ -99,9 +99,10 @@ class _Section:
 
 
 def _parsed(document: Any) -> Model:
-    document = _migrated(_by_elements(document))
-    _refuse_unknown(document, (*_HEADER, *SECTIONS, FOREIGN), "$")
+    document = _with_data_of_mods(_migrated(_by_elements(document)))
+    _refuse_unknown(document, (*_HEADER, *SECTIONS, FOREIGN, MODS), "$")
     model = Model()
+    model.foreign_versions = dict(document.get(MODS, {}))
     model.title = _text(document, "title")
     model.description = _text(document, "description")
     for name, kind in SECTIONS.items():
@@ -110,6 +111,14 @@ def _parsed(document: Any) -> Model:
     if FOREIGN in document:
         _read_added(model, document[FOREIGN])
     return model
+
+
+def _with_data_of_mods(document: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The document with the data of mods in their present versions."""
+    try:
+        return upgraded(document)
+    except ValueError as error:
+        _fail(f"$.{MODS}", str(error))
 
 
 def _read_added(model: Model, kinds: Any) -> None:
@@ -444,6 +453,7 @@ class Gathered(msgspec.Struct, frozen=True, tag_field="format", tag=BY_COLUMNS):
     """A document by facts instead of by elements, which is many times as fast to make of a model and to write.
 
     sections, added: the number of elements of a kind and what they hold, by the key in documents.
+    versions: of mods, by name.
     """
 
     version: int
@@ -452,6 +462,7 @@ class Gathered(msgspec.Struct, frozen=True, tag_field="format", tag=BY_COLUMNS):
     sections: dict[str, tuple[Count, list[Part]]]
     added: dict[str, tuple[Count, list[Part]]]
     foreign_kinds: dict[str, Any]
+    versions: dict[str, str]
 
 
 def document(model: Model) -> dict[str, Any]:
@@ -463,7 +474,8 @@ def gathered(model: Model) -> Gathered:
     """The same document by facts, which `parse` takes, too. Raises ModelError."""
     sections = {name: _parts(model, kind) for name, kind in SECTIONS.items()}
     added = {name: _parts(model, kind) for name, kind in ADDED.items() if kind.table in model.tables}
-    return Gathered(VERSION, model.title, model.description, sections, added, model.foreign_kinds)
+    versions = known_versions(model.foreign_versions)
+    return Gathered(VERSION, model.title, model.description, sections, added, model.foreign_kinds, versions)
 
 
 def _spread(facts: Gathered) -> dict[str, Any]:
@@ -477,7 +489,14 @@ def _spread(facts: Gathered) -> dict[str, Any]:
             made[name] = elements[0]
     added = {name: elements for name, counted in facts.added.items() if (elements := _elements(*counted))}
     added |= facts.foreign_kinds
-    return made | ({FOREIGN: dict(sorted(added.items()))} if added else {})
+    made |= {FOREIGN: dict(sorted(added.items()))} if added else {}
+    return _with_versions(made, facts.versions)
+
+
+def _with_versions(made: dict[str, Any], known: Mapping[str, str]) -> dict[str, Any]:
+    """The document with the versions of the mods whose data it holds, of those that are known."""
+    versions = versions_in(made, known)
+    return made | ({MODS: versions} if versions else {})
 
 
 def _by_elements(document: Any) -> Any:
@@ -497,7 +516,7 @@ def document_of(model: Model, parts: Mapping[type[Handle], NDArray[np.int64]]) -
     elements = {kind: _elements(*_parts(model, kind, rows)) for kind, rows in parts.items() if len(rows)}
     added = {name: elements.pop(kind) for name, kind in ADDED.items() if kind in elements}
     made |= {kind.table: found for kind, found in elements.items()}
-    return made | ({FOREIGN: added} if added else {})
+    return _with_versions(made | ({FOREIGN: added} if added else {}), known_versions(model.foreign_versions))
 
 
 def _parts(model: Model, kind: type[Handle], rows: NDArray[np.int64] | None = None) -> tuple[int, list[Part]]:
