@@ -192,7 +192,7 @@ def _in_a_valley(found: Finding, state: StaticState, *, compares: bool) -> None:
     """An elastic equilibrium that lasts is where energy is least, as far as anything resists."""
     document = found.case.document
     least = statics.stability(document, state.displacement)
-    if least < -SOFT and state.status == "equilibrium" or least > SOFT and "unstable" in state.status:
+    if (least < -SOFT and state.status == "equilibrium") or (least > SOFT and "unstable" in state.status):
         found.wrong.append(f"{state.status}, where the least stiffness is {least:.1e} of the largest")
     if compares:
         try:

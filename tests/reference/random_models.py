@@ -61,7 +61,7 @@ KINDS = (
     Kind("cables with dampers", cables=True, damped=1.0, shape="graph"),
     Kind("yielding", yields=True),
     Kind("yielding, damped, under ramps", yields=True, damped=1.0, drag=True, histories=("ramp",)),
-    Kind("stiff", damped=400.0, drag=True, turns=(1.0, 30.0)),
+    Kind("stiff", damped=400.0, drag=True, turns=(0.5, 8.0)),
     Kind("islands and free particles", islands=3, damped=0.5, sizes=(3, 5)),
     ALL,
     replace(ALL, title="everything, islands", islands=3, sizes=(3, 5), shape="graph"),
