@@ -1,4 +1,7 @@
-"""Interrupts: Ctrl+C ends the program silently while it loads, when there is nothing to clean up."""
+"""Interrupts: Ctrl+C ends the program silently while it loads, when there is nothing to clean up.
+
+Later it is told from a KeyboardInterrupt that a mod raises, which must not end the program.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 
 _HERE = Path(__file__).parent
 
@@ -30,3 +34,25 @@ def quietly_interrupted() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+class Interrupt(KeyboardInterrupt):
+    """Ctrl+C."""
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    raise Interrupt
+
+
+def mark_interrupts() -> None:
+    """From now on Ctrl+C raises Interrupt, wherever Python would raise KeyboardInterrupt."""
+    usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if usual and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, _interrupt)
+
+
+def is_persons(error: BaseException) -> bool:
+    """True for an interrupt by the person; False for other errors, and for a KeyboardInterrupt that code raised."""
+    if not isinstance(error, KeyboardInterrupt):
+        return False
+    return isinstance(error, Interrupt) or signal.getsignal(signal.SIGINT) is not _interrupt
