@@ -1,19 +1,23 @@
-"""Interrupts: Ctrl+C ends the program silently while it loads, when there is nothing to clean up.
+"""How the program ends: Ctrl+C ends the program silently while it loads, when there is nothing to clean up.
 
-Later it is told from a KeyboardInterrupt that a mod raises, which must not end the program.
+Later it is told from a KeyboardInterrupt that a mod raises, which must not end the program; and threads of mods do
+not keep the program from ending.
 """
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 
 _HERE = Path(__file__).parent
+_PATIENCE = 2.0  # s that threads may take to end after the program
 
 
 def _is_program(called: str) -> bool:
@@ -56,3 +60,23 @@ def is_persons(error: BaseException) -> bool:
     if not isinstance(error, KeyboardInterrupt):
         return False
     return isinstance(error, Interrupt) or signal.getsignal(signal.SIGINT) is not _interrupt
+
+
+def ended_with(status: int) -> int:
+    """The exit status; the process ends with it even if threads, which a mod may have started, do not end."""
+    if _threads():
+        threading.Thread(target=_end, args=(status,), daemon=True).start()
+    return status
+
+
+def _threads() -> list[str]:
+    """Names of the threads that Python waits for before it ends."""
+    main = threading.main_thread()
+    return [thread.name for thread in threading.enumerate() if not (thread.daemon or thread is main)]
+
+
+def _end(status: int) -> None:
+    """End the process if it still waits for threads after a while."""
+    time.sleep(_PATIENCE)
+    print(f"pinjoint: threads that did not end were left: {', '.join(_threads())}.", file=sys.stderr, flush=True)
+    os._exit(status)
