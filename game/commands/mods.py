@@ -60,7 +60,9 @@ def command(words: Sequence[str]) -> int:
     parser = Parser(prog="pinjoint mods", description="Extensions of the program; see assets/mods/README.md.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="list|check|new")
     add_output(commands.add_parser("list", help="which mods there are, and why some were left out"))
-    check = commands.add_parser("check", help="try all that a mod can do with a model of its own, and say what is wrong")
+    check = commands.add_parser(
+        "check", help="try all that a mod can do with a model of its own, and say what is wrong"
+    )
     check.add_argument("folder", metavar="FOLDER")
     add_output(check)
     new = commands.add_parser("new", help="write the skeleton of a mod, with a test that passes")

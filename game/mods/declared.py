@@ -13,7 +13,6 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import is_dataclass
 from functools import cache, wraps
 from types import NoneType, UnionType
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -68,7 +67,9 @@ def _checked(method: Callable[..., Any]) -> Callable[..., Any]:
         signature = inspect.signature(method, eval_str=True)
         bound = signature.bind(*arguments, **named)
         for name in bound.arguments.keys() - {"self"}:
-            bound.arguments[name] = as_declared(bound.arguments[name], signature.parameters[name].annotation, name)
+            bound.arguments[name] = as_declared(
+                bound.arguments[name], signature.parameters[name].annotation, name
+            )
         return method(*bound.args, **bound.kwargs)
 
     return checked
@@ -129,7 +130,7 @@ def _one_of(declared: Any, options: Sequence[Any]) -> Made:
     def one(value: Any, called: str) -> Any:
         for option in options:
             if type(value) is option or (option is NoneType and value is None):
-                return _maker(option)(value, called) if value is not None else None
+                return None if value is None else as_declared(value, option, called)
         refusals = []
         for option in options:
             try:
@@ -211,7 +212,8 @@ def _instance(declared: Any, origin: Any, arguments: Sequence[Any]) -> Made:
     kind = origin or declared
     if kind is Callable or getattr(kind, "_is_protocol", False):
         return lambda value, called: _is_function(value, called) if kind is Callable else value
-    plain = (is_dataclass(kind) and kind.__dataclass_params__.frozen) or hasattr(kind, "_fields")  # type: ignore[attr-defined]
+    parameters = getattr(kind, "__dataclass_params__", None)
+    plain = (parameters is not None and parameters.frozen) or hasattr(kind, "_fields")
     make = _data(kind) if plain else None
 
     def instance(value: Any, called: str) -> Any:

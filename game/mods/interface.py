@@ -105,7 +105,9 @@ def _checked_readout(readout: Readout) -> Readout:
 def _checked_plot(plot: Plot) -> Plot:
     for name, x, y in plot.curves:
         if x.ndim != 1 or x.shape != y.shape:
-            raise ValueError(f"the curve '{name}' has x of shape {x.shape} and y of {y.shape}; give (n,) and (n,)")
+            raise ValueError(
+                f"the curve '{name}' has x of shape {x.shape} and y of {y.shape}; give (n,) and (n,)"
+            )
     curves = tuple((readable(name), x, y) for name, x, y in plot.curves)
     return replace(plot, x_title=readable(plot.x_title), y_title=readable(plot.y_title), curves=curves)
 
@@ -161,7 +163,7 @@ def _guarded_method(mod: Mod, kind: type[Scene], name: str) -> Callable[..., Any
 def _guarded_property(mod: Mod, kind: type[Scene], name: str) -> property:
     """An attribute or property of a scene that is read; if it cannot be shown, it is empty."""
     own, plain = getattr_static(kind, name), getattr_static(Scene, name)
-    declared = result_of(plain.fget) if isinstance(plain, property) else type(plain)
+    declared = result_of(plain.fget) if isinstance(plain, property) and plain.fget else type(plain)
     empty: Any = {} if name == "boxes" else ""
 
     def asked(scene: Scene) -> Any:

@@ -113,7 +113,9 @@ class Mod:
         try:
             if self.source == INCLUDED:
                 return function(*arguments)
-            return self.within(patience, lambda: as_declared(function(*arguments), declared, "what it returned"))
+            return self.within(
+                patience, lambda: as_declared(function(*arguments), declared, "what it returned")
+            )
         except mistakes:
             raise
         except BaseException as error:  # of code that is not ours
@@ -123,7 +125,7 @@ class Mod:
             return otherwise
 
     def within(self, patience: float, function: Callable[[], T]) -> T:
-        """The result of a function; TooLong is raised in the mod's code, or in a library's that it called, after `patience`."""
+        """The result of a function; after `patience` TooLong is raised in the mod's code, or in a library's that it calls."""
         if not math.isfinite(patience) or self.folder is None:
             return function()
         return within(patience, is_running(f"{self.folder}{os.sep}", others=OURS), function)

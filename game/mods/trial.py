@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from components.field import Field, FieldError, Role
 from components.load import HISTORIES
 from components.model import ADDED, Model
-from components.particle import Particle
 from components.suggestions import missing
 from game.checks import EVERYTHING, columns_of, compare
 from game.documents import models
@@ -95,7 +94,9 @@ class _Trial:
             if is_persons(error):
                 raise
             if not self.mod.off:
-                self._note(str(error) if isinstance(error, ProgramError | FieldError) else self.mod.describe(error))
+                self._note(
+                    str(error) if isinstance(error, ProgramError | FieldError) else self.mod.describe(error)
+                )
         if self.mod.off:
             self._note(self.mod.problem)
             self.mod.problem = ""
@@ -129,14 +130,16 @@ class _Trial:
         for binding in BINDINGS:
             if binding.action.startswith(f"{self.mod.name}."):
                 for scene in sorted(set(binding.scenes) - scenes):
-                    self._note(f"The key '{binding.key}' for {binding.action}: {missing('scenes', scene, scenes)}")
+                    self._note(
+                        f"The key '{binding.key}' for {binding.action}: {missing('scenes', scene, scenes)}"
+                    )
 
     # --- what must be tried ----------------------------------------------------------------------------
 
     def _live_in(self, scene: str) -> None:
         """Let frames pass in a scene, and do there what a person can do everywhere."""
         session = _session(self.mod, scene)
-        for phase, systems in session.plan(scene).phases.items():
+        for systems in session.plan(scene).phases.values():
             for system in systems:
                 if system.mod is self.mod and not isinstance(system, StepSystem):
                     self._check_frames(session, system)
@@ -166,7 +169,13 @@ class _Trial:
         for _ in range(FRAMES):
             session.model.activate()
             system.process(Frame(session, FRAME))
-        compare(system.name, before, columns_of(session.model), {*system.writes, *system.adds}, "a frame of it changed")
+        compare(
+            system.name,
+            before,
+            columns_of(session.model),
+            {*system.writes, *system.adds},
+            "a frame of it changed",
+        )
 
     def _press(self, key: str, scene: str) -> None:
         session = _session(self.mod, scene)
@@ -199,7 +208,9 @@ def _way_to(session: Session, scene: str) -> list[str]:
     ways: dict[str, list[str]] = {session.scene: []}
     for here in (pending := [session.scene]):
         for name in session.scenes.names:
-            if name not in ways and (name in session.scenes[here].targets or here in session.scenes[name].sources):
+            if name not in ways and (
+                name in session.scenes[here].targets or here in session.scenes[name].sources
+            ):
                 ways[name] = [*ways[here], name]
                 pending.append(name)
     if scene not in ways:
@@ -229,10 +240,8 @@ def _fill(field: Field[Any], element: Any) -> None:
     if field.dtype in (float, int, bool) and not field.default:
         value = 1 if field.maximum is None else min(1, field.maximum)
         plain = bool(value) if field.dtype is bool else field.dtype(max(value, field.minimum or 0))
-        try:
+        with suppress(FieldError):  # a rule of its own
             setattr(element, field.name, (plain, plain) if field.shape else plain)
-        except FieldError:
-            pass  # a rule of its own
 
 
 def _draw(session: Session, size: tuple[int, int, float]) -> None:

@@ -80,7 +80,7 @@ class _Watchdog:
 _watchdog = _Watchdog()
 
 
-def _raise_in(thread: int, exception: type[Exception]) -> None:
+def _raise_in(thread: int, exception: type[BaseException]) -> None:
     """Let an exception be raised in a thread before its next Python instruction."""
     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(exception))
 
@@ -104,7 +104,7 @@ def _take_back() -> None:
 
 
 def within(seconds: float, may: Callable[[], bool], function: Callable[[], T]) -> T:
-    """The result of a function, in which TooLong is raised once it takes longer; compiled code is interrupted when it returns.
+    """The result of a function; once it takes longer, TooLong is raised in it. Compiled code is interrupted as it returns.
 
     may: called by the watchdog; True if the function may be interrupted where it is. Only one thread runs Python
     code at a time, so it has not moved on when the exception comes. Inside each other, the outermost limit counts.

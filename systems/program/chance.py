@@ -30,7 +30,9 @@ def source_of_chance(kernel: Callable[..., Any]) -> str:
             attributes = plain.__code__.co_names if isinstance(value, ModuleType) else ()
             inside = {f"{name}.{n}": getattr(value, n) for n in attributes if hasattr(value, n)}
             for called, found in {name: value, **inside}.items():
-                if any(found is module for module in _MODULES) or isinstance(getattr(found, "__self__", found), _GENERATORS):
+                if any(found is module for module in _MODULES) or isinstance(
+                    getattr(found, "__self__", found), _GENERATORS
+                ):
                     return called
                 if hasattr(found, "py_func"):
                     pending.append(found)

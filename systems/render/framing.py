@@ -197,8 +197,7 @@ def _panel(mark: Panel, low: Points, high: Points) -> Iterator[Panel]:
     left, top = max(mark.left, low[0] - reach), max(mark.top, low[1] - reach)
     right, bottom = min(mark.left + mark.width, high[0] + reach), min(mark.top + mark.height, high[1] + reach)
     if right - left >= 1.0 and bottom - top >= 1.0:
-        box = map(float, (left, top, right - left, bottom - top))
-        yield Panel(*box, radius, mark.fill, mark.outline)
+        yield Panel(float(left), float(top), float(right - left), float(bottom - top), radius, *mark[5:])
 
 
 def _text(mark: Text, viewport: Viewport) -> Iterator[Text]:

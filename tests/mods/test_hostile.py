@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,7 +13,7 @@ from game.commands.command_line import main
 from game.documents import models
 from game.mods import guard, interface, mod
 from tests.mods.conftest import Write
-from tests.mods.hostile import HOSTILE, KEY, LOAD, RUN, WINDOW, Hostile
+from tests.mods.hostile import HOSTILE, KEY, RUN, WINDOW, Hostile
 from tests.mods.test_isolation import TRUSS
 
 CASES = pytest.mark.parametrize("hostile", HOSTILE.values(), ids=HOSTILE)
@@ -82,7 +81,7 @@ def test_in_a_run_of_its_own(hostile: Hostile, bad: Any) -> None:
     mods.load([bad(hostile)])
     session = Session.open(modelled())
     if RUN in hostile.found and not mods.FAULTS:
-        with pytest.raises(mods.ModError, match="The mod 'bad' was switched off: .* The run stopped at t = "):
+        with pytest.raises(mods.ModError, match=r"The mod 'bad' was switched off: .* The run stopped at t = "):
             session.run(steps=20)
     else:
         assert session.run(steps=20) == "time reached"

@@ -71,8 +71,8 @@ class Analysis:
             session.run(steps=0)  # records the beginning, for theory beside the run
             with session.without_frames():
                 found = self.run(session.simulation, name)
-        except ModError as error:
-            return _failed(session.simulation, name, error)
+        except ModError as failure:
+            return _failed(session.simulation, name, failure)
         happened = [asdict(event) for event in session.simulation.events]
         error = session.document.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
         return {
