@@ -152,7 +152,10 @@ class Path:
         """Of all directions, with a growing or a falling load, the one most like the last."""
         elastic = self._direction(response, branches, np.zeros_like(guess), onward)
         limited, matrix, growth = self._limits(response, branches, elastic)
-        best, likeness = replace(self._direction(response, branches, guess, onward), consistent=False), -math.inf
+        best, likeness = (
+            replace(self._direction(response, branches, guess, onward), consistent=False),
+            -math.inf,
+        )
         for sense in (1.0, -1.0):
             for chosen in yielding_sets(matrix, sense * elastic.sense * growth, guess[limited]):
                 giving = np.zeros_like(guess)
@@ -313,7 +316,9 @@ class Path:
         coarse = not self.exact_events and switched and abs(dt) <= RESOLUTION
         return reached if fine or coarse else HALF
 
-    def _reached(self, point: Point, tangent: Tangent, found: Point, dt: float) -> tuple[Point, Tangent] | float:
+    def _reached(
+        self, point: Point, tangent: Tangent, found: Point, dt: float
+    ) -> tuple[Point, Tangent] | float:
         """A point found, with its tangent; or the share of the increment after which a rod left its piece."""
         kink = self._kink(point, tangent, found, dt)
         if kink < 1.0:
