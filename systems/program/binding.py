@@ -40,6 +40,8 @@ _RESULTS = {
     "particles": "a pair, the force (fx, fy) in kN",
     "pairs": "a pair, the force (fx, fy) on the first particle in kN",
     "potential": "one number, the energy of two particles (kN·m)",
+    "branch": "one number, the branch that the rod is on",
+    "margin": "one number, positive while the rod stays on its branch",
     "loads": "one number, the factor of the load",
     "commit": "a pair, the new value of the column and the energy dissipated (kN·m)",
     "event of rods": "one number, whose sign counts",
