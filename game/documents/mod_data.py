@@ -17,12 +17,14 @@ VERSIONS: dict[str, str] = {}  # of the mods that add components or kinds, by na
 UPGRADES: dict[str, Upgrade] = {}  # by mod
 
 
-def versions_of(document: Mapping[str, Any], kept: Mapping[str, str]) -> dict[str, str]:
-    """The versions of the mods whose data a document holds. kept: those of mods that are not loaded."""
-    known = {**kept, **VERSIONS}
-    if not known:
-        return {}
-    return {name: known[name] for name in sorted(_mods_in(document)) if name in known}
+def known_versions(kept: Mapping[str, str]) -> dict[str, str]:
+    """The versions of mods that are loaded, and those `kept` of mods that are not."""
+    return {**kept, **VERSIONS}
+
+
+def versions_in(document: Mapping[str, Any], known: Mapping[str, str]) -> dict[str, str]:
+    """The versions of the mods whose data a document holds, of those that are known."""
+    return {name: known[name] for name in sorted(_mods_in(document)) if name in known} if known else {}
 
 
 def upgraded(document: Mapping[str, Any]) -> Mapping[str, Any]:

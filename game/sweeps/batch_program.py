@@ -55,14 +55,14 @@ class BatchProgram:
         lines = [
             '"""A step program for variants. Generated; safe to delete."""',
             "",
-            "from numba import njit",
+            "from systems.kernels import kept",
             "",
         ]
         for name, parameters in self._parameters.items():
             one_for_all = (*_SHARED, *self._scratch(name))
             arguments = [p if p in one_for_all else f"{p}[k]" for p in parameters]
             lines += [
-                '@njit(error_model="numpy", nogil=True, cache=True)',
+                '@kept(error_model="numpy", nogil=True)',
                 f"def {name}_each(variants, taken, reason, {', '.join(parameters)}):",
                 "    for k in variants:",
                 f"        {_RETURNS.get(name, '')}{name}({', '.join(arguments)})",

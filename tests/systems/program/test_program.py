@@ -498,7 +498,7 @@ print(session.simulation.programs.compile_seconds)
 def test_a_second_process_loads_instead_of_compiling(fresh_process: Callable[..., str], tmp_path: Path) -> None:
     folders = {"XDG_CACHE_HOME": str(tmp_path), "LOCALAPPDATA": str(tmp_path), "HOME": str(tmp_path)}
     first, second = (float(fresh_process(COMPILE, folders)) for _ in range(2))
-    assert list(tmp_path.rglob("pinjoint_program_*.py"))
+    assert list(tmp_path.rglob("pinjoint_program_*.code"))
     assert second < 0.5 * first
 
 
@@ -510,12 +510,10 @@ def test_an_unwritable_cache_folder_is_done_without(fresh_process: Callable[...,
     folders = {"XDG_CACHE_HOME": str(blocked), "LOCALAPPDATA": str(blocked), "HOME": str(blocked)}
     assert float(fresh_process(COMPILE, folders | {"TMPDIR": str(temporary), "TEMP": str(temporary)})) > 0.0
     assert blocked.read_text() == "not a folder"
-    assert list(temporary.rglob("pinjoint_program_*.py"))
+    assert list(temporary.rglob("pinjoint_program_*.code"))
 
 
-SOURCE = (
-    "from numba import njit\n\nentry = njit(cache=True)\n\n\n@entry\ndef answer(x):\n    return kernel(x)\n"
-)
+SOURCE = "from systems.kernels import kept\n\n\n@kept()\ndef answer(x):\n    return kernel(x)\n"
 CALLER = "from numba import njit\nimport edited_helpers as helpers\n\n@njit\ndef kernel(x):\n    return helpers.twice(x)\n"
 CALLEE = "from numba import njit\n\nFACTOR = 2.0\n\n@njit\ndef twice(x):\n    return FACTOR * x\n"
 
@@ -523,7 +521,7 @@ CALLEE = "from numba import njit\n\nFACTOR = 2.0\n\n@njit\ndef twice(x):\n    re
 def test_an_edited_kernel_is_noticed_in_what_it_calls_too(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("systems.program.compiler.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("systems.cache.folder", lambda: tmp_path)
     answers = []
     for factor in ("2.0", "5.0"):
         (tmp_path / "edited_helpers.py").write_text(CALLEE.replace("2.0", factor))
@@ -538,18 +536,18 @@ def test_an_edited_kernel_is_noticed_in_what_it_calls_too(
         program = compile_module(SOURCE, {"kernel": sys.modules["edited_kernel"].kernel})
         answers.append(program.answer(10.0))
     assert answers == [20.0, 50.0]
-    assert len(list(tmp_path.glob("pinjoint_program_*.py"))) == 2
+    assert len(list(tmp_path.glob("pinjoint_program_*.code"))) == 2
 
 
 def test_a_kernel_that_moved_to_another_module_is_compiled_anew(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What is cached may know what it calls by its module, and cannot be loaded where that is gone."""
-    monkeypatch.setattr("systems.program.compiler.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("systems.cache.folder", lambda: tmp_path)
     for name in ("kernels_before", "kernels_after"):
         spec = importlib.util.spec_from_loader(name, loader=None)
         assert spec is not None
         module = importlib.util.module_from_spec(spec)
         exec(CALLEE.replace("twice", "kernel"), vars(module))
         assert compile_module(SOURCE, {"kernel": vars(module)["kernel"]}).answer(10.0) == 20.0
-    assert len(list(tmp_path.glob("pinjoint_program_*.py"))) == 2
+    assert len(list(tmp_path.glob("pinjoint_program_*.code"))) == 2
