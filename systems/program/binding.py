@@ -235,9 +235,8 @@ def shape_given(b: Bound, parameter: str, model: Model) -> tuple[int, ...]:
     """The shape of what a kernel gets for a parameter: of a number (), of a vector, such as `apart`, (2,)."""
     if parameter in PROVIDED:
         return (2,) if parameter in ("apart", "drift") else ()
-    single, shape = False, ()
     if parameter in b.arrays:
-        shape = b.arrays[parameter].shape[1:]
+        single, shape = False, b.arrays[parameter].shape[1:]
     else:
         table, _, column = parameter.partition("_")
         single, shape = model.tables[table].kind.single, model.tables[table].fields[column].shape
@@ -305,7 +304,8 @@ def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
     """Raise ProgramError unless the parameter is provided, an array of the system or a column that it declares."""
     rows, name = b.rows, b.system.name
     provided = PROVIDED_TO[b.purpose]
-    if parameter in ("time", "dt", "drift", "particles_velocity") and getattr(b.system, "potential", ""):
+    conservative = isinstance(b.system, Law) and b.system.potential
+    if parameter in ("time", "dt", "drift", "particles_velocity") and conservative:
         raise ProgramError(
             f"{name} has a potential, so that its force depends on places alone, but takes '{parameter}'; drop one."
         )
