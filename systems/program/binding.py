@@ -16,6 +16,7 @@ from components.field import Role
 from components.model import Model
 from systems.base import Commit, Event, Integrator, Law, StepSystem
 from systems.entries import ACCOUNTS
+from systems.program.chance import source_of_chance
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
 PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for
@@ -187,6 +188,10 @@ def bind(system: StepSystem, model: Model, kernel: str = "kernel") -> Bound:
     except ProgramError as error:
         error.system = system
         raise
+    except Exception as error:
+        if system.mod is None:
+            raise
+        raise ProgramError(f"{system.name} cannot be read: {type(error).__name__}: {error}.", system) from error
 
 
 def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
@@ -195,6 +200,11 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     plain = getattr(function, "py_func", None)
     if plain is None:
         raise ProgramError(f"The kernel of {system.name} is not compiled; put `@njit` of numba above it.")
+    if system.mod is not None and (chance := source_of_chance(function)):
+        raise ProgramError(
+            f"The kernel of {system.name} draws random numbers ({chance}), so that no run could be repeated; draw"
+            " them before, with a seed, and hand them over by `arrays`."
+        )
     parameters = tuple(inspect.signature(plain).parameters)
     arrays = {name: read_only(array) for name, array in system.arrays(model).items()}
     bound = Bound(system, function, parameters, arrays, kernel, _cutoff(system, model))
@@ -291,7 +301,7 @@ def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., A
     module, _, attribute = kernel.partition(":")
     try:
         found = getattr(importlib.import_module(module), attribute)
-    except (ImportError, AttributeError, ValueError) as error:
+    except (Exception, SystemExit) as error:  # of the module, which may be a mod's
         raise ProgramError(
             f"The kernel '{kernel}' of {owner.name} cannot be found: {error}; write it like"
             " 'package.module:function'.",
@@ -377,7 +387,7 @@ def problem_of(b: Bound, model: Model) -> str:
 
 def _brief(failure: Exception) -> str:
     lines = [line.strip() for line in str(failure).splitlines() if line.strip()]
-    return f"{'; '.join(lines[1:4])}."
+    return f"{'; '.join(lines[1:4] or lines).rstrip('.')}."
 
 
 def _result_type(b: Bound, model: Model) -> Any:

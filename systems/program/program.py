@@ -80,15 +80,13 @@ class Program:
 
     def _compile(self) -> None:
         """Call every function once, which makes numba compile it, or load it from the cache."""
-        from numba.core.errors import NumbaError
-
         try:
             self.advance(0)
             self.observe()
             if self._writer.commits:  # with no rods: a commit changes history
                 state = [self._arrays[name][:0] for name in STATE]
                 self.module.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
-        except NumbaError as error:
+        except Exception as error:  # numba raises many kinds
             raise explain(self._writer.kernels, self.integrator, self.model, error) from error
         note_compiled(self.module)
 
