@@ -33,6 +33,8 @@ PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called f
 PROVIDED = {name for names in PROVIDED_TO.values() for name in names}
 TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
 
+KERNELS = ("kernel", "branch", "margin", "potential")  # of a system, as its attributes
+
 WIDEST_ROW = 64  # numbers of an array that a kernel gets, as a tuple; more would take long to compile
 
 _KINDS = ("rods", "particles", "pairs", "loads")
