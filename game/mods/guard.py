@@ -85,6 +85,8 @@ def guarded_system(mod: Mod, system: System) -> System:
         vars(system)["process"] = lambda frame: _change_whole(
             mod, system, what, frame.session.model, lambda: _in_frame(process, frame)
         )
+    if isinstance(system, Law):
+        _guard_question(mod, system, "cutoff", float, otherwise=math.inf)
     if isinstance(system, Event):
         happen = system.happen
         vars(system)["happen"] = lambda model, *elements: _change_whole(
