@@ -11,13 +11,10 @@ SMALL_SHARE = 1e-3  # of the largest force ever, taken as scale where all forces
 DIVERGENCE_SHARE = 0.2  # of all energy ever supplied; smaller: may stop good runs at large steps
 YIELDING_SHARE = 0.5  # of what yielding dissipated, which is of first order where a step passes the strength
 WOBBLE_SHARE = 10.0  # of all energy supplied; at stable steps of the thesis' scheme at most 8 is possible
-AMPLIFIED = (
-    50.0  # times all energy ever supplied; Verlet's amplify an undamped mode so at 0.99 of its stable step
-)
+INSTABILITY_SHARE = 2.0  # of all energy ever supplied; at stable steps at most 1 is possible
+AMPLIFIED = 50.0  # times all energy ever supplied; Verlet amplifies one mode as much at 0.99 of its stable step
 LARGEST_ENERGY = 1e90  # J, of the largest mass at the largest speed that can be computed with
-LOST_UNSEEN = (
-    1e-9  # of all energy ever supplied, in round-off; larger: motion that a method took passes for rest
-)
+LOST_UNSEEN = 1e-9  # of all energy ever supplied; larger: motion that the method took passes for rest
 AT_TAUT = 1e-9  # elastic strain within which a cable's motion tells whether it is slack
 SMALLEST_ENERGY = 1e-24  # J, below which nothing is told from round-off
 
@@ -106,8 +103,10 @@ def judge(measures, account, dt, shadow, ahead, loads_are_over):
     ahead: energy that varying loads will supply in the next step (J); after a jump they have moved the mass but
         done no work yet.
 
-    Diverged: energy came from nowhere, more than a share of all that was supplied and of what yielding took; or,
-    conserved or not, there is many times more than was ever supplied, as Verlet has at its stable step and beyond.
+    Diverged: energy came from nowhere, more than a share of all that was supplied (or, where nothing is
+    conserved, of what one step can move) and of what yielding took. Beyond the stable step Verlet conserves
+    its energy too, while the second term grows past the elastic energy, and both past all that was supplied;
+    at the stable step the two are equal, and there is many times more energy than was supplied.
     Rest: the largest residual and the kinetic energy are small relative to the present forces or, in a model that
     swings out to nothing, to a small part of the largest ever; and it was not the method that took the motion.
     """
@@ -117,9 +116,8 @@ def judge(measures, account, dt, shadow, ahead, loads_are_over):
     damped = account[Account.DISSIPATED_DAMPING]
     supplied = work + measures[Measure.POTENTIAL] - account[Account.POTENTIAL_REFERENCE]
     lost = account[Account.DISSIPATED_PLASTIC] + account[Account.DISSIPATED_IMPACT]
-    swinging = kinetic
-    if shadow == 2.0:
-        swinging += 0.5 * dt * measures[Measure.POWER] + dt * dt / 8.0 * power_norm
+    deficit = min(max(shadow, 0.0), 1.0) * dt * dt / 8.0 * power_norm
+    swinging = kinetic + 0.5 * dt * measures[Measure.POWER] + deficit if shadow == 2.0 else kinetic
     present = swinging + elastic + lost - supplied - begun
     created = conserved(measures, account, dt, shadow) - account[Account.GUARD_ENERGY]
     if shadow < 0.0:
@@ -134,6 +132,8 @@ def judge(measures, account, dt, shadow, ahead, loads_are_over):
     bound = DIVERGENCE_SHARE * scale + YIELDING_SHARE * account[Account.DISSIPATED_PLASTIC] + SMALLEST_ENERGY
     amplified = AMPLIFIED * scale + SMALLEST_ENERGY
     if not (created <= bound and present <= amplified and kinetic <= LARGEST_ENERGY):
+        return StopReason.DIVERGED
+    if min(max(swinging, elastic), deficit - elastic) > INSTABILITY_SHARE * scale + SMALLEST_ENERGY:
         return StopReason.DIVERGED
     still_force = REST_RESIDUAL * max(largest, SMALL_SHARE * account[Account.FORCE_SCALE])
     still_energy = REST_RESIDUAL**2 * max(elastic, SMALL_SHARE**2 * scale)
