@@ -125,7 +125,7 @@ class Mod:
             return otherwise
 
     def within(self, patience: float, function: Callable[[], T]) -> T:
-        """The result of a function; after `patience` TooLong is raised in the mod's code, or in a library's that it calls."""
+        """The result of a function; after `patience` TooLong is raised in the mod's code, or in a library that it calls."""
         if not math.isfinite(patience) or self.folder is None:
             return function()
         return within(patience, is_running(f"{self.folder}{os.sep}", others=OURS), function)

@@ -245,6 +245,7 @@ def _fill(field: Field[Any], element: Any) -> None:
 
 
 def _draw(session: Session, size: tuple[int, int, float]) -> None:
-    from game.app import draw_unseen  # imports pygame
+    from systems.render.pygame_render import draw_unseen  # imports pygame
 
-    draw_unseen(session, size[:2])
+    session.update_view()
+    draw_unseen(Frame(session, FRAME), size[:2])

@@ -53,6 +53,11 @@ class PygameRender(System):
             self._shown = (id(self.surface), looks, _revisions(stages))
 
 
+def draw_unseen(frame: Any, size: tuple[int, int]) -> None:
+    """Draw a frame as in a window of that size in pixels, to find what cannot be drawn."""
+    PygameRender(pygame.Surface(size, depth=32)).process(frame)
+
+
 def _looked_at(shown: Model | Form | Toolbar, view: View) -> str:
     """The model and the view of a stage: while they are the same, labels keep their places."""
     return f"{'' if isinstance(shown, Toolbar) else shown.context} {view.camera}"
