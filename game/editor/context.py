@@ -398,7 +398,8 @@ class Context:
         """Go to the static equilibrium at each load factor in turn, without letting time pass.
 
         Can be undone. Returns "equilibrium", "neutral equilibrium" or "unstable equilibrium"; or "mechanism",
-        "collapse" or "limit reached" with the last good state; `message` says more. Time moves on to the end of the last load history. Raises ValueError.
+        "collapse" or "limit reached" with the last good state; `message` says more. Time moves on to the end of the
+        last load history. Raises ValueError.
         """
         status, self.notice = self.document.settle(factors)
         return status
