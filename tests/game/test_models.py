@@ -515,11 +515,33 @@ def test_the_folder_is_synchronised_after_a_file_was_replaced(
     assert synchronised == [(tmp_path / "some.json").stat().st_ino, tmp_path.stat().st_ino]
 
 
+HALF = "half \ud800"
+
+
+@pytest.mark.parametrize(
+    "document",
+    [
+        BASE | {"title": HALF},
+        BASE | {"description": HALF},
+        BASE | {"particles": [particle(HALF, 0, 0)]},
+        BASE | {"particles": [particle(f"P{n}", n, 0) for n in range(20)] + [particle(HALF, 0, 0)]},
+        BASE | {"particles": [particle("A", 0, 0, components={"mod.Kind": {"text": HALF}})]},
+        BASE | {"particles": [particle("A", 0, 0, components={"mod.Kind": {HALF: 1}})]},
+    ],
+)
+def test_half_a_character_is_refused(document: dict[str, Any]) -> None:
+    """It could not be saved, copied, kept against a crash, or shown."""
+    with pytest.raises(ModelError, match="kept in a"):
+        models.parse(document)
+
+
 def test_a_text_that_no_file_can_hold_keeps_the_old_file(tmp_path: Path) -> None:
     path = tmp_path / "model.json"
     path.write_text("old", encoding="utf-8")
+    made = models.parse(BASE)
+    made.title = "\ud800"
     with pytest.raises(ModelError, match="surrogates not allowed"):
-        models.save(models.parse(BASE | {"title": "\ud800"}), path)
+        models.save(made, path)
     assert path.read_text(encoding="utf-8") == "old"
 
 
