@@ -296,7 +296,7 @@ MALFORMED = {
     "empty": (b" \n", "is empty; save the model anew"),
     "UTF-16": ('{"format": "pinjoint model"}'.encode("utf-16"), "written in UTF-16; save it in UTF-8"),
     "cut off": (HEAD + b'"rods": [', "line 1 column"),
-    "trailing comma": (HEAD + b'"rods": [],\n}', "line 2 column 1"),
+    "trailing comma": (HEAD + b'\n"rods": [],}', "line 2 column"),
     "Latin-1": (HEAD + b'\n"title": "\xe9"}', "has a character in line 2 that is not UTF-8; save it in UTF-8"),
     "nan": (HEAD + b'"environment": {"drag": NaN}}', "contains NaN; every number must be finite"),
     "infinity": (HEAD + b'"environment": {"drag": -Infinity}}', "contains -Infinity"),
