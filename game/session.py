@@ -29,7 +29,7 @@ from game.editor.scenes import all_scenes, scene_systems
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
 from game.mods import load_all
-from game.mods.heeding import heeding_mods
+from game.mods.heeding import blamed_on_mod, heeding_mods
 from game.scripts.expectation import expect
 from systems.base import EVENT_INTERVAL, Phase, StopReason, System
 from systems.catalogue import SYSTEMS, step_systems
@@ -137,15 +137,7 @@ class Session(Context):
         The fault of a mod, the question or refusal of the scene, why the run stopped, a warning or a notice, then the
         remarks on a run at rest.
         """
-        simulation = self.simulation
-        said = (
-            self.fault
-            or self.scenes.active.message
-            or (simulation.message if simulation.armed else "")  # else it is about what was before an edit
-            or simulation.step_size.warning
-            or simulation.note
-            or self.notice
-        )
+        said = self.fault or self.scenes.active.message or self.simulation.said or self.notice
         return " ".join([*filter(None, [said]), *(remark.message for remark in self.remarks)])
 
     # --- time --------------------------------------------------------------------------------------
@@ -374,8 +366,12 @@ class Session(Context):
     def frame(self, elapsed: float) -> Frame:
         """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
         frame = Frame(self, _forward("elapsed", elapsed))
-        for phase in Phase:
-            self.schedule.run(phase, frame)
+        try:
+            for phase in Phase:
+                self.schedule.run(phase, frame)
+        except Exception as error:
+            if not blamed_on_mod(error):
+                raise
         return frame
 
     @property

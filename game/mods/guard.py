@@ -15,7 +15,7 @@ from typing import Any, ClassVar, get_args, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Column, FieldError, Role
+from components.field import Column, Field, FieldError, Role
 from components.handle import Handle
 from components.load import HistoryKind
 from components.model import Model
@@ -228,3 +228,23 @@ def guarded_shape(mod: Mod, kind: type[Handle], shape: Shape) -> Shape:
         return found
 
     return called
+
+
+def guard_checkers(mod: Mod, fields: Iterable[Field[Any]]) -> None:
+    """Let the checkers of a mod's Fields refuse values only by FieldError; without the mod, every value is kept."""
+    for field in fields:
+        if field.checker is not None:
+            field.checker = _guarded_checker(mod, field, field.checker)
+
+
+def _guarded_checker(mod: Mod, field: Field[Any], own: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
+    def checker(value: Any, where: str) -> Any:
+        was_off = mod.off
+        made = mod.call(
+            f"the checker of {field.name}", own, value, where, otherwise=value, mistakes=(FieldError,)
+        )
+        if mod.off and not was_off:
+            raise FieldError(f"{where}: {field.title} cannot be checked; {mod.problem}")
+        return made
+
+    return checker

@@ -118,6 +118,8 @@ class _Trial:
             if column and (table not in model.tables or column not in model.tables[table].fields):
                 known = [f"{t.name}.{f}" for t in model.tables.values() for f in t.fields]
                 self._note(f"{system.name}: {missing('columns', name, known)}")
+        if isinstance(system, StepSystem):
+            system.leaves_flight_exact(model)
         if isinstance(system, Integrator):
             read_sources([system])
         elif isinstance(system, Law | Commit | Event):
@@ -245,6 +247,7 @@ def _fill(field: Field[Any], element: Any) -> None:
 
 
 def _draw(session: Session, size: tuple[int, int, float]) -> None:
-    from game.app import draw_unseen  # imports pygame
+    from systems.render.pygame_render import draw_unseen  # imports pygame
 
-    draw_unseen(session, size[:2])
+    session.update_view()
+    draw_unseen(Frame(session, FRAME), size[:2])
