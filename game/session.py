@@ -137,15 +137,7 @@ class Session(Context):
         The fault of a mod, the question or refusal of the scene, why the run stopped, a warning or a notice, then the
         remarks on a run at rest.
         """
-        simulation = self.simulation
-        said = (
-            self.fault
-            or self.scenes.active.message
-            or (simulation.message if simulation.armed else "")  # else it is about what was before an edit
-            or simulation.step_size.warning
-            or simulation.note
-            or self.notice
-        )
+        said = self.fault or self.scenes.active.message or self.simulation.said or self.notice
         return " ".join([*filter(None, [said]), *(remark.message for remark in self.remarks)])
 
     # --- time --------------------------------------------------------------------------------------

@@ -24,7 +24,7 @@ from systems.base import Commit, Event, Integrator, Law, StepSystem, System
 from systems.catalogue import all_systems
 from systems.input.bindings import BINDINGS, PAUSE, SIMULATION
 from systems.physics.integrators import INTEGRATORS
-from systems.program.binding import ProgramError, bind, problem_of
+from systems.program.binding import KERNELS, ProgramError, bind, problem_of
 from systems.program.writer import read_sources
 
 STEPS = 40  # that runs take
@@ -123,9 +123,9 @@ class _Trial:
         if isinstance(system, Integrator):
             read_sources([system])
         elif isinstance(system, Law | Commit | Event):
-            problem = problem_of(bind(system, model), model)
-            if problem:
-                self._note(problem)
+            for kernel in KERNELS:
+                if getattr(system, kernel, "") and (problem := problem_of(bind(system, model, kernel), model)):
+                    self._note(problem)
 
     def _check_keys(self) -> None:
         scenes = {scene.name for scene in all_scenes()}

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from components.model import Model
 from systems.base import StepSystem
-from systems.broad_phase import Rows
 from systems.program.binding import Bound, StepRole, bind, by_role, written_row
 from systems.program.loops import RodLoop
 from systems.program.near_pairs import pairs_within
@@ -67,7 +66,7 @@ class KernelRows:
 
     def _count(self, bound: Bound) -> int:
         if bound.each == "pairs":
-            return len(self._pairs(bound))
+            return len(pairs_within(self.model, bound.cutoff))
         if bound.each == "loads":
             return len(bound.arrays[f"{bound.prefix}_first"])
         return self.model.tables[bound.each or "rods"].count
@@ -77,22 +76,21 @@ class KernelRows:
         count = self._count(bound)
         if bound.each == "loads":
             return [np.full(count, self.provided["time"]), bound.arrays[f"{bound.prefix}_first"]]
+        if bound.each == "pairs":
+            return [self._of_pairs(bound, parameter) for parameter in bound.parameters]
         return [self._column(bound, parameter, count) for parameter in bound.parameters]
 
-    def _pairs(self, bound: Bound) -> Rows:
-        """The rows of the particles that a law of pairs acts on."""
-        return pairs_within(self.model, bound.cutoff)
+    def _of_pairs(self, bound: Bound, parameter: str) -> NDArray[Any]:
+        """One entry for each pair of particles that a law of pairs acts on."""
+        pairs = pairs_within(self.model, bound.cutoff)
+        if parameter in _OF_PAIRS:
+            values = np.sum([self.model.column(name) for name in _OF_PAIRS[parameter]], axis=0)
+            return np.asarray(values[pairs[:, 1]] - values[pairs[:, 0]])
+        if parameter in bound.arrays or parameter.startswith("particles_"):
+            return self._column(bound, parameter, self.model.particles.count)[pairs]
+        return self._column(bound, parameter, len(pairs))
 
     def _column(self, bound: Bound, parameter: str, count: int) -> NDArray[Any]:
-        if parameter in _OF_PAIRS:
-            first, second = self._pairs(bound).T
-            values = sum(self.model.column(name) for name in _OF_PAIRS[parameter])
-            return np.asarray(values[second] - values[first])
-        if bound.each == "pairs" and (parameter in bound.arrays or parameter.startswith("particles_")):
-            own = bound.arrays.get(parameter)
-            return (self.model.column(parameter.replace("_", ".", 1)) if own is None else own)[
-                self._pairs(bound)
-            ]
         if parameter in bound.arrays:
             return bound.arrays[parameter]
         if parameter in self.provided:

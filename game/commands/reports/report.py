@@ -180,7 +180,7 @@ def _run(
     return {
         "model": name,
         "status": status,
-        "message": simulation.message or simulation.step_size.warning,
+        "message": simulation.said,
         "time": clock.time,
         "steps": clock.steps,
         "time_step": clock.step_size if moves else None,
