@@ -12,6 +12,8 @@ from typing import Any, Generic, Protocol, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from components.wording import quoted
+
 T = TypeVar("T")
 Vector = tuple[float, float]
 Column = NDArray[Any]
@@ -211,7 +213,7 @@ class Field(Generic[T]):
     def _check_number(self, value: Any, where: str, title: str) -> Any:
         if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
             what = "the row of an element, as its .row tells" if self.dtype == "reference" else "a number"
-            raise FieldError(f"{where}: {title} is {value!r}; it must be {what}.")
+            raise FieldError(f"{where}: {title} is {quoted(value)}; it must be {what}.")
         try:
             number: Any = float(value)
         except OverflowError:  # 10**400
@@ -241,20 +243,24 @@ class Field(Generic[T]):
     def _check_flags(self, value: Any, where: str) -> Any:
         values = self._components(value, where, "true or false") if self.shape else [value]
         if not all(isinstance(v, bool | np.bool_) for v in values):
-            raise FieldError(f"{where}: {self.title} is {value!r}; it must be true or false.")
+            raise FieldError(f"{where}: {self.title} is {quoted(value)}; it must be true or false.")
         flags = tuple(bool(v) for v in values)
         return flags if self.shape else flags[0]
 
     def _check_text(self, value: Any, where: str) -> Any:
         if self.choices is not None and not (isinstance(value, str) and value in self.choices):
-            raise FieldError(f"{where}: {self.title} is {value!r}; choose one of {', '.join(self.choices)}.")
+            raise FieldError(
+                f"{where}: {self.title} is {quoted(value)}; choose one of {', '.join(self.choices)}."
+            )
         if not isinstance(value, str):
-            raise FieldError(f"{where}: {self.title} is {value!r}; it must be a text.")
+            raise FieldError(f"{where}: {self.title} is {quoted(value)}; it must be a text.")
         return str(value)  # numpy's texts are of another type
 
     def _components(self, value: Any, where: str, of_what: str) -> list[Any]:
         if isinstance(value, str | bytes | Mapping | Set) or not np.iterable(value):
-            raise FieldError(f"{where}: {self.title} is {value!r}; it must be a pair of {of_what}, [x, y].")
+            raise FieldError(
+                f"{where}: {self.title} is {quoted(value)}; it must be a pair of {of_what}, [x, y]."
+            )
         values = list(value)
         if len(values) != self.shape[0]:
             raise FieldError(f"{where}: {self.title} has {len(values)} entries; it must have two, [x, y].")

@@ -1,12 +1,19 @@
 """The program: `pinjoint`, or `python -m game`."""
 
+import sys
+import warnings
+
 from game.interrupts import quietly_interrupted
 
 
 def main() -> int:
     """Run the command line; returns the exit status."""
+    if not sys.warnoptions:  # they are for those who write programs; -W shows them
+        warnings.simplefilter("ignore")
     with quietly_interrupted():
         from game.commands import command_line
+        from game.streams import prepare_streams
+    prepare_streams()
     return command_line.main()
 
 

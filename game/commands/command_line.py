@@ -31,6 +31,7 @@ from game.documents.shapes import NoShape
 from game.mods.mod import ModError
 from game.paths import PathError
 from game.scripts.script import ScriptError
+from game.streams import discard_output, tell
 from game.sweeps import SweepError
 
 
@@ -56,24 +57,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         AnalysisError,
         ResultError,
     ) as error:
-        print(f"pinjoint: {error}", file=sys.stderr)
+        tell(str(error))
         return getattr(error, "status", BAD_INPUT)
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:  # the reader has seen enough, such as `head`
-        _drop_output()
+        discard_output()
         return NOT_ANSWERED
     except OSError as error:
-        if error.filename is None:  # of standard output, which Python would flush again on leaving
-            _drop_output()
+        if error.filename is None:
+            discard_output()
         place = error.filename or "Standard output"
-        print(f"pinjoint: {place} cannot be used: {error.strerror or error}.", file=sys.stderr)
+        tell(f"{place} cannot be used: {error.strerror or error}.")
         return BAD_INPUT
-
-
-def _drop_output() -> None:
-    """Discard the buffered rest of standard output, which cannot be written."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 COMMANDS |= {

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import sys
 import uuid
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -25,6 +24,7 @@ from game.mods.finding import mods_folder
 from game.mods.loading import MODS, load
 from game.mods.mod import INCLUDED, LOG, Mod, ModError
 from game.mods.skeleton import write_skeleton
+from game.streams import tell
 from game.version import __version__
 from systems.base import Commit, Integrator, Law
 from systems.catalogue import all_systems
@@ -57,7 +57,7 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
         FAULTS.append(LEFT_OUT)
     for mod in load(options.mods, installed=not (options.no_mods or unsafe)):
         if mod.off and others[:1] != ["mods"]:
-            print(f"pinjoint: the mod '{mod.name}' was left out: {mod.problem}", file=sys.stderr)
+            tell(f"the mod '{mod.name}' was left out: {mod.problem}")
     return others
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 from collections.abc import Iterable, Sequence
 from functools import partial
 
@@ -13,6 +12,7 @@ from game.commands.arguments import Parser, UsageError, count, numbers, positive
 from game.commands.reports.report import Analysis
 from game.paths import apply_override
 from game.session import DEFAULT_LIMIT, Session
+from game.streams import tell
 from systems.base import System
 from systems.program.parallel import VARIABLE
 
@@ -56,7 +56,7 @@ def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> S
     """A session with the model of `add_model`, and further systems. Raises ModelError, PathError, FieldError."""
     session = Session.open(options.model, systems)
     if session.notice:  # about data of mods that are not loaded, which would change the result
-        print(f"pinjoint: {session.notice}", file=sys.stderr)
+        tell(session.notice)
     for override in options.set:
         apply_override(session.model, override)
     return session

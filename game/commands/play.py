@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -15,6 +14,7 @@ from game.commands.window import in_window
 from game.documents import library, models
 from game.documents.open_documents import file_of
 from game.scripts import playing, script
+from game.streams import tell
 
 
 def command(words: Sequence[str]) -> int:
@@ -54,7 +54,7 @@ def command(words: Sequence[str]) -> int:
         "failures": [{**vars(failure), "got": str(failure.got)} for failure in failures],
     }
     for failure in failures:
-        print(f"{options.script} {failure}", file=sys.stderr)
+        tell(f"{options.script} {failure}")
     write_result(options, found, _rows, _lines)
     return NOT_ANSWERED if failures else ANSWERED
 

@@ -63,6 +63,6 @@ def _read() -> dict[str, Any]:
     """What the file says; nothing if it is damaged."""
     try:
         entries = json.loads(settings_path().read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return {}
     return entries if isinstance(entries, dict) else {}
