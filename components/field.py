@@ -19,6 +19,7 @@ Vector = tuple[float, float]
 Column = NDArray[Any]
 
 CM = ("cm", 100.0)  # as lengths are shown
+LARGEST, SMALLEST = 1e30, 1e-30  # sizes of numbers to compute with, in inside units; SMALLEST of those above 0
 _FEW = 8  # rows up to which checking values one by one is faster than as an array
 _LARGEST_REFERENCE = 2**32 - 1
 # By a Field's dtype: the numpy type of its column, and its default.
@@ -79,7 +80,8 @@ class Field(Generic[T]):
     dtype: float, bool, int, str, "reference" (row of another table, stored as uint32) or object.
     shape: () or (2,).
     default: what an element has that is given none; left out, 0, False, "" or None, as suits the dtype.
-    minimum, maximum: inclusive limits; `above`: exclusive lower limit.
+    minimum, maximum: inclusive limits; `above`: exclusive lower limit. Numbers that a person makes have limits
+        anyway, so that all can be computed with: LARGEST, and SMALLEST where they are above 0.
     nullable: None is allowed and stored as NaN; `absent` is what a person calls it.
     references: the table that a reference points into.
     overrides: the derived Field of the same handle that this one replaces when it is not None.
@@ -121,6 +123,8 @@ class Field(Generic[T]):
             )
         if self.dtype == "reference":
             self.minimum, self.maximum = 0, _LARGEST_REFERENCE
+        if self.dtype is float and self.role is Role.DOCUMENT:
+            self._limit()
         if not self.shown[1]:
             self.shown = self.unit, 1.0
         self.derived = self.role is Role.DERIVED  # asked so often that comparing roles would be felt
@@ -130,6 +134,13 @@ class Field(Generic[T]):
         self.storage: np.dtype[Any] = np.dtype(storage)
         self._has_objects = self.storage.hasobject
         self.plain = not (self.shape or self.nullable or self._has_objects)
+
+    def _limit(self) -> None:
+        """Give the limits that every number has to those that are not stated."""
+        if self.maximum is None:
+            self.maximum = LARGEST
+        if self.minimum is None:
+            self.minimum = SMALLEST if self.above == 0.0 else -LARGEST if self.above is None else None
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name

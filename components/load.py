@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -11,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from components.field import Field, FieldError, Vector
+from components.field import LARGEST, Field, FieldError, Vector
 from components.handle import Handle
 from components.particle import Particle
 from components.wording import cut, quoted
@@ -84,8 +83,10 @@ def _check_parameter(value: Any, default: Any, name: str, where: str) -> Any:
             raise FieldError(f"{where}: history {name} is {quoted(value)}; it must be a list of numbers.")
         return tuple(_check_parameter(item, 0.0, name, where) for item in value)
     is_number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-    if not is_number or not abs(value) <= sys.float_info.max:
-        raise FieldError(f"{where}: history {name} is {quoted(value)}; it must be a finite number.")
+    if not is_number or not abs(value) <= LARGEST:
+        raise FieldError(
+            f"{where}: history {name} is {quoted(value)}; it must be a number of at most {LARGEST:g} in size."
+        )
     return float(value)
 
 

@@ -6,10 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from components.field import Column, Field, Role
+from components.field import LARGEST, SMALLEST, Column, Field, Role
 from components.model import Model
-
-LARGEST, SMALLEST = 1e30, 1e-30  # in inside units; SMALLEST holds for Fields that must be above 0
 
 _TABLES = ("particles", "rods", "loads", "environment", "settings")
 _FOLLOWING = ("rest_length", "mass")  # derived, from positions that may be too near or too far

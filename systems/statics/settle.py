@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from components.field import FieldError
+from components.field import LARGEST, FieldError
 from components.model import Model
-from components.numeric_range import LARGEST, incomputable
+from components.numeric_range import incomputable
 from components.wording import quoted
 from systems.statics.contacts import Discs, Sinking
 from systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, largest, normalised
