@@ -12,9 +12,11 @@ def main() -> int:
         warnings.simplefilter("ignore")
     with quietly_interrupted():
         from game.commands import command_line
+        from game.commands.progress import told
         from game.streams import prepare_streams
     prepare_streams()
-    return command_line.main()
+    with told():
+        return command_line.main()
 
 
 if __name__ == "__main__":

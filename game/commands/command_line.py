@@ -23,7 +23,7 @@ from game.commands import (
     window,
 )
 from game.commands.arguments import BAD_INPUT, UsageError
-from game.commands.options import NOT_ANSWERED, use_cores_as_asked
+from game.commands.options import NOT_ANSWERED, STOPPED, use_cores_as_asked
 from game.commands.output import ResultError, write
 from game.commands.reports.report import AnalysisError
 from game.documents.document import ModelError
@@ -60,7 +60,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         tell(str(error))
         return getattr(error, "status", BAD_INPUT)
     except KeyboardInterrupt:
-        return 130
+        tell("Interrupted.")
+        return STOPPED
     except BrokenPipeError:  # the reader has seen enough, such as `head`
         discard_output()
         return NOT_ANSWERED

@@ -10,6 +10,7 @@ from typing import Any
 from game.commands.arguments import Parser
 from game.commands.options import ANSWERED, NOT_ANSWERED
 from game.commands.output import Row, add_output, write_result
+from game.commands.progress import follow
 from game.commands.window import in_window
 from game.documents import library, models
 from game.documents.open_documents import file_of
@@ -44,7 +45,7 @@ def command(words: Sequence[str]) -> int:
         if options.window:
             failures = in_window(models.load(loaded.source), file_of(loaded.source), lesson=loaded)
         else:
-            session = playing.session_of(loaded)
+            session = follow(playing.session_of(loaded))
             if not loaded.has_data:  # so that it ends alike however often it is played
                 kept.enter_context(library.data_apart())
             failures = playing.play(loaded, session)

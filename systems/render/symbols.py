@@ -85,7 +85,8 @@ def arcs(centres: Points, radius: float, middle: Points, reach: float) -> Points
     along, down = radius * np.sin(angle), 2.0 * radius * np.sin(0.5 * angle) ** 2
     nearest = middle - out * (distance - radius)[:, None]
     side = np.stack([-out[:, 1], out[:, 0]], axis=1)
-    return nearest[:, None] + side[:, None] * along - out[:, None] * down
+    found: Points = nearest[:, None] + side[:, None] * along - out[:, None] * down
+    return found
 
 
 def _bar(left: float, top: float, right: float, bottom: float) -> Points:

@@ -303,8 +303,9 @@ def explore(first: int, count: int) -> int:
     """Try seeds in another process, which is ended where it hangs; returns how many went wrong."""
     wrong, seed, last = 0, first, first + count
     while seed < last:
-        with _worker(seed, last) as lines:
-            for line in lines:
+        with _worker(seed, last) as process:
+            assert process.stdout is not None
+            for line in process.stdout:
                 answer = json.loads(line)
                 seed = answer["seed"] + 1
                 if answer["problem"]:
@@ -314,19 +315,18 @@ def explore(first: int, count: int) -> int:
                     print(f"seed {answer['seed']} took {answer['seconds']:.0f} s of processor time", flush=True)
         if seed < last:  # it was ended, or it died
             wrong += 1
-            print(f"seed {seed}: no answer, it hangs or its process died", flush=True)
+            print(f"seed {seed}: its process ended with {process.wait()} (−24: it hung)", flush=True)
             seed += 1
     print(f"{count} models and commands from seed {first}, {wrong} went wrong", flush=True)
     return wrong
 
 
 @contextmanager
-def _worker(first: int, last: int) -> Iterator[Iterator[str]]:
+def _worker(first: int, last: int) -> Iterator[subprocess.Popen[str]]:
     command = [sys.executable, "-m", "tests.properties.hostile_models", str(first), str(last)]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     try:
-        assert process.stdout is not None
-        yield iter(process.stdout)
+        yield process
     finally:
         process.kill()
         process.wait()
