@@ -6,14 +6,17 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from components.field import Column, Role, same
 from components.model import Model
+from components.suggestions import missing
 from game.documents import models
 from game.editor.frame import Frame
+from game.mods.loading import load_all
 from game.session import Session
 from systems.base import Commit, Integrator, Law, StepSystem, StopReason, System
 from systems.catalogue import all_systems
@@ -80,16 +83,24 @@ class Checked:
     cost: float
 
 
-def check_system(system: Callable[[], System], models: Iterable[Source] = MODELS) -> Checked:
+def check_system(
+    system: Callable[[], System] | str, models: Iterable[Source] = MODELS, *, mods: Iterable[str | Path] = ()
+) -> Checked:
     """Run a system, given by its class, on several models. Raises SystemCheckError, which names what is wrong.
 
     The system may change only the columns that it declares, must give finite numbers, the same ones every time and
     in any order of registration, and must be needed by one of the models.
 
+    mods: folders of mods that are loaded first, with whose components the models are read; a system of theirs, or
+        of mods loaded before, can then be given by its name. Raises ModError.
+
     >>> from systems.physics.system import Drag
     >>> check_system(Drag).name
     'physics.drag'
     """
+    load_all(mods)
+    if isinstance(system, str):
+        system = _class_of(system)
     drives = isinstance(system(), Integrator)
     needed = [source for source in models if (_drives if drives else _is_needed)(system, source)]
     name = system().name
@@ -101,6 +112,14 @@ def check_system(system: Callable[[], System], models: Iterable[Source] = MODELS
     check = _check_steps if isinstance(system(), StepSystem) else _check_frames
     cost = max(check(system, source) for source in needed)
     return Checked(name, len(needed), cost)
+
+
+def _class_of(name: str) -> Callable[[], System]:
+    """The class of a registered system; what it does is then not guarded."""
+    known: dict[str, System] = {made.name: made for made in (*all_systems(), *INTEGRATORS.values())}
+    if name not in known:
+        raise SystemCheckError(missing("systems", name, known))
+    return type(known[name])
 
 
 def _model(source: Source) -> Model:

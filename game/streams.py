@@ -46,9 +46,10 @@ def discard_output() -> None:
 
 
 def tell(sentence: str) -> None:
-    """Write a sentence for the person to standard error, without characters that do not print."""
+    """Write a sentence for the person, if there is one, to standard error, without characters that do not print."""
     with suppress(OSError):
-        print(*map(printable, f"pinjoint: {sentence}".splitlines()), sep="\n", file=sys.stderr)
+        if sentence:
+            print(*map(printable, f"pinjoint: {sentence}".splitlines()), sep="\n", file=sys.stderr)
 
 
 def encodable_json(text: str) -> str:

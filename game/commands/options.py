@@ -56,8 +56,7 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> Session:
     """A session with the model of `add_model`, and further systems. Raises ModelError, PathError, FieldError."""
     session = follow(Session.open(options.model, systems))
-    if session.notice:  # about data of mods that are not loaded, which would change the result
-        tell(session.notice)
+    tell(session.notice)  # about data of mods that are not loaded, which would change the result
     for override in options.set:
         apply_override(session.model, override)
     return session

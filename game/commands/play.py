@@ -43,9 +43,11 @@ def command(words: Sequence[str]) -> int:
             kept.enter_context(library.data_in(options.data))
             loaded.has_data = True
         if options.window:
+            tell(playing.check_mods(loaded))
             failures = in_window(models.load(loaded.source), file_of(loaded.source), lesson=loaded)
         else:
             session = follow(playing.session_of(loaded))
+            tell(session.notice)
             if not loaded.has_data:  # so that it ends alike however often it is played
                 kept.enter_context(library.data_apart())
             failures = playing.play(loaded, session)

@@ -44,7 +44,7 @@ class ModelFile:
     @classmethod
     def at(cls, path: Path) -> ModelFile:
         """The file at a path with its present stamp."""
-        return cls(path, path.stem, stamp_of(path))
+        return cls(path, models.name_of(path), stamp_of(path))
 
 
 def stamp_of(path: Path) -> Stamp:

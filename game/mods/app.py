@@ -6,7 +6,7 @@ import inspect
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -21,12 +21,13 @@ from components.view import Readout
 from game.commands import COMMANDS, Command
 from game.commands.arguments import BAD_INPUT, UsageError
 from game.documents import models
+from game.documents.mod_data import UPGRADES, VERSIONS, Upgrade
 from game.editor.actions import ACTIONS, WHILE_DRAWING, Action, action
 from game.editor.context import PANELS, Context
 from game.editor.gestures.drawing import TOOL_HINTS, TOOLS, drawing_of
 from game.editor.scenes import SCENES, Scene, all_scenes
 from game.mods.guard import guarded_history, guarded_integrator, guarded_scene, guarded_system
-from game.mods.mod import Mod, ModError
+from game.mods.mod import INCLUDED, Mod, ModError
 from game.paths import PathError
 from systems.base import Integrator, System
 from systems.catalogue import SYSTEMS
@@ -35,14 +36,16 @@ from systems.input.bindings import (
     LIVE,
     Binding,
     add_binding,
+    add_button,
     add_tool,
     key_named,
     remove_binding,
+    remove_button,
     remove_tool,
 )
 from systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
 from systems.render.icons import ADDED as ADDED_ICONS
-from systems.render.icons import Part
+from systems.render.icons import Part, check_icon
 from systems.render.sheet import ABOVE, BELOW, Layer
 
 T = TypeVar("T")
@@ -75,6 +78,7 @@ class App:
         except ValueError as error:
             raise ModError(str(error)) from None
         self._undo += [partial(delattr, component.of, name) for name in names]
+        self._keeps_data()
 
     def kind(self, kind: type[Handle]) -> None:
         """Add a kind of elements: a class with Fields, whose table every model has; see components.Handle.
@@ -87,6 +91,26 @@ class App:
         except ValueError as error:
             raise ModError(str(error)) from None
         self._undo.append(lambda: ADDED.pop(name))
+        self._keeps_data()
+
+    def upgrade(self, upgrade: Upgrade) -> None:
+        """Bring data of earlier versions of the mod in files up to date, such as Fields that were renamed.
+
+        upgrade(document, version) changes the document, what a model file says, before it is read. version: of the
+        mod that wrote the file, older than the present one; "" if the file does not say.
+        """
+        name, what = self.name, "upgrading its data in a file"
+
+        def upgraded(document: dict[str, Any], version: str) -> None:
+            self._mod.call(what, upgrade, document, version)
+            if self._mod.off:
+                wrote = version or "of an unknown version"
+                raise ValueError(
+                    f"the data of {name} {wrote} could not be upgraded; --no-mods opens it without the mod."
+                )
+
+        UPGRADES[name] = upgraded
+        self._undo.append(lambda: UPGRADES.pop(name))
 
     def tool(self, kind: type[Handle], *, key: str, title: str = "", icon: Sequence[Part] = ()) -> None:
         """Let a person draw elements of a kind with two points, from one to the other, by a key and a button.
@@ -105,9 +129,9 @@ class App:
             TOOLS[name].use
         )
         if icon:
-            ADDED_ICONS[name] = tuple(icon)
+            self._icon(name, icon)
             add_tool(name)
-            self._undo += [lambda: ADDED_ICONS.pop(name), lambda: remove_tool(name)]
+            self._undo.append(lambda: remove_tool(name))
 
     def shape(self, kind: type[Handle], shape: Shape) -> None:
         """Let particles collide with elements of a kind: `shape(table)` returns the Pieces that they are."""
@@ -181,10 +205,12 @@ class App:
         scenes: Sequence[str] = LIVE,
         title: str = "",
         while_drawing: bool = False,
+        icon: Sequence[Part] = (),
     ) -> Callable[[Action], Action]:
-        """Register a function(session, pixel) as a named action, and perhaps a key for it.
+        """Register a function(session, pixel) as a named action, and perhaps a key and a button for it.
 
-        Everything that it changes in the model is one step of undo, dropped whole if it raises.
+        Everything that it changes in the model is one step of undo, dropped whole if it raises. icon: of its button
+        in the toolbar of these scenes, as that of a tool; none, no button.
         """
         self._check_prefix("action", name)
 
@@ -195,6 +221,10 @@ class App:
             self._undo += [lambda: ACTIONS.pop(name), lambda: WHILE_DRAWING.discard(name)]
             if key:
                 self.key(key, name, scenes, title)
+            if icon:
+                self._icon(name, icon)
+                add_button(Binding(key, name, tuple(scenes), title or name))
+                self._undo.append(lambda: remove_button(name))
             return function
 
         return register
@@ -240,6 +270,20 @@ class App:
         """Show small panels beside the model: `read(session)` returns a Readout, several, or None."""
         checked = _readouts(read)
         self._add(PANELS, lambda session: self._mod.call("its panel", checked, session, otherwise=()))
+
+    def _icon(self, name: str, icon: Sequence[Part]) -> None:
+        try:
+            check_icon(icon)
+        except ValueError as error:
+            raise ModError(f"The icon of '{name}': {error}") from None
+        ADDED_ICONS[name] = tuple(icon)
+        self._undo.append(lambda: ADDED_ICONS.pop(name))
+
+    def _keeps_data(self) -> None:
+        """Note the version, which files state that hold data of the mod."""
+        if self._mod.source != INCLUDED and self.name not in VERSIONS:
+            VERSIONS[self.name] = self._mod.version
+            self._undo.append(lambda: VERSIONS.pop(self.name))
 
     # --- all or nothing ------------------------------------------------------------------------------------
 
