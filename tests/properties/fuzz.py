@@ -1,5 +1,7 @@
 """A person who does anything, in every scene: `python -m tests.properties.fuzz --actions 10000 --seed 1`.
 
+`python -m tests.properties.fuzz models --count 10000` tries models of any numbers in every command: hostile_models.py.
+
 What they do is recorded like any session, so that a failure can be played again by `pinjoint play`. After
 every action the models are sound; from time to time a file is saved and read, and the picture composed. At
 the end, undoing everything leads to the start bit for bit, doing it all again to the end, and the recording
@@ -11,8 +13,9 @@ from __future__ import annotations
 import argparse
 import os
 import random
+import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -29,6 +32,7 @@ from game.scripts.script import EMPTY, Script
 from systems.input.bindings import BINDINGS, LIVE, TEXT
 from systems.render.picture import compose
 from systems.render.theme import load_theme
+from tests.properties import hostile_models
 from tests.properties.soundness import Print, check_sound, contents
 
 START = ("isostatic", "hyperstatic", "collision_i", "hyperstatic_yield", EMPTY)
@@ -223,8 +227,15 @@ def _same(one: Print, other: Print) -> bool:
     return one.keys() == other.keys()
 
 
+FURTHER: dict[str, Callable[[Sequence[str]], None]] = {"models": hostile_models.main}
+
+
 def main(words: Sequence[str] | None = None) -> None:
-    """Fuzz in sessions of some hundred actions each."""
+    """Fuzz in sessions of some hundred actions each, or what the first word says."""
+    words = sys.argv[1:] if words is None else words
+    if words[:1] and words[0] in FURTHER:
+        FURTHER[words[0]](words[1:])
+        return
     parser = argparse.ArgumentParser(prog="python -m tests.properties.fuzz", description=__doc__)
     parser.add_argument("--actions", type=int, default=10_000, help="in all")
     parser.add_argument("--each", type=int, default=500, help="actions in one session")

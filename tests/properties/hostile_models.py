@@ -8,6 +8,7 @@ is ended where it does not end itself.
 
 from __future__ import annotations
 
+import argparse
 import io
 import json
 import math
@@ -19,16 +20,17 @@ import sys
 import tempfile
 import time
 import traceback
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
 from game import Session
-from game.commands.command_line import main
+from game.commands import command_line
 from game.documents import models
 from systems.render.picture import compose
 from systems.render.theme import load_theme
+from tests.properties.limits import interrupted_after
 
 PATIENCE = 10.0  # s of processor time, then Ctrl+C
 GRACE = 50.0  # s in which what is interrupted ends
@@ -248,19 +250,7 @@ def window(model: str, seed: int) -> int:
     return 0
 
 
-@contextmanager
-def interrupted_after(seconds: float) -> Iterator[None]:
-    """Ctrl+C after so much processor time, if this lasts as long."""
-    before = signal.signal(signal.SIGPROF, signal.default_int_handler)
-    signal.setitimer(signal.ITIMER_PROF, seconds)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0.0)
-        signal.signal(signal.SIGPROF, before)
-
-
-def attempt(seed: int, folder: Path) -> str:
+def attempt(seed: int, folder: Path, patience: float = PATIENCE) -> str:
     """What is wrong with the answer to a model and a command; "" if nothing is."""
     hostile, path = Hostile(seed), folder / "model.json"
     written = json.dumps(hostile.document())
@@ -268,8 +258,8 @@ def attempt(seed: int, folder: Path) -> str:
     words = hostile.words(folder, str(path))
     out, err = io.StringIO(), io.StringIO()
     try:
-        with redirect_stdout(out), redirect_stderr(err), interrupted_after(PATIENCE):
-            status = window(str(path), seed) if words[0] == "window" else main(words)
+        with redirect_stdout(out), redirect_stderr(err), interrupted_after(patience):
+            status = window(str(path), seed) if words[0] == "window" else command_line.main(words)
     except KeyboardInterrupt:
         status = 130
     except models.ModelError:
@@ -353,6 +343,15 @@ def _spent() -> int:
 
     used = resource.getrusage(resource.RUSAGE_SELF)
     return math.ceil(used.ru_utime + used.ru_stime)
+
+
+def main(words: Sequence[str]) -> None:
+    """Try so many models and commands."""
+    parser = argparse.ArgumentParser(prog="python -m tests.properties.fuzz models", description=__doc__)
+    parser.add_argument("--count", type=int, default=1000, help="of models, each with one command")
+    parser.add_argument("--seed", type=int, default=1, help="of the first")
+    options = parser.parse_args(words)
+    raise SystemExit(1 if explore(options.seed, options.count) else 0)
 
 
 if __name__ == "__main__":

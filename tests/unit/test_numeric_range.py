@@ -102,3 +102,25 @@ def test_curves_are_refused_without_a_warning_of_numpy(recwarn: pytest.WarningsR
     with pytest.raises(FieldError, match="Particle B: displacement is 1e\\+300"):
         session.load_path()
     assert not recwarn.list
+
+
+@pytest.mark.parametrize(("end", "computes"), [(1e9, True), (1e12, True), (1e20, False), (1e30, False)])
+def test_a_wall_so_far_that_nothing_can_be_told_to_touch_it_is_named(end: float, computes: bool) -> None:
+    ball = {"name": "ball", "position": [0, 0], "radius": 0.5}
+    wall = {"name": "ground", "start": [-end, -1.0], "end": [1.0, -1.0]}
+    session = Session.open(
+        {
+            "format": "pinjoint model",
+            "version": 1,
+            "particles": [ball],
+            "environment": {"acceleration": [0, -9.81]},
+            "components": {"walls.Wall": [wall]},
+        }
+    )
+    assert (session.run(time=0.5) == "time reached") == computes
+    if computes:
+        assert session.model.clock.collisions == 1
+        assert session.energy.kinetic == pytest.approx(0.92369, rel=1e-4)
+    else:
+        assert "one of its ends is" in session.message
+        assert session.time == 0.0
