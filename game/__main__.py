@@ -3,7 +3,7 @@
 import sys
 import warnings
 
-from game.interrupts import quietly_interrupted
+from game.interrupts import ended_with, quietly_interrupted
 
 
 def main() -> int:
@@ -16,7 +16,8 @@ def main() -> int:
         from game.streams import prepare_streams
     prepare_streams()
     with told():
-        return command_line.main()
+        status = command_line.main()
+    return ended_with(status)
 
 
 if __name__ == "__main__":

@@ -29,6 +29,7 @@ from systems.schedule import Schedule, ScheduleError
 STEPS = 40  # that step systems are run for
 FRAMES = 3  # that frame systems are run for
 FRAME = 1.0 / 60.0  # s
+NEARBY = 1e-5  # of a distance, over which the slope of a potential is taken
 
 # Supports, springs that yield, dampers, drag, a load that varies, and a free body.
 EVERYTHING: Mapping[str, Any] = {
@@ -129,9 +130,9 @@ def _model(source: Source) -> Model:
 def _is_needed(system: Callable[[], System], source: Source) -> bool:
     """Whether a model needs the system; checks that needs() changes nothing and always answers alike."""
     model = _model(source)
-    before = _columns(model)
+    before = columns_of(model)
     answers = {bool(system().needs(model)) for _ in range(2)}
-    _compare(system().name, before, _columns(model), set(), "asking it needs(model) changed")
+    compare(system().name, before, columns_of(model), set(), "asking it needs(model) changed")
     if len(answers) > 1:
         raise SystemCheckError(f"{system().name} answers needs(model) now with yes, now with no.")
     return answers.pop()
@@ -145,7 +146,7 @@ def _drives(system: Callable[[], System], source: Source) -> bool:
         return simulation.integrator is made
 
 
-def _columns(model: Model) -> dict[str, Column]:
+def columns_of(model: Model) -> dict[str, Column]:
     """Copies of all columns of document and state."""
     return {
         f"{table.name}.{field.name}": table.column(field.name).copy()
@@ -154,9 +155,10 @@ def _columns(model: Model) -> dict[str, Column]:
     }
 
 
-def _compare(
+def compare(
     name: str, before: Mapping[str, Column], after: Mapping[str, Column], allowed: set[str], did: str
 ) -> None:
+    """Raise SystemCheckError if other columns than those allowed, by name or table, differ."""
     for column, old in before.items():
         if column in allowed or column.partition(".")[0] in allowed or same(old, after[column]):
             continue
@@ -175,20 +177,49 @@ def _check_steps(system: Callable[[], System], source: Source) -> float:
     made = system()
     assert isinstance(made, StepSystem)
     first = _run(made, source, backwards=False)
-    before, after = _columns(_model(source)), _columns(first)
+    before, after = columns_of(_model(source)), columns_of(first)
     beside = (other for other in _all_with(made) if isinstance(other, StepSystem))
     allowed = {"particles.displacement", "particles.velocity", "particles.asleep", "clock", *made.adds}
     allowed |= {column for other in beside for column in other.writes}
     if isinstance(made, Integrator):
         allowed.add("settings.integrator")
-    _compare(made.name, before, after, allowed, "running it changed")
+    compare(made.name, before, after, allowed, "running it changed")
     _check_finite(made.name, first)
-    again = _columns(_run(system(), source, backwards=False))
+    again = columns_of(_run(system(), source, backwards=False))
     _check_alike(made.name, after, again, "run twice, it gives different")
-    turned = _columns(_run(system(), source, backwards=True))
+    turned = columns_of(_run(system(), source, backwards=True))
     _check_alike(made.name, after, turned, "registered in another order, it gives different")
+    if isinstance(made, Law) and made.each == "pairs":
+        _check_pairs(made, first)
     has_kernel = isinstance(made, Law | Commit)
     return 1e9 * KernelRows(first).seconds_per_call(bind(made, first)) if has_kernel else 0.0
+
+
+def _check_pairs(law: Law, model: Model) -> None:
+    """Check that a law of pairs gives opposite forces, and those of its potential."""
+    bound = bind(law, model)
+    force = KernelRows(model).of(bound)
+    if not np.allclose(force, -KernelRows(model, turned=True).of(bound), rtol=1e-9, atol=0.0):
+        raise SystemCheckError(
+            f"{law.name}: the forces on two particles are not opposite if the other one comes first; which of them does"
+            " must not matter."
+        )
+    if not law.potential:
+        return
+    energy, apart = bind(law, model, "potential"), np.hypot(*KernelRows(model).apart(bound).T)
+    for axis in range(2):
+        ahead, behind = (
+            KernelRows(model, moved=(side * NEARBY * (1 - axis), side * NEARBY * axis)).of(energy)[:, 0]
+            for side in (1.0, -1.0)
+        )
+        slope = (ahead - behind) / (2.0 * NEARBY * apart)
+        wrong = np.abs(slope - force[:, axis]) > 1e-4 * (np.hypot(*force.T) + np.abs(ahead) / apart)
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            raise SystemCheckError(
+                f"{law.name}: at a distance of {apart[row]:g} m its potential has the slope {slope[row]:g} kN, but the"
+                f" force on the first particle is {force[row, axis]:g} kN along the same axis."
+            )
 
 
 def _run(system: System, source: Source, *, backwards: bool) -> Model:
@@ -243,14 +274,14 @@ def _check_alike(name: str, one: Mapping[str, Column], other: Mapping[str, Colum
 
 def _check_frames(system: Callable[[], System], source: Source) -> float:
     made, session = system(), Session(_model(source))
-    before = _columns(session.model)
+    before = columns_of(session.model)
     seconds = _frames(made, session)
-    after = _columns(session.model)
-    _compare(made.name, before, after, set(made.writes) | set(made.adds), "a frame of it changed")
+    after = columns_of(session.model)
+    compare(made.name, before, after, set(made.writes) | set(made.adds), "a frame of it changed")
     _check_finite(made.name, session.model)
     other = Session(_model(source))
     _frames(system(), other)
-    _check_alike(made.name, after, _columns(other.model), "run twice, it gives different")
+    _check_alike(made.name, after, columns_of(other.model), "run twice, it gives different")
     return 1e9 * seconds / FRAMES / max(session.particles.count + session.rods.count, 1)
 
 

@@ -30,12 +30,14 @@ from game.editor.scenes import all_scenes, scene_systems
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
 from game.mods import load_all
+from game.mods.heeding import blamed_on_mod, heeding_mods
 from game.scripts.expectation import expect
 from systems.base import EVENT_INTERVAL, Phase, StopReason, System
 from systems.catalogue import SYSTEMS, step_systems
 from systems.edit import Refusal
 from systems.edit.pull import Pull
 from systems.input.bindings import FORMS, TEXT, action_for, key_named
+from systems.run.simulation import Simulation
 from systems.run.system import Time
 from systems.schedule import Plan, Schedule
 
@@ -138,15 +140,7 @@ class Session(Context):
         The fault of a mod, the question or refusal of the scene, why the run stopped, a warning or a notice, then the
         remarks on a run at rest.
         """
-        simulation = self.simulation
-        said = (
-            self.fault
-            or self.scenes.active.message
-            or (simulation.message if simulation.armed else "")  # else it is about what was before an edit
-            or simulation.step_size.warning
-            or simulation.note
-            or self.notice
-        )
+        said = self.fault or self.scenes.active.message or self.simulation.said or self.notice
         return " ".join([*filter(None, [said]), *(remark.message for remark in self.remarks)])
 
     # --- time --------------------------------------------------------------------------------------
@@ -161,34 +155,41 @@ class Session(Context):
     ) -> str:
         """Let time pass: until "rest" (at most `limit` s of simulated time), by `time` s, or by `steps`.
 
-        Returns "at rest", "time reached", "limit reached" or "diverged"; `message` says more. Raises ValueError.
+        Returns "at rest", "time reached", "limit reached" or "diverged"; `message` says more. Raises ValueError, and
+        ModError if a mod fails meanwhile: the run stops where it did, and a further one goes on without the mod.
         """
         if sum(option is not None for option in (until, time, steps)) != 1 or until not in (None, "rest"):
             raise ValueError('Say how far to run: until="rest", time=SECONDS or steps=NUMBER, one of them.')
         limit = _forward("limit", limit)
         time = None if time is None else _forward("time", time)
         steps = None if steps is None else int(_forward("steps", steps, whole=True))
-        self.act_in_scene()
-        document = self.document
-        simulation = document.simulation
-        document.note_beginning()
-        document.history.begin_run()
-        document.timeline.begin()
-        reached = "time reached"
-        with self.without_frames():
+        reached = "time reached" if until is None else "limit reached"
+        with self._time_passing() as simulation:
             if until is not None:
-                reached = "limit reached"
                 simulation.run_until_rest(self.time + limit)
             elif time is not None:
                 simulation.run_to(self.time + time)
             elif steps is not None:
                 simulation.advance(steps)
         if simulation.reason is not StopReason.REST and steps is None:
-            document.timeline.clear()  # the last step was a short one, which stepping back does not take again
-        if not self.time_passes:
-            document.history.end_run()
+            self.timeline.clear()  # the last step was a short one, which stepping back does not take again
         ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
         return ended.get(simulation.reason, reached)
+
+    @contextmanager
+    def _time_passing(self) -> Iterator[Simulation]:
+        """Time passes inside: it is one run in the log, which stops, by ModError, where a mod fails."""
+        self.act_in_scene()
+        document = self.document
+        document.note_beginning()
+        document.history.begin_run()
+        document.timeline.begin()
+        try:
+            with heeding_mods(document.simulation), self.without_frames():
+                yield document.simulation
+        finally:
+            if not self.time_passes:
+                document.history.end_run()
 
     def without_frames(self) -> AbstractContextManager[None]:
         """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""
@@ -375,8 +376,12 @@ class Session(Context):
     def frame(self, elapsed: float) -> Frame:
         """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
         frame = Frame(self, _forward("elapsed", elapsed))
-        for phase in Phase:
-            self.schedule.run(phase, frame)
+        try:
+            for phase in Phase:
+                self.schedule.run(phase, frame)
+        except Exception as error:
+            if not blamed_on_mod(error):
+                raise
         return frame
 
     @property

@@ -224,12 +224,11 @@ class Schedule:
             and self.acts(system, scene, model)
         ]
 
-    def left_out_of_statics(self, model: Model) -> str:
-        """The sentence that names the laws of mods that a model needs and statics does not know; "" if there are none."""
+    def left_out_of_statics(self, model: Model) -> list[str]:
+        """The laws of mods, by name, that a model needs and statics does not know."""
         plan = self.step_plan("simulation", model)
         laws = (law for law in plan if isinstance(law, Law) and law.mod is not None)
-        names = ", ".join(law.name for law in laws if law.each != "loads")
-        return f"Settling leaves out the laws of mods: {names}." if names else ""
+        return [law.name for law in laws if law.each != "loads"]
 
     def named(self, names: Iterable[str]) -> list[StepSystem]:
         """The step systems with these names, in order. Raises KeyError if one is not there."""

@@ -76,12 +76,12 @@ class Autosave(System):
         for path in self._folder.glob("*.lock"):
             if path.stem == self._id:
                 continue
-            lock = lock_file(path)
-            if lock is not None:
-                self._locks.append(lock)
+            with contextlib.suppress(OSError):  # such as a folder of that name
+                lock = lock_file(path)
+                self._locks += [lock] if lock is not None else []
         ours = {Path(lock.name).stem for lock in self._locks}
-        files = [p for p in self._folder.glob("[!.]*.json") if p.name.partition(".")[0] in ours]
-        return sorted(files, key=lambda path: path.stat().st_mtime, reverse=True)
+        files = self._folder.glob("[!.]*.json")
+        return library.newest_first(path for path in files if path.name.partition(".")[0] in ours)
 
     def left(self) -> list[Path]:
         """The recovery files that a crash left behind."""
@@ -97,7 +97,7 @@ class Autosave(System):
     def discard(self) -> None:
         """Delete the recovery files that a crash left behind."""
         for path in self._left:
-            path.unlink(missing_ok=True)
+            _delete(path)
         self._left = []
 
     # --- writing -------------------------------------------------------------------------------------
@@ -129,7 +129,9 @@ class Autosave(System):
 
     def _put(self, path: Path, still: _Still) -> None:
         began = time.monotonic()
-        with contextlib.suppress(models.ModelError):  # numbers that no file can hold; saving says which
+        with contextlib.suppress(
+            models.ModelError, ValueError
+        ):  # what no file can hold; saving says what it is
             content = msgspec.json.encode(gathered(cast(Model, still)))
             try:
                 models.replace(path, content)
@@ -141,7 +143,7 @@ class Autosave(System):
     def _remove(self, opened: OpenDocument) -> None:
         del self._written[opened]
         if opened.recovery is not None:
-            opened.recovery.unlink(missing_ok=True)
+            _delete(opened.recovery)
             opened.recovery = None
 
     def close(self, open_ones: Iterable[OpenDocument]) -> None:
@@ -159,7 +161,13 @@ class Autosave(System):
             path = Path(lock.name)
             lock.close()
             if not any(self._folder.glob(f"{path.stem}.*.json")):
-                path.unlink(missing_ok=True)
+                _delete(path)
+
+
+def _delete(path: Path) -> None:
+    """Delete a file, where that is possible."""
+    with contextlib.suppress(OSError):
+        path.unlink(missing_ok=True)
 
 
 class _Still:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import time
 import unicodedata
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -90,9 +90,17 @@ def path_of(name: str) -> Path:
 def saved() -> list[Path]:
     """The files of the saved models, the newest first; none if the folder cannot be read."""
     try:
-        found = [(path.stat().st_mtime, path) for path in models_folder().glob("[!.]*.json")]
+        return newest_first(models_folder().glob("[!.]*.json"))
     except OSError:
         return []
+
+
+def newest_first(paths: Iterable[Path]) -> list[Path]:
+    """The paths at which there is something, by the time of the last change."""
+    found = []
+    for path in paths:
+        with suppress(OSError):  # such as a link that leads nowhere
+            found.append((path.stat().st_mtime, path))
     return [path for _, path in sorted(found, reverse=True)]
 
 

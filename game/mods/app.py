@@ -8,30 +8,33 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-import numpy as np
-
 from components.component import Component, add_component
-from components.field import FieldError, Vector
 from components.handle import Handle
 from components.kind import add_kind
 from components.load import HISTORIES, HistoryKind, register_history
 from components.model import ADDED
-from components.obstacles import SHAPES, Pieces, Shape, check_pieces
-from components.view import Readout
+from components.obstacles import SHAPES, Shape
+from components.table import fields_of
 from game.commands import COMMANDS, Command
-from game.commands.arguments import BAD_INPUT, UsageError
 from game.documents import models
 from game.documents.mod_data import UPGRADES, VERSIONS, Upgrade
 from game.editor.actions import ACTIONS, WHILE_DRAWING, Action, action
-from game.editor.context import PANELS, Context
+from game.editor.context import PANELS
 from game.editor.gestures.drawing import TOOL_HINTS, TOOLS, drawing_of
 from game.editor.scenes import SCENES, Scene, all_scenes
-from game.mods.guard import guarded_history, guarded_integrator, guarded_scene, guarded_system
+from game.mods.declared import checks_arguments
+from game.mods.guard import guard_checkers, guarded_history, guarded_integrator, guarded_maker, guarded_shape
+from game.mods.interface import (
+    Panel,
+    guarded_action,
+    guarded_command,
+    guarded_layer,
+    guarded_panel,
+    guarded_scene,
+)
 from game.mods.mod import INCLUDED, Mod, ModError
-from game.paths import PathError
 from systems.base import Integrator, System
 from systems.catalogue import SYSTEMS
-from systems.edit import Refusal
 from systems.input.bindings import (
     LIVE,
     Binding,
@@ -49,10 +52,9 @@ from systems.render.icons import Part, check_icon
 from systems.render.sheet import ABOVE, BELOW, Layer
 
 T = TypeVar("T")
-MISTAKES = (UsageError, models.ModelError, FieldError, PathError)  # of a person at the command line
-Panel = Callable[[Context], Readout | Sequence[Readout] | None]
 
 
+@checks_arguments
 class App:
     """The program, as a mod's `plugin(app)` sees it: one method for each kind of extension.
 
@@ -73,6 +75,7 @@ class App:
 
     def component(self, component: type[Component]) -> None:
         """Add the Fields of a component to all elements of its kind; see components.Component."""
+        guard_checkers(self._mod, fields_of(component))
         try:
             names = add_component(self.name, component)
         except ValueError as error:
@@ -86,6 +89,7 @@ class App:
         Files keep them under "components": {"<mod>.<Kind>": […]}. Those with `points` can be picked, dragged,
         copied and selected in a box like others; a layer of the mod draws them.
         """
+        guard_checkers(self._mod, fields_of(kind))
         try:
             name = add_kind(self.name, kind)
         except ValueError as error:
@@ -137,20 +141,14 @@ class App:
         """Let particles collide with elements of a kind: `shape(table)` returns the Pieces that they are."""
         if kind in SHAPES:
             raise ModError(f"What {kind.table} collide as is registered already.")
-        mod, nothing = self._mod, Pieces(np.zeros((0, 2, 2)), np.zeros(0, dtype=np.intp))
-        source = getattr(shape, "__name__", "its function")
-        SHAPES[kind] = lambda table: mod.call(
-            f"the shape of {kind.table}",
-            lambda: check_pieces(table, shape(table), source),
-            otherwise=nothing,
-        )
+        SHAPES[kind] = guarded_shape(self._mod, kind, shape)
         self._undo.append(lambda: SHAPES.pop(kind))
 
     def system(self, system: Callable[[], System]) -> None:
         """Add a frame system, a law or a commit, by its class: every session makes one of its own."""
         name = getattr(system, "name", "")
         self._check_prefix("system", name or getattr(system, "__name__", "?"))
-        self._add(SYSTEMS, lambda: guarded_system(self._mod, system()))
+        self._add(SYSTEMS, guarded_maker(self._mod, system))
 
     def integrator(self, integrator: type[Integrator]) -> None:
         """Add an integrator that models, the command line and the properties can choose."""
@@ -187,6 +185,7 @@ class App:
         """Add a mode. Its `sources` are the scenes from which it can be reached; "pause" must be a target."""
         if scene.name in {other.name for other in all_scenes()}:
             raise ModError(f"There is a scene '{scene.name}' already; call this one something else.")
+        made = guarded_scene(self._mod, scene)
         if "pause" not in scene.targets:
             raise ModError(f"From the scene '{scene.name}' one must be able to go to pause; add it to targets.")
         if hasattr(scene, "advance"):
@@ -194,8 +193,7 @@ class App:
                 f"The scene '{scene.name}' has a method 'advance', which nothing calls any more; write a System with"
                 f" phase = Phase.STEP and scenes = ('{scene.name}',), and register it by app.system."
             )
-        guarded: Callable[[], Scene] = guarded_scene(self._mod, scene)
-        self._add(SCENES, guarded)
+        self._add(SCENES, made)
 
     def action(
         self,
@@ -217,7 +215,7 @@ class App:
         def register(function: Action) -> Action:
             if name in ACTIONS:
                 raise ModError(f"There is an action '{name}' already; call this one something else.")
-            action(name, while_drawing=while_drawing)(self._guarded_action(name, function))
+            action(name, while_drawing=while_drawing)(guarded_action(self._mod, name, function))
             self._undo += [lambda: ACTIONS.pop(name), lambda: WHILE_DRAWING.discard(name)]
             if key:
                 self.key(key, name, scenes, title)
@@ -253,23 +251,18 @@ class App:
         """
         if name in COMMANDS:
             raise ModError(f"There is a command '{name}' already; call this one something else.")
-        what, call = f"the command '{name}'", self._mod.call
-        COMMANDS[name] = Command(
-            lambda words: int(call(what, run, list(words), otherwise=BAD_INPUT, mistakes=MISTAKES)), about
-        )
+        COMMANDS[name] = Command(guarded_command(self._mod, name, run), about)
         self._undo.append(lambda: COMMANDS.pop(name))
 
     # --- what is seen ------------------------------------------------------------------------------------
 
     def layer(self, draw: Layer, *, below: bool = False) -> None:
         """Draw marks with every picture of a model, above its elements or below them; see systems/render/marks.py."""
-        drawn, layers = lambda sheet: list(draw(sheet)), BELOW if below else ABOVE
-        self._add(layers, lambda sheet: self._mod.call("its drawing layer", drawn, sheet, otherwise=[]))
+        self._add(BELOW if below else ABOVE, guarded_layer(self._mod, draw))
 
     def panel(self, read: Panel) -> None:
         """Show small panels beside the model: `read(session)` returns a Readout, several, or None."""
-        checked = _readouts(read)
-        self._add(PANELS, lambda session: self._mod.call("its panel", checked, session, otherwise=()))
+        self._add(PANELS, guarded_panel(self._mod, read))
 
     def _icon(self, name: str, icon: Sequence[Part]) -> None:
         try:
@@ -300,22 +293,6 @@ class App:
         if not name.startswith(f"{self.name}."):
             raise ModError(f"The {what} '{name}' must be named after its mod, such as '{self.name}.{name}'.")
 
-    def _guarded_action(self, name: str, function: Action) -> Action:
-        mod = self._mod
-
-        def act(context: Context, pixel: Vector) -> None:
-            if mod.off:
-                raise Refusal(f"The mod '{mod.name}' is switched off: {mod.problem}")
-            try:
-                with context.model.transaction(name):
-                    function(context, pixel)
-            except (Refusal, FieldError):
-                raise
-            except Exception as error:  # any error of code that is not ours
-                mod.fail(f"the action '{name}'", error)
-
-        return act
-
 
 def _checked_key(key: str) -> str:
     """The name of a key in the bindings. Raises ModError."""
@@ -326,17 +303,6 @@ def _checked_key(key: str) -> str:
     if "shift" in key.lower() and "shift" not in named:
         raise ModError(f"The key '{key}' is the same as '{named}'; take that, or 'ctrl+shift+{named}'.")
     return named
-
-
-def _readouts(read: Panel) -> Callable[[Context], Sequence[Readout]]:
-    def readouts(context: Context) -> Sequence[Readout]:
-        made = read(context)
-        several = () if made is None else [made] if isinstance(made, Readout) else made
-        if isinstance(several, str) or not all(isinstance(readout, Readout) for readout in several):
-            raise TypeError(f"{getattr(read, '__name__', 'a panel')} returned {made!r}, not a Readout or None")
-        return several
-
-    return readouts
 
 
 def check_plugin(plugin: object) -> Callable[[App], object]:

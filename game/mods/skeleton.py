@@ -5,6 +5,7 @@ from __future__ import annotations
 import keyword
 from pathlib import Path
 
+from game.mods.finding import origin_of_module
 from game.mods.mod import MANIFEST, ModError
 
 _MANIFEST = """\
@@ -17,9 +18,8 @@ requires = ["pinjoint>={version}"]
 _CODE = '''\
 """A steady wind on all particles: a law, the fact that it needs, and what a person sees of it."""
 
-from components import Component, Environment, Field, Readout
+from game.api import Component, Environment, Field, Law, Readout
 from numba import njit
-from systems.base import Law
 
 
 class Air(Component):
@@ -54,7 +54,7 @@ _TEST = '''\
 
 from pathlib import Path
 
-from game import Session
+from game.api import Session
 
 HERE = Path(__file__).parent
 
@@ -76,6 +76,8 @@ def write_skeleton(name: str, parent: Path, version: str) -> list[Path]:
     if not name.isidentifier() or keyword.iskeyword(name) or "__" in name:
         raise ModError(f"The name '{name}' must be like a Python name, such as 'wind'.")
     folder = parent / name
+    if not folder.exists() and origin_of_module(name) is not None:
+        raise ModError(f"There is a Python module '{name}' already; give the mod another name.")
     try:
         folder.mkdir(parents=True)
         paths = []

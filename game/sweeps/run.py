@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import time
 from collections import Counter
@@ -115,8 +116,11 @@ class Journal:
 
     def _outcomes(self, line: bytes) -> list[Outcome]:
         """What a line says; nothing if it is damaged, so that its variants are computed anew."""
+        seal, _, content = line.partition(b" ")
+        if seal != _seal(content):
+            return []
         try:
-            found = msgspec.json.decode(line, type=list[Outcome])
+            found = msgspec.json.decode(content, type=list[Outcome])
         except (ValueError, RecursionError):
             return []
         return found if all(map(self._plan.allows, found)) else []
@@ -125,13 +129,19 @@ class Journal:
         """Keep what some variants came to; it survives a kill from now on."""
         if self.path is not None:
             with open(self.path, "ab") as file:
-                _append(file, msgspec.json.encode(outcomes))
+                content = msgspec.json.encode(outcomes)
+                _append(file, _seal(content) + b" " + content)
         self.finished.update(outcomes)
 
     def remove(self) -> None:
         """The results are written; nothing is left to keep."""
         if self.path is not None:
             self.path.unlink(missing_ok=True)
+
+
+def _seal(content: bytes) -> bytes:
+    """Tells whether a line is as it was written: in a damaged one another digit would go unnoticed."""
+    return hashlib.sha256(content).hexdigest()[:16].encode()
 
 
 def _append(file: BinaryIO, line: bytes) -> None:

@@ -16,6 +16,7 @@ from components.field import Role
 from components.model import Model
 from systems.base import Commit, Event, Integrator, Law, StepSystem
 from systems.entries import ACCOUNTS
+from systems.program.chance import source_of_chance
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
 PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for
@@ -32,6 +33,8 @@ PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called f
 PROVIDED = {name for names in PROVIDED_TO.values() for name in names}
 TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
 
+KERNELS = ("kernel", "branch", "margin", "potential")  # of a system, as its attributes
+
 WIDEST_ROW = 64  # numbers of an array that a kernel gets, as a tuple; more would take long to compile
 
 _KINDS = ("rods", "particles", "pairs", "loads")
@@ -40,6 +43,8 @@ _RESULTS = {
     "particles": "a pair, the force (fx, fy) in kN",
     "pairs": "a pair, the force (fx, fy) on the first particle in kN",
     "potential": "one number, the energy of two particles (kN·m)",
+    "branch": "one number, the branch that the rod is on",
+    "margin": "one number, positive while the rod stays on its branch",
     "loads": "one number, the factor of the load",
     "commit": "a pair, the new value of the column and the energy dissipated (kN·m)",
     "event of rods": "one number, whose sign counts",
@@ -185,6 +190,10 @@ def bind(system: StepSystem, model: Model, kernel: str = "kernel") -> Bound:
     except ProgramError as error:
         error.system = system
         raise
+    except Exception as error:
+        if system.mod is None:
+            raise
+        raise ProgramError(f"{system.name} cannot be read: {type(error).__name__}: {error}.", system) from error
 
 
 def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
@@ -193,6 +202,11 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     plain = getattr(function, "py_func", None)
     if plain is None:
         raise ProgramError(f"The kernel of {system.name} is not compiled; put `@njit` of numba above it.")
+    if system.mod is not None and (chance := source_of_chance(function)):
+        raise ProgramError(
+            f"The kernel of {system.name} draws random numbers ({chance}), so that no run could be repeated; draw"
+            " them before, with a seed, and hand them over by `arrays`."
+        )
     parameters = tuple(inspect.signature(plain).parameters)
     arrays = {name: read_only(array) for name, array in system.arrays(model).items()}
     bound = Bound(system, function, parameters, arrays, kernel, _cutoff(system, model))
@@ -233,9 +247,8 @@ def shape_given(b: Bound, parameter: str, model: Model) -> tuple[int, ...]:
     """The shape of what a kernel gets for a parameter: of a number (), of a vector, such as `apart`, (2,)."""
     if parameter in PROVIDED:
         return (2,) if parameter in ("apart", "drift") else ()
-    single, shape = False, ()
     if parameter in b.arrays:
-        shape = b.arrays[parameter].shape[1:]
+        single, shape = False, b.arrays[parameter].shape[1:]
     else:
         table, _, column = parameter.partition("_")
         single, shape = model.tables[table].kind.single, model.tables[table].fields[column].shape
@@ -290,7 +303,7 @@ def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., A
     module, _, attribute = kernel.partition(":")
     try:
         found = getattr(importlib.import_module(module), attribute)
-    except (ImportError, AttributeError, ValueError) as error:
+    except (Exception, SystemExit) as error:  # of the module, which may be a mod's
         raise ProgramError(
             f"The kernel '{kernel}' of {owner.name} cannot be found: {error}; write it like"
             " 'package.module:function'.",
@@ -303,7 +316,8 @@ def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
     """Raise ProgramError unless the parameter is provided, an array of the system or a column that it declares."""
     rows, name = b.rows, b.system.name
     provided = PROVIDED_TO[b.purpose]
-    if parameter in ("time", "dt", "drift", "particles_velocity") and getattr(b.system, "potential", ""):
+    conservative = isinstance(b.system, Law) and b.system.potential
+    if parameter in ("time", "dt", "drift", "particles_velocity") and conservative:
         raise ProgramError(
             f"{name} has a potential, so that its force depends on places alone, but takes '{parameter}'; drop one."
         )
@@ -375,7 +389,7 @@ def problem_of(b: Bound, model: Model) -> str:
 
 def _brief(failure: Exception) -> str:
     lines = [line.strip() for line in str(failure).splitlines() if line.strip()]
-    return f"{'; '.join(lines[1:4])}."
+    return f"{'; '.join(lines[1:4] or lines).rstrip('.')}."
 
 
 def _result_type(b: Bound, model: Model) -> Any:

@@ -25,6 +25,9 @@ FIRST_SHARE = 0.1  # of 1/ω, the step at which error control begins
 FREE_STEP = 1e-3  # s, where nothing limits the step
 DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
 
+TOLD_SHARE = 0.1  # of all energy ever supplied; smaller: warns of lattices by automatic steps of Verlet
+TOLD_FROM = 1e-24  # J, below which nothing is told from round-off
+
 ERROR_CONTROL = (
     "step_error",
     "largest_displacement",
@@ -140,6 +143,24 @@ def is_sleep_review(steps: Any) -> Any:
 def is_before(time: Any, target: float) -> Any:
     """True where a time (s) is not yet the target (s), by more than round-off."""
     return target - time > 4.0 * math.ulp(target)
+
+
+def energy_is_off(imbalance: Any, scale: Any) -> Any:
+    """True where steps lost or created so much energy (J) that a person is told; numbers or arrays.
+
+    imbalance, scale: largest_imbalance and energy_scale of the clock.
+    """
+    return abs(imbalance) > TOLD_SHARE * scale + TOLD_FROM
+
+
+def energy_warning(imbalance: float, scale: float) -> str:
+    """The sentence that steps lost (positive) or created this energy (J); "" if it is a small part of all supplied."""
+    if not energy_is_off(imbalance, scale):
+        return ""
+    share = abs(imbalance) / max(scale, TOLD_FROM)
+    amount = f"{100.0 * share:.3g} % of" if share < 10.0 else f"{share:.3g} times"
+    did = "lost" if imbalance > 0.0 else "created"
+    return f"The steps {did} {amount} the energy that was supplied: the results may be as wrong."
 
 
 def residual(measures: Column) -> Column:

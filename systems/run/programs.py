@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 from components.model import Model
 from components.rod import is_warm
+from components.settings import AUTOMATIC
 from systems.base import Integrator, Phase, StepSystem
 from systems.collision.free.discs import Discs
 from systems.collision.free.flight import Flight
@@ -95,11 +96,29 @@ class Programs:
     @property
     def _chosen(self) -> Integrator:
         """The integrator that the settings name; the automatic choice if they name none, or one that does not act here."""
-        named = INTEGRATORS.get(self._model.settings.integrator)
-        off = named is None or (named.mod is not None and named.mod.off)
-        if named is None or off or not self._schedule.is_active(named, self.scene):
-            return INTEGRATORS[choose(self._model)]
-        return named
+        name = self._model.settings.integrator
+        return INTEGRATORS[choose(self._model) if name == AUTOMATIC or self._refused else name]
+
+    @property
+    def _refused(self) -> str:
+        """Why the integrator that the settings name does not act here; "" if it does, or if they name none."""
+        name = self._model.settings.integrator
+        if name == AUTOMATIC:
+            return ""
+        named = INTEGRATORS.get(name)
+        if named is None:
+            return "of a mod that is not loaded"
+        if named.mod is not None and named.mod.off:
+            return "switched off with its mod"
+        return "" if self._schedule.is_active(named, self.scene) else self._schedule.inactive(named, self.scene)
+
+    @property
+    def note(self) -> str:
+        """What a person should know of the choice of the integrator; "" if it is the one that the settings name."""
+        refused = self._refused
+        if not refused or self.integrator.exact:
+            return ""
+        return f"The integrator {self._model.settings.integrator} is {refused}: {self.integrator.key} acts instead."
 
     @property
     def ready(self) -> bool:
@@ -157,9 +176,21 @@ class Programs:
 
     def _make(self, plan: list[StepSystem]) -> Dynamics:
         if not self.integrator.exact:
-            return make_program(self._model, plan, self.integrator)
+            return self._made_by(self.integrator, plan)
         hand = next((system for system in plan if isinstance(system, Pull)), None)
         return Flight(self._model, self._impacts, hand)
+
+    def _made_by(self, integrator: Integrator, plan: list[StepSystem]) -> Program:
+        """The program of a plan with an integrator. Raises ProgramError for whatever is wrong with that of a mod."""
+        try:
+            return make_program(self._model, plan, integrator)
+        except ProgramError:
+            raise
+        except Exception as error:
+            if integrator.mod is None:
+                raise
+            said = f"{type(error).__name__}: {error}"
+            raise ProgramError(f"{integrator.name} makes no step program: {said}.", integrator) from error
 
     def _key(self, plan: list[StepSystem]) -> Key:
         warmth = ("rods.misfit",) if is_warm(self._model) else ()

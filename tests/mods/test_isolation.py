@@ -189,8 +189,12 @@ def test_what_a_system_does_by_commands_is_one_step_of_undo(session: Any) -> Non
 )  # fmt: skip
 def test_a_law_that_spoils_the_step_program(session: Any, kernel: str, more: str, said: str) -> None:
     made, before = session(LAW.format(kernel=kernel, more=more))
-    assert made.run(time=0.01) == "time reached"
+    with pytest.raises(
+        mods.ModError, match=r"The mod 'apple' was switched off: .* The run stopped at t = 0 s\."
+    ):
+        made.run(time=0.01)
     check_switched_off(made, before, said)
+    assert made.run(time=0.01) == "time reached"
     alone = Session.open(TRUSS)
     mods.unload(mods.MODS[-1:])
     alone = Session.open(TRUSS)
@@ -210,8 +214,11 @@ def bad(particles_position, particles_velocity, time):
     made, _ = session(LAW.format(kernel=kernel, more=more))
     made.settings.integrator = integrator
     before = document(made.model)
-    assert made.run(time=0.01) == "time reached"
+    with pytest.raises(mods.ModError, match="The run stopped at t = "):
+        made.run(time=0.01)
+    assert 0.0 <= made.time < 0.006
     check_switched_off(made, before, "apple.bad gave nan for particle A (apple/__init__.py, line 7)")
+    assert made.run(time=0.01 - made.time) == "time reached"  # without the mod
 
 
 HISTORY = """
@@ -240,7 +247,8 @@ def test_a_history_that_fails(session: Any, body: str, ends: str, said: str) -> 
     session_with = {**TRUSS, "loads": [{"on": "C", "force": [1.0, 0.0], "history": {"kind": "apple"}}]}
     made.open_here(session_with)
     before = document(made.model)
-    assert made.run(time=0.01) == "time reached"
+    with pytest.raises(mods.ModError, match="The mod 'apple' was switched off"):
+        made.run(time=0.01)
     check_switched_off(made, before, said)
 
 
@@ -260,7 +268,7 @@ def test_an_action_that_fails_changes_nothing(session: Any) -> None:
 
 def test_a_panel_that_fails(session: Any) -> None:
     made, before = session(OTHER.format("app.panel(lambda session: 'text')"))
-    check_switched_off(made, before, "returned 'text', not a Readout or None")
+    check_switched_off(made, before, "returned is 'text'; it must be one of Readout, Sequence[Readout], None")
 
 
 def test_a_layer_that_fails(session: Any) -> None:
@@ -343,7 +351,8 @@ def test_a_kernel_that_returns_no_numbers_is_told_in_one_sentence(session: Any, 
     made, _ = session(
         LAW.format(kernel=f"@njit\ndef bad(particles_position):\n    {result or 'pass'}", more="")
     )
-    made.run(steps=1)
+    with pytest.raises(mods.ModError):
+        made.run(steps=1)
     assert "it must return a pair, the force (fx, fy) in kN" in made.fault
     assert len(made.fault) < 300
 
@@ -417,3 +426,40 @@ def test_where_a_run_diverges_the_laws_of_mods_are_named(write_mod: Write) -> No
     session = Session.open(PULLED, mods=[write_mod("apple", law)])
     assert session.run(time=1.0) == "diverged"
     assert "Laws of mods act in it: apple.harder; see whether it runs without them." in session.message
+
+
+PAIRS = """
+from numba import njit
+from systems.base import Law
+
+class Pull(Law):
+    name = "apple.pull"
+    each = "pairs"
+    kernel = njit(error_model="numpy")(lambda apart, particles_mass: ({force}, 0.0))
+    reads = ("particles.mass",)
+
+    def cutoff(self, model):
+        return {cutoff}
+
+def plugin(app):
+    app.system(Pull)
+"""
+
+
+@pytest.mark.parametrize(
+    ("force", "cutoff", "said"),
+    [
+        ("0.0", "1 / 0", "cutoff of 'apple.pull' failed: ZeroDivisionError"),
+        ("0.0", "'far'", "cutoff of 'apple.pull' failed: TypeError: what it returned is 'far'"),
+        ("0.0", "-1.0", "The cutoff of apple.pull is -1.0; give a distance above 0 m"),
+        ("1.0 / (apart[0] - apart[0])", "5.0", "gave inf for particle A and particle B"),
+        ("apart", "5.0", "must return a pair, the force (fx, fy) on the first particle"),
+    ],
+)
+def test_a_law_of_pairs_that_fails_is_named(session: Any, force: str, cutoff: str, said: str) -> None:
+    made, _ = session(PAIRS.format(force=force, cutoff=cutoff))
+    made.press("space")
+    made.frame(0.01)
+    made.press("space")
+    made.run(time=0.001)
+    assert said in mods.MODS[-1].problem

@@ -8,7 +8,6 @@ is ended where it does not end itself.
 
 from __future__ import annotations
 
-import argparse
 import io
 import json
 import math
@@ -20,7 +19,7 @@ import sys
 import tempfile
 import time
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
@@ -343,15 +342,6 @@ def _spent() -> int:
 
     used = resource.getrusage(resource.RUSAGE_SELF)
     return math.ceil(used.ru_utime + used.ru_stime)
-
-
-def main(words: Sequence[str]) -> None:
-    """Try so many models and commands."""
-    parser = argparse.ArgumentParser(prog="python -m tests.properties.fuzz models", description=__doc__)
-    parser.add_argument("--count", type=int, default=1000, help="of models, each with one command")
-    parser.add_argument("--seed", type=int, default=1, help="of the first")
-    options = parser.parse_args(words)
-    raise SystemExit(1 if explore(options.seed, options.count) else 0)
 
 
 if __name__ == "__main__":

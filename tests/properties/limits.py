@@ -4,6 +4,8 @@ import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from game.interrupts import Interrupt
+
 
 class Hang(AssertionError):
     """Something went on for longer than anything may."""
@@ -23,7 +25,11 @@ def within(seconds: float, what: str = "this") -> Iterator[None]:
 @contextmanager
 def interrupted_after(seconds: float) -> Iterator[None]:
     """Ctrl+C in whatever takes more processor time (s) than that; not where the system has no such timers."""
-    with _after(seconds, signal.default_int_handler):
+
+    def handle(*_: object) -> None:
+        raise Interrupt
+
+    with _after(seconds, handle):
         yield
 
 

@@ -15,6 +15,9 @@ from components.model import Model
 from game.commands.output import ResultError
 from game.commands.progress import Watch
 from game.commands.reports.results import Run, State, state
+from game.documents.open_documents import without_mods
+from game.mods.heeding import check_mods, heeding_mods
+from game.mods.mod import ModError
 from game.paths import ENERGIES
 from game.session import DEFAULT_LIMIT, Session
 from systems.base import StopReason
@@ -26,6 +29,7 @@ if TYPE_CHECKING:  # they import scipy
     from systems.statics.settle import StaticState
 
 INTERRUPTED = "interrupted"  # the status of a run that Ctrl+C ended
+MOD_FAILED = "mod failed"
 FOUND = ("equilibrium", "at rest", "time reached")  # statuses of a run that found what was asked for
 
 
@@ -47,7 +51,15 @@ class Analysis:
     measures_error: bool = False
 
     def run(self, simulation: Simulation, name: str) -> Run:
-        """The result of the analysis, in which `name` is the model. Raises AnalysisError, ResultError, FieldError."""
+        """The result of the analysis, in which `name` is the model.
+
+        Raises AnalysisError, ResultError, FieldError, and ModError if a mod has failed or fails meanwhile.
+        """
+        check_mods()
+        with heeding_mods(simulation):
+            return self._found(simulation, name)
+
+    def _found(self, simulation: Simulation, name: str) -> Run:
         if self.load_factors is not None:
             return run_static(simulation, name, self.load_factors)
         if self.times is not None:
@@ -56,15 +68,17 @@ class Analysis:
 
     def run_in(self, session: Session, name: str) -> Run:
         """The same in a session, which adds remarks of theory on a run through time and its measured error."""
-        if self.load_factors is not None:
-            return self.run(session.simulation, name)
-        session.run(steps=0)  # records the beginning, for theory beside the run
-        with session.without_frames(), Watch(session.simulation) as watch:
-            try:
+        try:
+            if self.load_factors is not None:
+                return self.run(session.simulation, name)
+            session.run(steps=0)  # records the beginning, for theory beside the run
+            with session.without_frames(), Watch(session.simulation) as watch:
                 found = self.run(session.simulation, name)
-            except Interrupted as interrupted:
-                watch.take_back()
-                return _interrupted(session.simulation, name, interrupted.states)
+        except Interrupted as interrupted:
+            watch.take_back()
+            return _interrupted(session.simulation, name, interrupted.states)
+        except ModError as failure:
+            return _failed(session.simulation, name, failure)
         happened = [asdict(event) for event in session.simulation.events]
         error = session.document.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
         return {
@@ -99,6 +113,11 @@ def _interrupted(simulation: Simulation, name: str, states: list[State]) -> Run:
     found = _run(simulation, name, INTERRUPTED, states)
     reached = f"Interrupted at t = {found['time']:.9g} s, after {found['steps']} steps."
     return {**found, "message": f"{reached} {found['message']}".rstrip(), "error_estimate": None}
+
+
+def _failed(simulation: Simulation, name: str, error: ModError) -> Run:
+    """The result of a run that stopped because a mod failed, with the state in which it did."""
+    return {**_run(simulation, name, MOD_FAILED, [_state(simulation)]), "message": str(error)}
 
 
 def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
@@ -145,8 +164,10 @@ def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> R
     settlement = settle(simulation.model, factors)
     seconds = time.perf_counter() - started
     states = [_static_state(simulation, found) for found in settlement.states]
-    return _run(simulation, name, settlement.status, states, moves=False) | {
-        "message": " ".join(filter(None, [settlement.message, left_out])),
+    status, note = without_mods(settlement.status, left_out)
+    return _run(simulation, name, status, states, moves=False) | {
+        "message": " ".join(filter(None, [settlement.message, note])),
+        "left_out": left_out,
         "wall_seconds": seconds,
         "events": _records(simulation.model, settlement.events),
     }
@@ -185,18 +206,22 @@ def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
 def _run(
     simulation: Simulation, name: str, status: str, states: list[State], *, moves: bool = True
 ) -> dict[str, Any]:
-    """A result without events. moves: the run went through time, by an integrator; False in statics."""
+    """A result without events. moves: the run went through time, by an integrator; False in statics.
+
+    left_out: the laws of mods that act in the model and are not in the result.
+    """
     clock = simulation.model.clock
     return {
         "model": name,
         "status": status,
-        "message": simulation.message or simulation.step_size.warning,
+        "message": simulation.said,
         "time": clock.time,
         "steps": clock.steps,
         "time_step": clock.step_size if moves else None,
         "integrator": simulation.integrator.key if moves else None,
         "wall_seconds": simulation.compute_seconds,
         "compile_seconds": simulation.programs.compile_seconds,
+        "left_out": [],
         "events": [],
         "states": states,
     }
