@@ -163,8 +163,8 @@ class Batch:
         first = total - self.clock("origin_steps")
         wanted = np.full(self.model.variants, steps, dtype=np.int64)
         if until < math.inf and not self.integrator.controlled:  # of the others, steps may have no size
-            left = ((until - time[variants]) / size[variants] * (1.0 + 1e-12)).astype(np.int64)
-            wanted[variants] = np.clip(left, 0, wanted[variants])
+            left = np.clip((until - time[variants]) / size[variants] * (1.0 + 1e-12), 0.0, 2.0**62)
+            wanted[variants] = np.minimum(left.astype(np.int64), wanted[variants])
         account, control = self._clocks(ACCOUNT), self._clocks(CONTROL)
         limit = self.clock("step_limit")
         taken, reason = self._call(

@@ -53,6 +53,15 @@ class EventRecord:
     risen: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class Progress:
+    """How far a run is: everything has happened up to a time (s)."""
+
+    time: float
+    steps: int
+    impacts: int
+
+
 class Simulation:
     """Advances one model and keeps its derived columns, its energy account and its last good state.
 
@@ -406,6 +415,14 @@ class Simulation:
             self.reason, self.message, self.note, self.armed_revision = said
 
     # --- reading -------------------------------------------------------------------------------------
+
+    @property
+    def progress(self) -> Progress:
+        """How far the run is, also in the midst of a step; changes nothing, so that it can be asked at any moment."""
+        clock, flying = self.model.clock, self.programs.flying
+        if flying is None:
+            return Progress(clock.time, clock.steps, clock.collisions)
+        return Progress(max(clock.time, flying.now), clock.steps, max(clock.collisions, flying.impacts))
 
     @property
     def warning(self) -> str:

@@ -182,7 +182,13 @@ REFUSED_ELEMENTS: dict[str, tuple[str, dict[Any, Any], str, str]] = {
     "same end": ("rods", {"name": "r", "between": ["A", "A"]}, ".between", "both ends are 'A'"),
     "second rod": ("rods", {"name": "r", "between": ["C", "B"]}, ".between", "$.rods[1] (rod BC) joins these"),
     "no length": ("rods", rod("A", "O"), "", "distance between its ends is 0 m; give it a 'rest_length'"),
-    "endless": ("rods", rod("D", "F"), "", "distance between its ends is inf m; place them nearer"),
+    "far": (
+        "particles",
+        particle("far", 0, -1.7e308),
+        ".position",
+        "y is -1.7e+308 m; it must be at least -1e+30 m",
+    ),
+    "light": ("particles", particle("P", 0, 9, mass=5e-324), ".mass", "e-324 kg; it must be at least 1e-30 kg"),
     "stiffness": ("rods", rod("A", "D", stiffness=0), ".stiffness", "is 0 kN; it must be greater than"),
     "missing particle": ("loads", {}, "", "its 'on' is missing"),
     "load on nothing": ("loads", {"on": "Q"}, ".on", "There is no 'Q' among the particles"),
@@ -206,7 +212,7 @@ def test_bad_elements_are_refused_with_path_and_reason(
     section: str, element: dict[Any, Any], key: str, reason: str
 ) -> None:
     document = triangle() | {"loads": []}
-    far = [particle("D", -1.7e308, 5), particle("O", 0, 0), particle("F", 1.7e308, 0)]
+    far = [particle("D", -1e30, 5), particle("O", 0, 0), particle("F", 1e30, 0)]
     document["particles"] = [*document["particles"], *far]
     row = len(document[section])
     document[section] = [*document[section], element]

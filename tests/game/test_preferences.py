@@ -82,7 +82,15 @@ def test_the_magnification_is_kept_beside_the_theme(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "damaged", ["", '{"magnification": "large"}', '{"magnification": 1e9}', '{"magnification": [2]}']
+    "damaged",
+    [
+        "",
+        "[" * 100_000,
+        '{"keys": ' * 100_000,
+        '{"magnification": "large"}',
+        '{"magnification": 1e9}',
+        '{"magnification": [2]}',
+    ],
 )
 def test_a_damaged_magnification_is_the_usual_one(folder: Path, damaged: str) -> None:
     preferences.settings_path().parent.mkdir(parents=True, exist_ok=True)
