@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Collection, Mapping, Set
 from dataclasses import KW_ONLY, dataclass, field
 from enum import Enum
@@ -28,6 +29,7 @@ _STORAGE: dict[Any, tuple[Any, Any]] = {
     object: (object, None),
     "reference": (np.uint32, 0),
 }
+_HALVES = re.compile("[\ud800-\udfff]")
 # What numbers and flags given for a whole column may be: numpy's kinds, or the types in a list.
 _PLAIN: dict[Any, tuple[str, set[type]]] = {
     float: ("fiu", {float, int, np.float64, np.int64}),
@@ -35,6 +37,11 @@ _PLAIN: dict[Any, tuple[str, set[type]]] = {
     bool: ("b", {bool, np.bool_}),
     "reference": ("iu", {int, np.int64, np.uint32}),
 }
+
+
+def is_broken(text: str) -> bool:
+    """True if a text holds half of a character, a surrogate, which no file and no clipboard can hold."""
+    return _HALVES.search(text) is not None
 
 
 class Role(Enum):
@@ -250,6 +257,10 @@ class Field(Generic[T]):
             raise FieldError(f"{where}: {self.title} is {value!r}; choose one of {', '.join(self.choices)}.")
         if not isinstance(value, str):
             raise FieldError(f"{where}: {self.title} is {value!r}; it must be a text.")
+        if is_broken(value):
+            raise FieldError(
+                f"{where}: {self.title} is {ascii(value)}; half of a character cannot be kept in a file."
+            )
         return str(value)  # numpy's texts are of another type
 
     def _components(self, value: Any, where: str, of_what: str) -> list[Any]:
@@ -283,7 +294,7 @@ class Field(Generic[T]):
                 f"{self.title}: {len(items)} values for {rows} elements; give each one, or all the same."
             )
         any_text = self.dtype is str and self.choices is None and self.checker is None
-        if any_text and set(map(type, items)) == {str}:
+        if any_text and set(map(type, items)) == {str} and not is_broken("".join(items)):
             column[:] = items
             return column
         for row, item in enumerate(items):

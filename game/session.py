@@ -29,7 +29,7 @@ from game.editor.scenes import all_scenes, scene_systems
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
 from game.mods import load_all
-from game.mods.heeding import heeding_mods
+from game.mods.heeding import blamed_on_mod, heeding_mods
 from game.scripts.expectation import expect
 from systems.base import EVENT_INTERVAL, Phase, StopReason, System
 from systems.catalogue import SYSTEMS, step_systems
@@ -366,8 +366,12 @@ class Session(Context):
     def frame(self, elapsed: float) -> Frame:
         """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
         frame = Frame(self, _forward("elapsed", elapsed))
-        for phase in Phase:
-            self.schedule.run(phase, frame)
+        try:
+            for phase in Phase:
+                self.schedule.run(phase, frame)
+        except Exception as error:
+            if not blamed_on_mod(error):
+                raise
         return frame
 
     @property

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from components.clock import Clock
 from components.commands import Assign
 from components.environment import Environment
-from components.field import Column, Field, FieldError, Role
+from components.field import Column, Field, FieldError, Role, is_broken
 from components.grid import Grid
 from components.handle import Handle
 from components.load import Load
@@ -165,6 +165,8 @@ def _text(document: Mapping[str, Any], key: str) -> str:
     text = document.get(key, "")
     if not isinstance(text, str):
         _fail(f"$.{key}", f"it is {text!r}; it must be a text.")
+    if is_broken(text):
+        _fail(f"$.{key}", f"it is {ascii(text)}; half of a character cannot be kept in a file.")
     return text
 
 
@@ -411,10 +413,12 @@ def missing_mods(model: Model) -> list[str]:
 
 def _copied(value: Any, where: str) -> Any:
     """A copy of a value that JSON can hold."""
-    if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):
+    if isinstance(value, Mapping) and all(isinstance(key, str) and not is_broken(key) for key in value):
         return {key: _copied(item, where) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [_copied(item, where) for item in value]
+    if isinstance(value, str) and is_broken(value):
+        _fail(where, f"{ascii(value)} holds half of a character, which cannot be kept in a file.")
     if value is None or isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)):
         return value
     _fail(where, f"{value!r} cannot be kept in a model file.")

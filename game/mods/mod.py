@@ -81,11 +81,12 @@ class Mod:
 
     def describe(self, error: BaseException) -> str:
         """An error with the file and the line of this mod in which it happened."""
-        place, message = self._place(error), _message(error)
+        place, message = self.place_of(error), _message(error)
         said = message if isinstance(error, ModError) else f"{type(error).__name__}: {message}"
         return f"{said.rstrip('.: ')}{f' ({place})' if place else ''}."
 
-    def _place(self, error: BaseException) -> str:
+    def place_of(self, error: BaseException) -> str:
+        """The file and the line of this mod in which an error happened; "" if in none."""
         if isinstance(error, SyntaxError) and error.filename:
             return f"{_short(error.filename)}, line {error.lineno}"
         frames = traceback.extract_tb(error.__traceback__)
@@ -125,7 +126,7 @@ class Mod:
             return otherwise
 
     def within(self, patience: float, function: Callable[[], T]) -> T:
-        """The result of a function; after `patience` TooLong is raised in the mod's code, or in a library's that it calls."""
+        """The result of a function; after `patience` TooLong is raised in the mod's code, or in a library that it calls."""
         if not math.isfinite(patience) or self.folder is None:
             return function()
         return within(patience, is_running(f"{self.folder}{os.sep}", others=OURS), function)

@@ -87,7 +87,7 @@ class Program:
                 state = [self._arrays[name][:0] for name in STATE]
                 self.module.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
         except Exception as error:  # numba raises many kinds
-            raise explain(self._writer.bound, self.integrator, self.model, error) from error
+            raise explain(self._writer.kernels, self.integrator, self.model, error) from error
         note_compiled(self.module)
 
     def _of_no_rods(self) -> list[Column]:

@@ -296,7 +296,7 @@ MALFORMED = {
     "empty": (b" \n", "is empty; save the model anew"),
     "UTF-16": ('{"format": "pinjoint model"}'.encode("utf-16"), "written in UTF-16; save it in UTF-8"),
     "cut off": (HEAD + b'"rods": [', "line 1 column"),
-    "trailing comma": (HEAD + b'"rods": [],\n}', "line 2 column 1"),
+    "trailing comma": (HEAD + b'\n"rods": [],}', "line 2 column"),
     "Latin-1": (HEAD + b'\n"title": "\xe9"}', "has a character in line 2 that is not UTF-8; save it in UTF-8"),
     "nan": (HEAD + b'"environment": {"drag": NaN}}', "contains NaN; every number must be finite"),
     "infinity": (HEAD + b'"environment": {"drag": -Infinity}}', "contains -Infinity"),
@@ -515,11 +515,33 @@ def test_the_folder_is_synchronised_after_a_file_was_replaced(
     assert synchronised == [(tmp_path / "some.json").stat().st_ino, tmp_path.stat().st_ino]
 
 
+HALF = "half \ud800"
+
+
+@pytest.mark.parametrize(
+    "document",
+    [
+        BASE | {"title": HALF},
+        BASE | {"description": HALF},
+        BASE | {"particles": [particle(HALF, 0, 0)]},
+        BASE | {"particles": [particle(f"P{n}", n, 0) for n in range(20)] + [particle(HALF, 0, 0)]},
+        BASE | {"particles": [particle("A", 0, 0, components={"mod.Kind": {"text": HALF}})]},
+        BASE | {"particles": [particle("A", 0, 0, components={"mod.Kind": {HALF: 1}})]},
+    ],
+)
+def test_half_a_character_is_refused(document: dict[str, Any]) -> None:
+    """It could not be saved, copied, kept against a crash, or shown."""
+    with pytest.raises(ModelError, match="kept in a"):
+        models.parse(document)
+
+
 def test_a_text_that_no_file_can_hold_keeps_the_old_file(tmp_path: Path) -> None:
     path = tmp_path / "model.json"
     path.write_text("old", encoding="utf-8")
+    made = models.parse(BASE)
+    made.title = "\ud800"
     with pytest.raises(ModelError, match="surrogates not allowed"):
-        models.save(models.parse(BASE | {"title": "\ud800"}), path)
+        models.save(made, path)
     assert path.read_text(encoding="utf-8") == "old"
 
 

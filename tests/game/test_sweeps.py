@@ -235,6 +235,19 @@ def test_a_killed_sweep_goes_on_without_repeating(tmp_path: Path, computed: list
     assert output.read_bytes() == whole.read_bytes()
 
 
+def test_another_digit_in_a_journal_is_noticed(tmp_path: Path, computed: list[int]) -> None:
+    """A failing disk may turn one number into another, which would be reported as a result."""
+    output = tmp_path / "results.csv"
+    interrupted(output)
+    journal = tmp_path / "results.csv.journal"
+    lines = journal.read_bytes().split(b"\n")
+    lines[3] = lines[3].replace(b"1", b"2", 1)
+    journal.write_bytes(b"\n".join(lines))
+    computed.clear()
+    sweep(MODEL, [DRAWN], MEASURES, STATIC, samples=20, output=output)
+    assert computed == [2, *range(7, 20)]
+
+
 @pytest.mark.parametrize(
     "change",
     [
