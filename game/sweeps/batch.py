@@ -94,6 +94,7 @@ class Batch:
             if not self.alone[variant]:
                 sizes[variant], self.clock("step_limit")[variant] = policy.first(limits)
         self._begin_steps(np.flatnonzero(~self.alone), sizes)
+        self._reviewed = np.array([self.clock("time"), self.clock("steps")])
 
     def _leave_sleepers(self, variants: Rows) -> None:
         """Leave to runs of their own the variants in which an island at rest would sleep now while others move."""
@@ -236,8 +237,12 @@ class Batch:
             return
         self.observe()
         limits, sizes = self._limits(), self.clock("step_size").copy()
+        time, steps = self.clock("time"), self.clock("steps")
+        mean = (time - self._reviewed[0]) / np.maximum(steps - self._reviewed[1], 1)
+        self._reviewed[:, variants] = time[variants], steps[variants]
         for variant in variants.tolist():
             policy = self._policies[variant]
+            self.alone[variant] |= policy.crawls(limits[variant], mean[variant])  # to be warned of
             if policy.controls_error:
                 self.clock("step_limit")[variant] = policy.limit(limits[variant])
             else:

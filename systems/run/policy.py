@@ -22,6 +22,7 @@ GOING_ON = (StopReason.DONE, StopReason.REVIEW)  # stop reasons after which a ru
 SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
 ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square
 FIRST_SHARE = 0.1  # of 1/ω, the step at which error control begins
+CRAWLING = 1e-3  # of it: so much shorter ones under error control are told of
 FREE_STEP = 1e-3  # s, where nothing limits the step
 DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
 
@@ -95,6 +96,10 @@ class StepPolicy:
         wanted = self._automatic(limits)
         fits = 0.5 * wanted <= size <= min(1.5 * wanted, 0.95 * limits.stable_step)
         return None if fits else wanted
+
+    def crawls(self, limits: Limits, mean: float) -> bool:
+        """True if forces change so fast that error control takes tiny steps. mean: of many steps (s)."""
+        return self.controls_error and mean < CRAWLING * self.first(limits)[0]
 
     def limit(self, limits: Limits) -> float:
         """The longest step (s) under error control: stability and the eye limit it; 0: nothing does."""

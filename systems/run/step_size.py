@@ -16,7 +16,6 @@ from systems.run.programs import Programs
 from systems.run.sleep import Sleep
 
 SHOWN = 1.0 / 120.0  # s shown, at the natural pace, that one step may last
-CRAWLING = 1e-3  # of the first step: steps so much shorter under error control are told of
 DEFAULT_INTEGRATOR = "velocity_verlet"
 
 
@@ -89,7 +88,7 @@ class StepSize:
         if policy.controls_error:
             limits = self.look_up()
             self._model.writable("clock.step_limit")[0] = policy.limit(limits)
-            if mean < CRAWLING * policy.first(limits)[0]:
+            if policy.crawls(limits, mean):
                 self.warning = (
                     f"Forces change so fast that steps of {mean:.2g} s are needed, {1.0 / mean:.2g} for a second:"
                     " look for a law that is singular, or much stiffer than the rods."
