@@ -35,6 +35,7 @@ from systems.catalogue import SYSTEMS, step_systems
 from systems.edit import Refusal
 from systems.edit.pull import Pull
 from systems.input.bindings import FORMS, TEXT, action_for, key_named
+from systems.run.simulation import Simulation
 from systems.run.system import Time
 from systems.schedule import Plan, Schedule
 
@@ -165,27 +166,35 @@ class Session(Context):
         limit = _forward("limit", limit)
         time = None if time is None else _forward("time", time)
         steps = None if steps is None else int(_forward("steps", steps, whole=True))
-        self.act_in_scene()
-        document = self.document
-        simulation = document.simulation
-        document.note_beginning()
-        document.history.begin_run()
-        document.timeline.begin()
-        reached = "time reached"
-        with self.without_frames():
+        reached = "time reached" if until is None else "limit reached"
+        with self._time_passing() as simulation:
             if until is not None:
-                reached = "limit reached"
                 simulation.run_until_rest(self.time + limit)
             elif time is not None:
                 simulation.run_to(self.time + time)
             elif steps is not None:
                 simulation.advance(steps)
-        if simulation.reason is not StopReason.REST and steps is None:
-            document.timeline.clear()  # the last step was a short one, which stepping back does not take again
-        if not self.time_passes:
-            document.history.end_run()
         ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
         return ended.get(simulation.reason, reached)
+
+    def go_to(self, steps: int, within: float | None = None) -> None:
+        """Let time pass to a moment of a recorded run: so many whole steps, and perhaps a time (s) within the next."""
+        if (steps, within) != self.simulation.moment:
+            with self._time_passing() as simulation:
+                simulation.go_to(steps, within)
+
+    @contextmanager
+    def _time_passing(self) -> Iterator[Simulation]:
+        """Time passes inside: it is one run in the log, from which one can step back."""
+        self.act_in_scene()
+        document = self.document
+        document.note_beginning()
+        document.history.begin_run()
+        document.timeline.begin()
+        with self.without_frames():
+            yield document.simulation
+        if not self.time_passes:
+            document.history.end_run()
 
     def without_frames(self) -> AbstractContextManager[None]:
         """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""

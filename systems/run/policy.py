@@ -18,6 +18,7 @@ from systems.entries import Measure
 from systems.physics.automatic import SMALL
 
 GOING_ON = (StopReason.DONE, StopReason.REVIEW)  # stop reasons after which a run simply goes on
+ENDING = (StopReason.EVENT, StopReason.DIVERGED, StopReason.UNRESOLVED)  # with which no moment in a step is reached
 
 SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
 ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square
@@ -58,13 +59,13 @@ class StepPolicy:
     """How the steps of a run are chosen.
 
     fixed: the step (s) that a person chose; None: automatic. rods: how many the model has.
-    shown: gives the longest step (s) that a person can follow; infinite where nobody watches.
+    observed: gives the longest step (s) of exact flight, which is only how often it is looked at.
     """
 
     integrator: Integrator
     fixed: float | None
     rods: int
-    shown: Callable[[], float] = lambda: math.inf
+    observed: Callable[[], float] = lambda: math.inf
 
     @property
     def controls_error(self) -> bool:
@@ -94,8 +95,8 @@ class StepPolicy:
         return None if fits else wanted
 
     def limit(self, limits: Limits) -> float:
-        """The longest step (s) under error control: stability and the eye limit it; 0: nothing does."""
-        limit = min(SAFETY * limits.stable_step, self.shown())
+        """The longest step (s) under error control, by stability; 0: nothing limits it."""
+        limit = SAFETY * limits.stable_step
         return rounded_down(limit) if limit < math.inf else 0.0
 
     def _automatic(self, limits: Limits) -> float:
@@ -104,8 +105,8 @@ class StepPolicy:
         if stable == 0.0:
             return rounded_down(min(DOUBTFUL_STEP / limits.frequency, FREE_STEP))
         share = ACCURATE if self.rods <= SMALL else SAFETY
-        shown = self.shown() if self.integrator.exact else math.inf
-        return rounded_down(min(share * stable, FREE_STEP, shown))
+        observed = self.observed() if self.integrator.exact else math.inf
+        return rounded_down(min(share * stable, FREE_STEP, observed))
 
 
 def rounded_down(size: float) -> float:

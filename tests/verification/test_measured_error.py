@@ -40,7 +40,6 @@ PROBLEMS = {
 
 def _run(problem: Problem, **settings: Any) -> Session:
     session = Session.open(problem.document | {"settings": {"collisions": False} | settings})
-    session.simulation.step_size.watched = False  # steps as long as accuracy allows
     session.run(time=problem.time)
     return session
 

@@ -70,7 +70,6 @@ class Analysis:
 
 def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
     """Run until at rest, at most `limit` s of simulated time."""
-    simulation.step_size.watched = False  # nobody watches
     simulation.run_until_rest(simulation.model.clock.time + limit)
     ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
     status = ended.get(simulation.reason, "limit reached")
@@ -80,7 +79,6 @@ def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
 def run_at(simulation: Simulation, name: str, times: Sequence[float]) -> Run:
     """Run through the given times (s, ascending) and report the state at exactly each of them.
 
-    The short last step to a reported time is taken on a copy, so that a report never changes the run.
     Raises AnalysisError for times before that of the model.
     """
     if times[0] < (present := simulation.model.clock.time):
@@ -88,17 +86,12 @@ def run_at(simulation: Simulation, name: str, times: Sequence[float]) -> Run:
             f"The model is at t = {present:.9g} s already, after {times[0]:.9g} s; ask for later times."
         )
     states: list[State] = []
-    simulation.step_size.watched = False  # nobody watches
     for target in times:
-        simulation.run_to(target, whole_steps=True)
+        simulation.run_to(target)
+        states.append(_state(simulation))
         if simulation.reason is StopReason.DIVERGED:
-            return _run(simulation, name, "diverged", [*states, _state(simulation)])
-        if simulation.reason is StopReason.REST:  # time passes without steps
-            simulation.model.writable("clock.time")[0] = max(target, simulation.model.clock.time)
-        with simulation.at(target):
-            states.append(_state(simulation))
-            run = _run(simulation, name, "time reached", states)
-    return run
+            return _run(simulation, name, "diverged", states)
+    return _run(simulation, name, "time reached", states)
 
 
 def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> Run:

@@ -62,8 +62,8 @@ class DrivenCollisions:
         self._impacts = ImpactResolver(model, impacts, self._neighbours)
         self._crowds = CrowdStepper(model, self._neighbours, self._impacts)
 
-    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
-        """Take up to `steps` steps that end by `until` (s), as every stepper does; none is cut at `landing`."""
+    def advance(self, steps: int, until: float = math.inf) -> tuple[int, StopReason]:
+        """Take up to `steps` steps that end by `until` (s), as every stepper does."""
         program = self._steps.program
         self._neighbours.look_up()
         clock = self.model.clock
@@ -82,7 +82,7 @@ class DrivenCollisions:
         self._neighbours.look_up()
         self._neighbours.clear_time(0.0)
         clock, reason = self.model.clock, StopReason.DONE
-        while clock.time < target and reason in (StopReason.DONE, StopReason.REVIEW):
+        while clock.time < target and reason in (StopReason.DONE, StopReason.REVIEW, StopReason.REST):
             end = min(target, clock.time + clock.step_size)
             _, reason, program = self._examined_step(program, end, landing=True)
         return reason
