@@ -39,9 +39,14 @@ def note():
 
 
 def look():
-    """As a step ends. A rod that has come back is found by the least margin that it had on the way."""
+    """As a step ends. A rod that has come back is found by the least margin that it had on the way.
+
+    One that stays where its branches meet, as a cable between held particles may, leaves none and hides no other.
+    """
     branch = marks[r, insert(law) + Mark.BRANCH]
     insert(margin_and_slope)
+    if abs(gap) <= EVENT_FLOOR and abs(marks[r, insert(law) + Mark.MARGIN]) <= EVENT_FLOOR:
+        gap = math.inf
     before = marks[r, insert(law) + Mark.SLOPE]
     if first and gap > 0.0 and before * dt < -insert(steady) and slope > 0.0:
         start = marks[r, insert(law) + Mark.MARGIN]
