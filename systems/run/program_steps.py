@@ -36,6 +36,7 @@ class ProgramSteps:
     def rebound(self) -> Program:
         """The program that takes the next steps, now that an impact changed the plan or woke something."""
         self._programs.unbind()
+        self._step_size.limit_anew()
         return self.program
 
     def advance(self, steps: int, until: float = math.inf) -> tuple[int, StopReason]:

@@ -15,7 +15,7 @@ from systems.run.policy import ERROR_CONTROL, Limits, StepPolicy, begin_steps
 from systems.run.programs import Programs
 from systems.run.sleep import Sleep
 
-OBSERVED = 1.0 / 120.0  # s shown, at the natural pace, between two looks at exact flight
+OBSERVED = 1.0 / 120.0  # s shown, at the natural pace, between two looks at exact flight or at what touches
 DEFAULT_INTEGRATOR = "velocity_verlet"
 
 
@@ -41,6 +41,7 @@ class StepSize:
             model.settings.time_step,
             model.rods.count,
             lambda: OBSERVED * natural_pace(model),
+            model.clock.collision_state is not None,
         )
 
     def begin(self, size: float) -> None:
@@ -89,7 +90,10 @@ class StepSize:
     def limit_anew(self) -> None:
         """Under error control: find the limit of the step anew, as others are awake or stiffnesses changed."""
         if self._policy.controls_error:
-            self._model.writable("clock.step_limit")[0] = self._policy.limit(self.look_up())
+            limit = self._policy.limit(self.look_up())
+            self._model.writable("clock.step_limit")[0] = limit
+            if self._policy.in_contact:
+                self._model.writable("clock.step_size")[0] = min(self._model.clock.step_size, limit)
 
     def remedy(self, size: float | None) -> str:
         """The remedy for a run that is unstable with steps of this size (s), None: automatic."""

@@ -117,7 +117,7 @@ class DrivenCollisions:
         """
         clock, steps = self.model.clock, self.model.clock.steps
         trial = TrialStep(self.model, program, until, self._steps.land)
-        problem = self._crowds.problem(until, landing)
+        problem = self._crowds.problem()
         if problem is not None:
             reason = self._crowd_step(problem, trial, landing)
             return clock.steps - steps, reason, trial.program

@@ -22,9 +22,10 @@ def passed(dt, displacement, velocity, marks, first, *columns):
     first: this is the first look at the step, which chooses the rods whose least margins are watched.
     """
     low = math.inf
+    between = math.inf
     insert(rods)
     insert(particles)
-    return low
+    return low if low < math.inf else between
 
 
 def note():
@@ -41,12 +42,11 @@ def note():
 def look():
     """As a step ends. A rod that has come back is found by the least margin that it had on the way.
 
-    One that stays where its branches meet, as a cable between held particles may, leaves none and hides no other.
+    One that stays where its branches meet, as a cable between held particles does, hides no other.
     """
     branch = marks[r, insert(law) + Mark.BRANCH]
     insert(margin_and_slope)
-    if abs(gap) <= EVENT_FLOOR and abs(marks[r, insert(law) + Mark.MARGIN]) <= EVENT_FLOOR:
-        gap = math.inf
+    still = abs(gap) <= EVENT_FLOOR and abs(marks[r, insert(law) + Mark.MARGIN]) <= EVENT_FLOOR
     before = marks[r, insert(law) + Mark.SLOPE]
     if first and gap > 0.0 and before * dt < -insert(steady) and slope > 0.0:
         start = marks[r, insert(law) + Mark.MARGIN]
@@ -55,7 +55,10 @@ def look():
             marks[r, insert(law) + Mark.WATCHED] = 1.0
     if marks[r, insert(law) + Mark.WATCHED] > 0.0:
         gap = min(gap, -slope * dt)
-    low = min(low, gap)
+    if still:
+        between = min(between, gap)
+    else:
+        low = min(low, gap)
 
 
 def of_rod():
