@@ -378,7 +378,7 @@ class Simulation:
         """Show the moment `target` (s) within the next step; False if the step ends before, at an event or by failing."""
         started, before = time.perf_counter(), self.present()
         reason = self._stepper.land(target)
-        happened = reason is StopReason.EVENT and self.integrator.controlled
+        happened = reason is StopReason.EVENT and (self.integrator.controlled or self.programs.collides)
         if happened or self.model.clock.time != target:
             before.restore(self.model)
             return False

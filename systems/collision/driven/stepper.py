@@ -77,7 +77,7 @@ class DrivenCollisions:
         return clock.steps - first, StopReason.DONE
 
     def land(self, target: float) -> StopReason:
-        """Take the last, short step to a time (s): in parts if there are impacts, or if steps are shorter."""
+        """Take a part of the next step, to a time (s): EVENT where an impact ends that step before."""
         program = self._steps.program
         self._neighbours.look_up()
         self._neighbours.clear_time(0.0)
@@ -125,9 +125,12 @@ class DrivenCollisions:
         reason, impact = self._step_to_impact(trial, until if landing else None, held)
         if impact is None:
             return clock.steps - steps, reason, program
+        met = impact <= clock.time
         reason, persists = self._resolve(trial, held, reason, impact)
         if persists or (held is not None and persistent_contacts(self.model) is None):
             program = self._steps.rebound()
+        if landing and met and reason is not StopReason.DIVERGED:
+            reason = StopReason.EVENT
         return max(clock.steps - steps, 1), reason, program
 
     def _crowd_step(self, problem: ContactProblem, trial: TrialStep, landing: bool) -> StopReason:
