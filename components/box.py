@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import unicodedata
 from typing import Any
 
 from components.field import Field
 from components.handle import Handle
 
 NUMBER, WORD, TEXT, FILE_NAME = "number", "word", "text", "file name"
+
+
+def fits_file_names(character: str) -> bool:
+    """True for letters, digits, marks that combine with them (accents, vowels of Indian scripts), and a few more."""
+    return character.isalnum() or character in " -._" or unicodedata.category(character).startswith("M")
 
 
 class Box(Handle):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -39,7 +40,7 @@ class Departure(Mapping[str, Any]):
                     values = saved[key]
                     if not isinstance(values, list | tuple) or len(values) != table.count:
                         raise FieldError(f"{where}.{key}: {_REMEDY}")
-                    column = field.check_column(list(values), table.count, lambda row, at=key: f"{where}.{at}")
+                    column = field.check_column(list(values), table.count, partial(_path, f"{where}.{key}"))
                 layout.append((name, (field.name,)))
                 arrays.append(column)
         return cls(Snapshot(tuple(layout), tuple(arrays), world.orders))
@@ -73,6 +74,10 @@ class Departure(Mapping[str, Any]):
 
     def __repr__(self) -> str:
         return f"<Departure from step {self.steps}>"
+
+
+def _path(column: str, row: int) -> str:
+    return f"{column}[{row}]"
 
 
 def check_departure(value: Any, where: str) -> Mapping[str, Any]:

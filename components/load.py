@@ -24,7 +24,7 @@ class HistoryKind:
     """A way in which a load changes in time: force × factor(time).
 
     parameters: name → default of each number (or list of numbers) that a history of this kind has.
-    factor: "module:function" of the compiled factor(time, values, first), `values[first:]` being the
+    factor: the compiled factor(time, values, first), or its "module:function", `values[first:]` being the
         parameters, flattened in order of declaration, lists preceded by their length.
     static: the factor that stands for it in statics, or what computes it from the parameters.
     ends: the time after which the factor no longer changes (infinite: never), from the parameters.
@@ -34,7 +34,7 @@ class HistoryKind:
 
     name: str
     parameters: Mapping[str, Any]
-    factor: str
+    factor: str | Callable[..., Any]
     static: float | Callable[[History], float]
     ends: Callable[[History], float]
     check: Callable[[History, str], None] = lambda history, where: None

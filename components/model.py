@@ -25,10 +25,11 @@ class Model(World):
 
     foreign: by entity, what its element of the model file held for mods' components, kept verbatim.
     foreign_kinds: the elements of kinds of mods that are not loaded, as in ADDED, kept likewise.
+    foreign_versions: the versions of the mods that wrote what the file held, by name.
     """
 
     # With more than 29 attributes in its dict, every access to a world would take longer.
-    __slots__ = ("clock", "environment", "grids", "loads", "particles", "rods", "settings")
+    __slots__ = ("clock", "environment", "foreign_versions", "grids", "loads", "particles", "rods", "settings")
 
     def __init__(self) -> None:
         super().__init__((*KINDS, *ADDED.values()), DERIVATIONS)
@@ -43,3 +44,4 @@ class Model(World):
         self.description = ""
         self.foreign: dict[int, dict[str, Any]] = {}
         self.foreign_kinds: dict[str, Any] = {}
+        self.foreign_versions: dict[str, str] = {}

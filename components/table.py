@@ -58,6 +58,7 @@ class Table(Generic[H]):
         "_columns",
         "_first_of",
         "_lowest_number",
+        "_shown",
         "_versions",
         "_world",
         "count",
@@ -79,6 +80,7 @@ class Table(Generic[H]):
         self.entity: NDArray[np.int64] = np.empty(1 if kind.single else _SMALLEST_CAPACITY, dtype=np.int64)
         self.handles: list[H] = []
         self._columns: dict[str, Column] = {}
+        self._shown: dict[str, tuple[Column, Column]] = {}  # storage of columns that were read, and it to read
         self._first_of: dict[str, str] = {}  # by column, the first of those that lie in one array with it
         self._versions: dict[str, int] = {}  # by the first of such columns: they change together
         self._by_name: dict[str, H] = {}
@@ -164,7 +166,11 @@ class Table(Generic[H]):
 
     def column(self, name: str) -> Column:
         """The column as a read-only view, shape (count, ...), derived columns up to date."""
-        return _read_only(self.current(name)[: self.count])
+        storage = self.current(name)
+        shown = self._shown.get(name)
+        if shown is None or shown[0] is not storage:
+            shown = self._shown[name] = storage, read_only(storage)
+        return shown[1][: self.count]
 
     def current(self, name: str) -> Column:
         """The column's storage, over its whole capacity, derived columns up to date."""
@@ -175,7 +181,7 @@ class Table(Generic[H]):
     @property
     def entities(self) -> NDArray[np.int64]:
         """esper ids in row order, shape (count,)."""
-        return _read_only(self.entity[: self.count])
+        return read_only(self.entity[: self.count])
 
     def groups(self, role: Role) -> list[tuple[str, ...]]:
         """The names of all columns with this role, those together that are stored as one array."""
@@ -300,6 +306,7 @@ class Table(Generic[H]):
         self._index(handles, columns.get("name", ()))
 
     def _rearrange(self, arrange: Callable[[Column], Column]) -> None:
+        self._shown.clear()
         self.entity = arrange(self.entity)
         for name, column in self._columns.items():
             self._columns[name] = arrange(column)
@@ -321,6 +328,7 @@ class Table(Generic[H]):
         if rows <= capacity:
             return
         capacity = max(rows, 2 * capacity)
+        self._shown.clear()
         self.entity = grown(self.entity, np.empty(capacity, dtype=np.int64), self.count)
         for name, field in self.fields.items():
             self._columns[name] = grown(self._columns[name], field.allocate(capacity), self.count)
@@ -329,9 +337,20 @@ class Table(Generic[H]):
 _OWN = frozenset(Table.__slots__)
 
 
-def _read_only(view: Column) -> Column:
-    view.flags.writeable = False
-    return view
+class _ToRead:
+    """The memory of an array, in the protocol of numpy, to read only; no array made of it can be made writable."""
+
+    __slots__ = ("__array_interface__", "array")
+
+    def __init__(self, array: Column) -> None:
+        interface = array.__array_interface__
+        self.array = array
+        self.__array_interface__ = {**interface, "data": (interface["data"][0], True)}
+
+
+def read_only(array: Column) -> Column:
+    """The same numbers as an array that nobody who holds it can write to, not by its flags either."""
+    return np.asarray(_ToRead(array))
 
 
 def grown(old: Column, new: Column, count: int) -> Column:

@@ -10,6 +10,7 @@ scripts/                    scripted sessions and lessons: written, recorded, pl
 force_method/               the guide through the force method
 sweeps/                     many variants of a model
 mods/ included/             extensions by others, and ours that are written like theirs
+api.py                      what mods and scripts may rely on, in one place
 checks.py                   check_system: a test of any system, for mods
 paths.py                    what particles.B.force and the like mean, wherever a person writes one
 preparation.py prepare.py   compiling ahead of need, in another process

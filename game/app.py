@@ -27,6 +27,7 @@ from game.documents.open_documents import ModelFile, OpenDocument
 from game.documents.preferences import DEFAULT_THEME, preferred_magnification, preferred_theme, remember
 from game.editor.frame import Frame
 from game.editor.scenes.load import Load
+from game.interrupts import closed_by_signals
 from game.preparation import Preparation
 from game.scripts.performance import FOOTER, LARGER, Performance
 from game.scripts.playing import Failure, Recorder
@@ -159,11 +160,12 @@ class App:
         thresholds = gc.get_threshold()
         gc.set_threshold(SELDOM)  # else it runs in the middle of large edits; see _clean_up
         try:
-            while not self.closed:
-                self.next_frame()
-                if self.session.lesson is not None:
-                    lesson, self.session.lesson = self.session.lesson, None
-                    failures += Performance(self, lesson).play()
+            with closed_by_signals(self.input.close):
+                while not self.closed:
+                    self.next_frame()
+                    if self.session.lesson is not None:
+                        lesson, self.session.lesson = self.session.lesson, None
+                        failures += Performance(self, lesson).play()
         finally:
             gc.set_threshold(*thresholds)
         if self.autosave is not None:
@@ -322,6 +324,12 @@ def render_png(session: Session, path: str, size: tuple[int, int], theme: str = 
     """Draw a session to a PNG file, without a display. Raises OSError if it cannot be written."""
     surface = _drawn(session, size, theme, drawn_places(session.model))
     _save(surface, Path(path))
+
+
+def draw_unseen(session: Session, size: tuple[int, int]) -> None:
+    """Draw all that a session shows, as in a window of that size in pixels, to find what cannot be drawn."""
+    session.update_view()
+    PygameRender(pygame.Surface(size, depth=32), load_raster).process(Frame(session, 0.0))
 
 
 def picture(

@@ -6,14 +6,17 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from components.field import Column, Role, same
 from components.model import Model
+from components.suggestions import missing
 from game.documents import models
 from game.editor.frame import Frame
+from game.mods.loading import load_all
 from game.session import Session
 from systems.base import Commit, Integrator, Law, StepSystem, StopReason, System
 from systems.catalogue import all_systems
@@ -80,16 +83,24 @@ class Checked:
     cost: float
 
 
-def check_system(system: Callable[[], System], models: Iterable[Source] = MODELS) -> Checked:
+def check_system(
+    system: Callable[[], System] | str, models: Iterable[Source] = MODELS, *, mods: Iterable[str | Path] = ()
+) -> Checked:
     """Run a system, given by its class, on several models. Raises SystemCheckError, which names what is wrong.
 
     The system may change only the columns that it declares, must give finite numbers, the same ones every time and
     in any order of registration, and must be needed by one of the models.
 
+    mods: folders of mods that are loaded first, with whose components the models are read; a system of theirs, or
+        of mods loaded before, can then be given by its name. Raises ModError.
+
     >>> from systems.physics.system import Drag
     >>> check_system(Drag).name
     'physics.drag'
     """
+    load_all(mods)
+    if isinstance(system, str):
+        system = _class_of(system)
     drives = isinstance(system(), Integrator)
     needed = [source for source in models if (_drives if drives else _is_needed)(system, source)]
     name = system().name
@@ -103,6 +114,14 @@ def check_system(system: Callable[[], System], models: Iterable[Source] = MODELS
     return Checked(name, len(needed), cost)
 
 
+def _class_of(name: str) -> Callable[[], System]:
+    """The class of a registered system; what it does is then not guarded."""
+    known: dict[str, System] = {made.name: made for made in (*all_systems(), *INTEGRATORS.values())}
+    if name not in known:
+        raise SystemCheckError(missing("systems", name, known))
+    return type(known[name])
+
+
 def _model(source: Source) -> Model:
     return source() if callable(source) else models.load(source)
 
@@ -110,9 +129,9 @@ def _model(source: Source) -> Model:
 def _is_needed(system: Callable[[], System], source: Source) -> bool:
     """Whether a model needs the system; checks that needs() changes nothing and always answers alike."""
     model = _model(source)
-    before = _columns(model)
+    before = columns_of(model)
     answers = {bool(system().needs(model)) for _ in range(2)}
-    _compare(system().name, before, _columns(model), set(), "asking it needs(model) changed")
+    compare(system().name, before, columns_of(model), set(), "asking it needs(model) changed")
     if len(answers) > 1:
         raise SystemCheckError(f"{system().name} answers needs(model) now with yes, now with no.")
     return answers.pop()
@@ -126,7 +145,7 @@ def _drives(system: Callable[[], System], source: Source) -> bool:
         return simulation.integrator is made
 
 
-def _columns(model: Model) -> dict[str, Column]:
+def columns_of(model: Model) -> dict[str, Column]:
     """Copies of all columns of document and state."""
     return {
         f"{table.name}.{field.name}": table.column(field.name).copy()
@@ -135,9 +154,10 @@ def _columns(model: Model) -> dict[str, Column]:
     }
 
 
-def _compare(
+def compare(
     name: str, before: Mapping[str, Column], after: Mapping[str, Column], allowed: set[str], did: str
 ) -> None:
+    """Raise SystemCheckError if other columns than those allowed, by name or table, differ."""
     for column, old in before.items():
         if column in allowed or column.partition(".")[0] in allowed or same(old, after[column]):
             continue
@@ -156,17 +176,17 @@ def _check_steps(system: Callable[[], System], source: Source) -> float:
     made = system()
     assert isinstance(made, StepSystem)
     first = _run(made, source, backwards=False)
-    before, after = _columns(_model(source)), _columns(first)
+    before, after = columns_of(_model(source)), columns_of(first)
     beside = (other for other in _all_with(made) if isinstance(other, StepSystem))
     allowed = {"particles.displacement", "particles.velocity", "particles.asleep", "clock", *made.adds}
     allowed |= {column for other in beside for column in other.writes}
     if isinstance(made, Integrator):
         allowed.add("settings.integrator")
-    _compare(made.name, before, after, allowed, "running it changed")
+    compare(made.name, before, after, allowed, "running it changed")
     _check_finite(made.name, first)
-    again = _columns(_run(system(), source, backwards=False))
+    again = columns_of(_run(system(), source, backwards=False))
     _check_alike(made.name, after, again, "run twice, it gives different")
-    turned = _columns(_run(system(), source, backwards=True))
+    turned = columns_of(_run(system(), source, backwards=True))
     _check_alike(made.name, after, turned, "registered in another order, it gives different")
     has_kernel = isinstance(made, Law | Commit)
     return 1e9 * KernelRows(first).seconds_per_call(bind(made, first)) if has_kernel else 0.0
@@ -224,14 +244,14 @@ def _check_alike(name: str, one: Mapping[str, Column], other: Mapping[str, Colum
 
 def _check_frames(system: Callable[[], System], source: Source) -> float:
     made, session = system(), Session(_model(source))
-    before = _columns(session.model)
+    before = columns_of(session.model)
     seconds = _frames(made, session)
-    after = _columns(session.model)
-    _compare(made.name, before, after, set(made.writes) | set(made.adds), "a frame of it changed")
+    after = columns_of(session.model)
+    compare(made.name, before, after, set(made.writes) | set(made.adds), "a frame of it changed")
     _check_finite(made.name, session.model)
     other = Session(_model(source))
     _frames(system(), other)
-    _check_alike(made.name, after, _columns(other.model), "run twice, it gives different")
+    _check_alike(made.name, after, columns_of(other.model), "run twice, it gives different")
     return 1e9 * seconds / FRAMES / max(session.particles.count + session.rods.count, 1)
 
 

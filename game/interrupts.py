@@ -1,15 +1,24 @@
-"""Interrupts: Ctrl+C ends the program silently while it loads, when there is nothing to clean up."""
+"""How the program ends: Ctrl+C while it loads, signals while a window is open, threads that go on.
+
+Ctrl+C is told from a KeyboardInterrupt that a mod raises, which must not end the program.
+"""
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 
 _HERE = Path(__file__).parent
+CLOSING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+PATIENCE = 5.0  # s that a frame in progress may take before it is cut off
+LEFT_OVER = 2.0  # s that threads may take to end after the program
 
 
 def _is_program(called: str) -> bool:
@@ -30,3 +39,76 @@ def quietly_interrupted() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@contextmanager
+def closed_by_signals(close: Callable[[], None]) -> Iterator[None]:
+    """Call `close` when somebody ends the program from outside; where it does not end soon, the system ends it.
+
+    Only the latter leaves recovery files behind. Systems without timers wait.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    timed = hasattr(signal, "setitimer")
+
+    def handle(*_: object) -> None:
+        close()
+        if timed:
+            signal.signal(signal.SIGALRM, signal.SIG_DFL)
+            signal.setitimer(signal.ITIMER_REAL, PATIENCE)
+
+    heard = [number for number in CLOSING if signal.getsignal(number) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, handle) for number in heard}
+    try:
+        yield
+    finally:
+        if timed:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+        for number, handler in before.items():
+            signal.signal(number, handler or signal.SIG_DFL)
+
+
+class Interrupt(KeyboardInterrupt):
+    """Ctrl+C."""
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    raise Interrupt
+
+
+def mark_interrupts() -> None:
+    """From now on Ctrl+C raises Interrupt, wherever Python would raise KeyboardInterrupt."""
+    usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if usual and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, _interrupt)
+
+
+def is_persons(error: BaseException) -> bool:
+    """True for an interrupt by the person; False for other errors, and for a KeyboardInterrupt that code raised."""
+    if not isinstance(error, KeyboardInterrupt):
+        return False
+    ours = getattr(signal.getsignal(signal.SIGINT), "__module__", "") == __name__  # it raises nothing else
+    return isinstance(error, Interrupt) or not ours
+
+
+def ended_with(status: int) -> int:
+    """The exit status; the process ends with it even if threads, which a mod may have started, do not end."""
+    if _threads():
+        threading.Thread(target=_end, args=(status,), daemon=True).start()
+    return status
+
+
+def _threads() -> list[str]:
+    """Names of the threads that Python waits for before it ends."""
+    main = threading.main_thread()
+    return [thread.name for thread in threading.enumerate() if not (thread.daemon or thread is main)]
+
+
+def _end(status: int) -> None:
+    """End the process if it still waits for threads after a while."""
+    time.sleep(LEFT_OVER)
+    print(
+        f"pinjoint: threads that did not end were left: {', '.join(_threads())}.", file=sys.stderr, flush=True
+    )
+    os._exit(status)

@@ -15,6 +15,7 @@ from components.obstacles import any_obstacles
 from components.rod import is_warm, nodes
 from game.mods import MODS
 from game.prepare import WARM, Job, is_prepared, load_program
+from systems import cache
 from systems.base import Phase, StepSystem, System
 from systems.collision.driven.stepper import DRIVEN
 from systems.collision.free.compiled import EVENTS, HORIZONS, PILES
@@ -60,9 +61,13 @@ class Preparation(System):
         self._running: dict[Job, subprocess.Popen[bytes]] = {}
         self._since: dict[Job, float] = {}
         self._done: set[Job] = set()
+        self._said = False  # that programs cannot be kept on disk
 
     def process(self, frame: Any) -> None:
-        """Begin with what the session needs next."""
+        """Begin with what the session needs next; say once if nothing compiled can be kept."""
+        if cache.TROUBLE and not self._said:
+            self._said = True
+            frame.session.notice = cache.TROUBLE[0]
         self._frames += 1
         if self._frames == 2:  # after the first picture
             self._compiler.start()

@@ -29,6 +29,7 @@ from game.editor.scenes import all_scenes, scene_systems
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
 from game.mods import load_all
+from game.mods.heeding import heeding_mods
 from game.scripts.expectation import expect
 from systems.base import EVENT_INTERVAL, Phase, StopReason, System
 from systems.catalogue import SYSTEMS, step_systems
@@ -159,7 +160,8 @@ class Session(Context):
     ) -> str:
         """Let time pass: until "rest" (at most `limit` s of simulated time), by `time` s, or by `steps`.
 
-        Returns "at rest", "time reached", "limit reached" or "diverged"; `message` says more. Raises ValueError.
+        Returns "at rest", "time reached", "limit reached" or "diverged"; `message` says more. Raises ValueError, and
+        ModError if a mod fails meanwhile: the run stops where it did, and a further one goes on without the mod.
         """
         if sum(option is not None for option in (until, time, steps)) != 1 or until not in (None, "rest"):
             raise ValueError('Say how far to run: until="rest", time=SECONDS or steps=NUMBER, one of them.')
@@ -185,16 +187,18 @@ class Session(Context):
 
     @contextmanager
     def _time_passing(self) -> Iterator[Simulation]:
-        """Time passes inside: it is one run in the log, from which one can step back."""
+        """Time passes inside: it is one run in the log, which stops, by ModError, where a mod fails."""
         self.act_in_scene()
         document = self.document
         document.note_beginning()
         document.history.begin_run()
         document.timeline.begin()
-        with self.without_frames():
-            yield document.simulation
-        if not self.time_passes:
-            document.history.end_run()
+        try:
+            with heeding_mods(document.simulation), self.without_frames():
+                yield document.simulation
+        finally:
+            if not self.time_passes:
+                document.history.end_run()
 
     def without_frames(self) -> AbstractContextManager[None]:
         """While time passes inside, systems of phase EVENTS run every EVENT_INTERVAL steps, and when it has passed."""

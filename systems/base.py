@@ -17,6 +17,7 @@ A law is a declaration and a compiled function of one row:
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from enum import Enum, IntEnum
 from typing import Any, ClassVar, Protocol
@@ -86,6 +87,8 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
     reads, writes: columns ("particles.velocity") or named resources ("view") it touches. Two systems of a phase
         that touch the same thing, one writing, must be ordered by before/after.
     adds: columns that it adds to; additions never conflict.
+    replaces: names of systems, or of their families such as "plasticity", that it takes the place of: where it is
+        active and needed, they are left out.
     scenes: names of the scenes it is active in; None: all. A scene may name further systems (`Scene.systems`).
     unneeded: why a model for which `needs` is False leaves the system out, such as "the model has no cables".
     headless: of a system in phase EVENTS: it also runs where there are no frames, in `Session.run` and on the
@@ -101,6 +104,7 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
     reads: ClassVar[tuple[str, ...]] = ()
     writes: ClassVar[tuple[str, ...]] = ()
     adds: ClassVar[tuple[str, ...]] = ()
+    replaces: ClassVar[tuple[str, ...]] = ()
     scenes: ClassVar[tuple[str, ...] | None] = None
     unneeded: ClassVar[str] = "the model has nothing for it to do"
     headless: ClassVar[bool] = True
@@ -149,10 +153,16 @@ class Law(StepSystem):
         that takes `axial_force` is then given the sum and its result replaces it; several, in the order
         of the schedule. Laws with `rate` add up beside it and may take the result.
     each = "particles": maps one particle's values (vectors as pairs) to a force (x, y).
+    each = "pairs": maps what two particles have that are nearer to each other than `cutoff` to the force (x, y) on the
+        first; the second gets the opposite one. Provided are `apart` (m, from the first to the second) and `drift`
+        (m/s, its rate); columns of the particles come as pairs, of the first and of the second.
     each = "loads": `factor(time, values, first)`; `arrays` gives `<name>_on`, `_force`, `_values`, `_first`.
-    account: where the energy goes that the law's force takes from the motion.
-    elastic: a law of rods that stores this energy instead, N²L₀/2EA being part of the elastic energy.
+    account: where the energy goes that the law's force takes from the motion; of a law that takes `axial_force`, the
+        difference that it makes.
+    elastic: a law of rods that stores this energy instead: N²L₀/2EA of its result is the elastic energy.
     branch, margin: of a law of rods, like a commit's.
+    potential: of a law of pairs: a kernel that maps `apart` and columns to the energy (kN·m) of which the force is the
+        negative gradient. The work of the force is then exact to round-off; else it is summed up step by step.
     """
 
     each: ClassVar[str] = "rods"
@@ -160,6 +170,11 @@ class Law(StepSystem):
     elastic: ClassVar[bool] = False
     branch: ClassVar[str | Callable[..., Any]] = ""
     margin: ClassVar[str | Callable[..., Any]] = ""
+    potential: ClassVar[str | Callable[..., Any]] = ""
+
+    def cutoff(self, model: Model) -> float:
+        """Distance (m) from which on a law of pairs has no force; infinite: all pairs act on each other."""
+        return math.inf
 
 
 class Commit(StepSystem):

@@ -4,14 +4,15 @@ All of them: IEEE division (no exceptions), no fastmath, so that the same input 
 
     compiled   a kernel that may also be called from Python, and tested, by itself
     part       a kernel that only other kernels call
-    entry      a function by which Python enters a program that consists of parts; its machine code is kept on disk
+    kept       a function that calls kernels by itself, whose machine code is kept on disk
+    entry      one by which Python enters a program that consists of parts
 
 Plain numba optimises each part with everything that it calls, and makes machine code of it, although only the entry
 is called from Python. Here a part is only translated to LLVM code; the entry is linked with its parts, then optimised
 and compiled as a whole, in a fraction of the time. Only the entry's parts call one another, so that arguments which a
 part does not use are dropped: an array has nine, which would cost steps of a few rods a third of their time.
 
-This uses inner classes of numba (below PLAIN). With the environment variable PINJOINT_PLAIN_NUMBA=1 all three
+This uses inner classes of numba (below PLAIN). With the environment variable PINJOINT_PLAIN_NUMBA=1 all these
 decorators are numba's own `njit` with the same options: programs compute the same bits and take longer to compile.
 """
 
@@ -20,16 +21,20 @@ decorators are numba's own `njit` with the same options: programs compute the sa
 
 from __future__ import annotations
 
+import hashlib
 import os
+import pickle
 from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 from numba import njit
+from numba.core.caching import NullCache
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
+from numba.core.compiler import Compiler, CompileResult
 from numba.core.compiler_machinery import PassManager
 from numba.core.registry import CPUDispatcher, cpu_target
+from numba.core.serialize import dumps
 from numba.core.typed_passes import InlineOverloads, NopythonRewrites
 from numba.core.types import Function, unliteral
 from numba.core.typing.context import Context
@@ -42,6 +47,8 @@ from numba.core.untyped_passes import (
     MakeFunctionToJitFunction,
     WithLifting,
 )
+
+from systems import cache
 
 PLAIN = os.environ.get("PINJOINT_PLAIN_NUMBA", "") == "1"
 
@@ -63,10 +70,70 @@ def part(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     return partial(_Part, locals={}, targetoptions=chosen | options, pipeline_class=_PartCompiler)
 
 
-def entry(**options: Any) -> Any:
+def kept(signature: str = "", **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """A decorator like numba's `njit`, for functions of generated modules: their machine code is kept on disk.
+
+    signature: compile for it at once, and never for another.
+    """
+
+    def made(function: Callable[..., Any]) -> Any:
+        dispatcher: Any = njit(**options)(function)
+        if _is_compiled(dispatcher):
+            dispatcher._cache = _MachineCode(function)
+            if signature:
+                dispatcher.compile(signature)
+                dispatcher.disable_compile()
+        return dispatcher
+
+    return made
+
+
+def entry(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """A decorator like `compiled`, with further options, for functions by which Python enters a program of parts."""
-    chosen: dict[str, Any] = {"error_model": "numpy", "cache": True} | options
-    return njit(**chosen) if PLAIN else njit(pipeline_class=_EntryCompiler, **chosen)
+    chosen: dict[str, Any] = {"error_model": "numpy"} | options
+    return kept(**chosen) if PLAIN else kept(pipeline_class=_EntryCompiler, **chosen)
+
+
+def forget_own_cache(function: Any) -> None:
+    """Let a kernel of a mod with `cache=True` be compiled with its program only: numba trusts what it finds on disk."""
+    if _is_compiled(function):
+        function._cache = NullCache()
+
+
+def _is_compiled(function: Any) -> bool:
+    """False where NUMBA_DISABLE_JIT has functions interpreted."""
+    return isinstance(function, CPUDispatcher)
+
+
+class _MachineCode(NullCache):
+    """Where numba looks for the machine code of a function, and leaves it.
+
+    Its own cache on disk trusts what it finds. The name of the function's module hashes all that the code follows
+    from, but for the types of the arguments.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._function = function
+
+    def _name(self, signature: Any) -> str:
+        types = hashlib.sha256(repr(signature).encode()).hexdigest()[:16]
+        return f"{self._function.__module__}.{self._function.__name__}-{types}.code"
+
+    def load_overload(self, signature: Any, target: Any) -> Any:
+        """What was compiled for these types; None if it is to be compiled."""
+        target.refresh()
+        content = cache.read(self._name(signature))
+        if content is None:
+            return None
+        try:
+            return CompileResult._rebuild(target, *pickle.loads(content))
+        except Exception:  # such as a module that is gone
+            return None
+
+    def save_overload(self, signature: Any, result: Any) -> None:
+        """Keep what was compiled, unless it holds addresses of this process."""
+        if not result.library.has_dynamic_globals:
+            cache.write(self._name(signature), dumps(result._reduce()))
 
 
 # --- what numba knows of types -------------------------------------------------------------------

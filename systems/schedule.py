@@ -20,6 +20,7 @@ from graphlib import CycleError, TopologicalSorter
 from typing import Protocol
 
 from components.model import Model
+from components.suggestions import remedy
 from systems.base import Commit, Event, Integrator, Law, Phase, StepSystem, System
 
 
@@ -63,6 +64,7 @@ class Schedule:
         self._wanted = wanted or {}
         self.seconds: dict[str, float] = defaultdict(float)
         self._check_names()
+        self._replacing = self._find_replacing()
         self._ordered = {phase: self._order_phase(phase) for phase in Phase}
         of_frames = {p: [s for s in some if not isinstance(s, StepSystem)] for p, some in self._ordered.items()}
         self._of_frames = {
@@ -79,6 +81,26 @@ class Schedule:
                 raise ScheduleError(f"{type(system).__name__} has no name; give it one like 'mymod.wind'.")
             if names.count(system.name) > 1:
                 raise ScheduleError(f"Two systems are called {system.name}; names must be unique.")
+
+    def _find_replacing(self) -> dict[System, tuple[System, ...]]:
+        """By system: those that take its place where they act."""
+        found: dict[System, list[System]] = {}
+        for system in self._systems:
+            for name in (system.replaces,) if isinstance(system.replaces, str) else system.replaces:
+                others = [s for s in self._systems if s is not system and _is_called(s, name)]
+                if not others:
+                    raise ScheduleError(
+                        f"{system.name} replaces '{name}', but no other system is called so;"
+                        f" {remedy(name, [s.name for s in self._systems])}"
+                    )
+                for other in others:
+                    found.setdefault(other, []).append(system)
+        try:
+            TopologicalSorter({s.name: [r.name for r in some] for s, some in found.items()}).prepare()
+        except CycleError as error:
+            chain = " → ".join(error.args[1])
+            raise ScheduleError(f"These systems replace each other: {chain}; drop one `replaces`.") from None
+        return {system: tuple(some) for system, some in found.items()}
 
     # --- order -----------------------------------------------------------------------------------
 
@@ -137,6 +159,8 @@ class Schedule:
             for earlier in ordered[:index]:
                 if _role(earlier) is not _role(later) or earlier.name in ancestors[later.name]:
                     continue
+                if later in self._replacing.get(earlier, ()) or earlier in self._replacing.get(later, ()):
+                    continue
                 for column in _contested(earlier, later):
                     raise ScheduleError(
                         f"{earlier.name} and {later.name} both touch {column}, at least one writing, and nothing"
@@ -154,11 +178,26 @@ class Schedule:
             self._active[system, scene] = known
         return known
 
+    def acts(self, system: System, scene: str, model: Model) -> bool:
+        """True if a system runs in a scene with a model: it is active and needed, and no other takes its place."""
+        return self._is_wanted(system, scene, model) and self._replaced_by(system, scene, model) is None
+
+    def _is_wanted(self, system: System, scene: str, model: Model) -> bool:
+        return self.is_active(system, scene) and system.needs(model)
+
+    def _replaced_by(self, system: System, scene: str, model: Model) -> System | None:
+        """The system that takes the place of another one in a scene with a model."""
+        replacing = self._replacing.get(system, ())
+        return next((other for other in replacing if self._is_wanted(other, scene, model)), None)
+
     def _reason(self, system: System, scene: str, model: Model) -> str:
         """Why a system does not run in a scene with a model; "" if it does."""
         if not self.is_active(system, scene):
             return self.inactive(system, scene)
-        return "" if system.needs(model) else system.unneeded
+        if not system.needs(model):
+            return system.unneeded
+        other = self._replaced_by(system, scene, model)
+        return f"replaced by {other.name}" if other is not None else ""
 
     def inactive(self, system: System, scene: str) -> str:
         """The reason why a system is not active in a scene: where it is."""
@@ -182,16 +221,14 @@ class Schedule:
             for system in self._ordered[Phase.STEP]
             if isinstance(system, StepSystem)
             and not isinstance(system, Integrator)
-            and self.is_active(system, scene)
-            and system.needs(model)
+            and self.acts(system, scene, model)
         ]
 
-    def left_out_of_statics(self, model: Model) -> str:
-        """The sentence that names the laws of mods that a model needs and statics does not know; "" if there are none."""
+    def left_out_of_statics(self, model: Model) -> list[str]:
+        """The laws of mods, by name, that a model needs and statics does not know."""
         plan = self.step_plan("simulation", model)
         laws = (law for law in plan if isinstance(law, Law) and law.mod is not None)
-        names = ", ".join(law.name for law in laws if law.each != "loads")
-        return f"Settling leaves out the laws of mods: {names}." if names else ""
+        return [law.name for law in laws if law.each != "loads"]
 
     def named(self, names: Iterable[str]) -> list[StepSystem]:
         """The step systems with these names, in order. Raises KeyError if one is not there."""
@@ -203,7 +240,7 @@ class Schedule:
 
     def runs_headless(self, phase: Phase, scene: str, model: Model) -> bool:
         """True if systems of a phase run in a scene where there are no frames."""
-        return any(self.is_active(s, scene) and s.needs(model) for s in self._of_frames[phase, True])
+        return any(self.acts(system, scene, model) for system in self._of_frames[phase, True])
 
     def run(self, phase: Phase, frame: SceneFrame, *, headless: bool = False) -> None:
         """Run one phase of a frame, timing each system; each is asked for when its turn comes.
@@ -211,11 +248,16 @@ class Schedule:
         headless: only systems that also run where there are no frames.
         """
         for system in self._of_frames[phase, headless]:
-            if self.is_active(system, frame.scene) and system.needs(frame.model):
+            if self.acts(system, frame.scene, frame.model):
                 frame.model.activate()
                 started = time.perf_counter()
                 system.process(frame)
                 self.seconds[system.name] += time.perf_counter() - started
+
+
+def _is_called(system: System, name: str) -> bool:
+    """True if a system has a name, or is of the family of that name."""
+    return system.name == name or system.name.startswith(f"{name}.")
 
 
 def _role(system: System) -> type:

@@ -15,7 +15,11 @@ from game.commands.options import ANSWERED
 from game.commands.output import Row, add_format, aligned, formatted, write, writing
 
 CHECKOUT = Path(__file__).resolve().parents[2]
-NAMES = ("speed", "accuracy", "stability", "drawing", "editing", "mods", "collisions", "sweeps", "start")
+NAMES = (
+    *("speed", "accuracy", "stability", "drawing", "editing"),
+    *("mods", "collisions", "sweeps", "start", "differential"),
+)
+NUMBERED = "differential"  # the one whose models have numbers
 
 Tables = Mapping[str, Sequence[Mapping[str, Any]]]  # rows by the title of their table
 
@@ -27,15 +31,19 @@ def command(words: Sequence[str]) -> int:
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(NAMES)}; default all")
     parser.add_argument("--quick", action="store_true", help="smaller sizes; ends within a minute")
+    parser.add_argument("--seed", type=int, metavar="N", help="of differential: this one model, in full")
     add_format(parser)
     parser.add_argument("--output", metavar="DIR", help="also write CSV files and pictures there")
     options = parser.parse_args(words)
     for name in options.names:
         if name not in NAMES:
             raise UsageError(f"There is no benchmark '{name}'; choose from {', '.join(NAMES)}.")
+    if options.seed is not None and (options.names != [NUMBERED] or options.seed < 0):
+        raise UsageError(f"--seed takes a whole number from 0 on and goes with one benchmark: {NUMBERED}.")
+    chosen = {"quick": options.quick} | ({} if options.seed is None else {"seed": options.seed})
     measured: dict[str, Tables] = {}
     for name in options.names or NAMES:
-        tables = run(name, quick=options.quick)
+        tables = run(name, **chosen)
         if options.format == "table":  # at once: the next one may take minutes
             print(f"== {name} ==\n{as_text(tables)}")
         measured[name] = tables
@@ -47,8 +55,8 @@ def command(words: Sequence[str]) -> int:
     return ANSWERED
 
 
-def run(name: str, *, quick: bool) -> Tables:
-    """The tables of one benchmark. Raises UsageError outside a source checkout."""
+def run(name: str, **options: Any) -> Tables:
+    """The tables of one benchmark, whose report takes the options. Raises UsageError outside a source checkout."""
     if not (CHECKOUT / "tests" / "benchmarks").is_dir():
         raise UsageError(
             "The benchmarks live in the source tree, not in the installed package; clone it and"
@@ -57,7 +65,7 @@ def run(name: str, *, quick: bool) -> Tables:
     if str(CHECKOUT) not in sys.path:
         sys.path.insert(0, str(CHECKOUT))
     try:
-        tables: Tables = importlib.import_module(f"tests.benchmarks.{name}").report(quick=quick)
+        tables: Tables = importlib.import_module(f"tests.benchmarks.{name}").report(**options)
     except ImportError as error:
         raise UsageError(f'{error}; install the peers with: pip install -e ".[bench]"') from None
     return tables

@@ -23,11 +23,12 @@ from game.commands import (
     window,
 )
 from game.commands.arguments import BAD_INPUT, UsageError
-from game.commands.options import NOT_ANSWERED, use_cores_as_asked
+from game.commands.options import ANSWERED, NOT_ANSWERED, use_cores_as_asked
 from game.commands.output import ResultError, write
 from game.commands.reports.report import AnalysisError
 from game.documents.document import ModelError
 from game.documents.shapes import NoShape
+from game.mods.heeding import switched_off
 from game.mods.mod import ModError
 from game.paths import PathError
 from game.scripts.script import ScriptError
@@ -42,6 +43,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         words = mods.load_as_asked(use_cores_as_asked(words))
         command = words[0] if words and words[0] in COMMANDS else "open"
         status = COMMANDS[command].run(words[1:] if command in words[:1] else words)
+        if status == ANSWERED and command != "open" and switched_off():
+            status = NOT_ANSWERED  # part of what was asked for was done without a mod, as standard error says
         write("", None)  # flushes standard output, while errors can still be told
         return status
     except (

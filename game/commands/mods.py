@@ -10,28 +10,19 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from components.suggestions import missing
-from game.checks import EVERYTHING
 from game.commands import COMMANDS
 from game.commands.arguments import Parser
 from game.commands.options import ANSWERED, NOT_ANSWERED
 from game.commands.output import Row, add_output, write_result
-from game.documents import models
 from game.documents.library import data_folder
 from game.documents.locks import lock_file
 from game.editor.context import FAULTS
-from game.editor.scenes import all_scenes
 from game.mods.finding import mods_folder
 from game.mods.loading import MODS, load
 from game.mods.mod import INCLUDED, LOG, Mod, ModError
 from game.mods.skeleton import write_skeleton
+from game.mods.trial import mistakes_of
 from game.version import __version__
-from systems.base import Commit, Integrator, Law
-from systems.catalogue import all_systems
-from systems.input.bindings import BINDINGS
-from systems.physics.integrators import INTEGRATORS
-from systems.program.binding import ProgramError, bind, problem_of
-from systems.program.writer import read_sources
 
 LEFT_OUT = (
     "Pinjoint crashed while your mods were loaded, so they are left out this time. The next"
@@ -69,7 +60,9 @@ def command(words: Sequence[str]) -> int:
     parser = Parser(prog="pinjoint mods", description="Extensions of the program; see assets/mods/README.md.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="list|check|new")
     add_output(commands.add_parser("list", help="which mods there are, and why some were left out"))
-    check = commands.add_parser("check", help="load a mod, compile its kernels, and say what is wrong")
+    check = commands.add_parser(
+        "check", help="try all that a mod can do with a model of its own, and say what is wrong"
+    )
     check.add_argument("folder", metavar="FOLDER")
     add_output(check)
     new = commands.add_parser("new", help="write the skeleton of a mod, with a test that passes")
@@ -117,7 +110,7 @@ def _checked(folder: Path) -> list[dict[str, Any]]:
     found = load([folder])
     if not found:
         raise ModError(f"There is no mod in {folder}; `pinjoint mods new NAME` writes one to begin with.")
-    return [_described(mod) | ({} if mod.off else {"problems": list(problems(mod))}) for mod in found]
+    return [_described(mod) | ({} if mod.off else {"problems": mistakes_of(mod)}) for mod in found]
 
 
 def _rows(found: Sequence[dict[str, Any]]) -> Iterator[Row]:
@@ -139,26 +132,6 @@ def _lines_of_check(found: Sequence[dict[str, Any]]) -> Iterator[str]:
     for mod in found:
         yield f"{mod['name']} {mod['version']}: {'WRONG' if mod['problems'] else 'all is well'}"
         yield from (f"    {line}" for line in (*mod["problems"], *mod["notes"]))
-
-
-def problems(mod: Mod) -> Iterator[str]:
-    """One sentence for each kernel of a mod that cannot be compiled, and each key in a scene that does not exist."""
-    model = models.load(EVERYTHING)
-    for system in (*all_systems(), *INTEGRATORS.values()):
-        try:
-            if system.mod is not mod:
-                continue
-            if isinstance(system, Integrator):
-                read_sources([system])
-            elif isinstance(system, Law | Commit) and (problem := problem_of(bind(system, model), model)):
-                yield problem
-        except ProgramError as error:
-            yield str(error)
-    scenes = {scene.name for scene in all_scenes()}
-    for binding in BINDINGS:
-        if binding.action.startswith(f"{mod.name}."):
-            for scene in set(binding.scenes) - scenes:
-                yield f"The key '{binding.key}' for {binding.action}: {missing('scenes', scene, scenes)}"
 
 
 # --- safe start ----------------------------------------------------------------------------------------

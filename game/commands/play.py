@@ -42,9 +42,11 @@ def command(words: Sequence[str]) -> int:
             kept.enter_context(library.data_in(options.data))
             loaded.has_data = True
         if options.window:
+            _tell(playing.check_mods(loaded))
             failures = in_window(models.load(loaded.source), file_of(loaded.source), lesson=loaded)
         else:
             session = playing.session_of(loaded)
+            _tell(session.notice)
             if not loaded.has_data:  # so that it ends alike however often it is played
                 kept.enter_context(library.data_apart())
             failures = playing.play(loaded, session)
@@ -57,6 +59,11 @@ def command(words: Sequence[str]) -> int:
         print(f"{options.script} {failure}", file=sys.stderr)
     write_result(options, found, _rows, _lines)
     return NOT_ANSWERED if failures else ANSWERED
+
+
+def _tell(difference: str) -> None:
+    if difference:
+        print(f"pinjoint: {difference}", file=sys.stderr)
 
 
 def _rows(found: Mapping[str, Any]) -> Iterator[Row]:

@@ -4,19 +4,28 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+import unicodedata
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from platformdirs import user_data_path
 
 from components import suggestions
+from components.box import fits_file_names
 from game.documents import models
 
 DATA_VARIABLE = "PINJOINT_DATA"  # names another folder than the system's own
 LONGEST_NAME = 100  # characters
-_KEPT_BY_WINDOWS = {"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(10))}
+MOST_BYTES = 200  # in UTF-8; file systems take 255, with what is added to a name
+_KEPT_BY_WINDOWS = {
+    "con",
+    "prn",
+    "aux",
+    "nul",
+    *(f"{port}{n}" for port in ("com", "lpt") for n in "0123456789¹²³"),
+}
 
 
 class NameRefused(ValueError):
@@ -57,27 +66,41 @@ def models_folder() -> Path:
 
 def path_of(name: str) -> Path:
     """The file for a name. Raises NameRefused."""
-    name = name.strip()
-    wrong = sorted({character for character in name if not (character.isalnum() or character in " -._")})
+    name = unicodedata.normalize(
+        "NFC", name.strip()
+    )  # of several ways to write é the one that all systems find
+    wrong = sorted({character for character in name if not fits_file_names(character)})
     if not name:
         raise NameRefused("The name is empty; type at least one character.")
     if wrong:
         raise NameRefused(f"A name cannot contain {wrong[0]!r}; use letters, digits, spaces, - and _.")
     if name.startswith(".") or name.endswith("."):
         raise NameRefused("A name cannot begin or end with a dot.")
-    if name.partition(".")[0].lower() in _KEPT_BY_WINDOWS:
+    if name.partition(".")[0].rstrip().lower() in _KEPT_BY_WINDOWS:
         raise NameRefused(f"'{name}' means a device on some systems; choose another name.")
     if len(name) > LONGEST_NAME:
         raise NameRefused(f"The name has {len(name)} characters; use at most {LONGEST_NAME}.")
+    if len(name.encode()) > MOST_BYTES:
+        raise NameRefused(
+            f"The name takes {len(name.encode())} bytes in a file system; use at most {MOST_BYTES}."
+        )
     return models_folder() / f"{name}.json"
 
 
 def saved() -> list[Path]:
     """The files of the saved models, the newest first; none if the folder cannot be read."""
     try:
-        found = [(path.stat().st_mtime, path) for path in models_folder().glob("[!.]*.json")]
+        return newest_first(models_folder().glob("[!.]*.json"))
     except OSError:
         return []
+
+
+def newest_first(paths: Iterable[Path]) -> list[Path]:
+    """The paths at which there is something, by the time of the last change."""
+    found = []
+    for path in paths:
+        with suppress(OSError):  # such as a link that leads nowhere
+            found.append((path.stat().st_mtime, path))
     return [path for _, path in sorted(found, reverse=True)]
 
 
@@ -94,7 +117,7 @@ def find(name: str) -> Path | str | None:
 
 def nearest(name: str) -> str | None:
     """The name of a saved or bundled model that comes nearest, if one does."""
-    known = [*(path.stem for path in saved()), *models.bundled()]
+    known = [*map(models.name_of, saved()), *models.bundled()]
     return suggestions.nearest(name.strip(), known)
 
 

@@ -11,7 +11,7 @@ import re
 import shutil
 import uuid
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
@@ -26,7 +26,18 @@ from game.documents.document import ModelError, document, parse
 
 _ENCODER = msgspec.json.Encoder()
 
-__all__ = ["ModelError", "bundled", "document", "header_of", "laid_out", "load", "parse", "replace", "save"]
+__all__ = [
+    "ModelError",
+    "bundled",
+    "document",
+    "header_of",
+    "laid_out",
+    "load",
+    "name_of",
+    "parse",
+    "replace",
+    "save",
+]
 
 
 FOLDERS: list[Path] = []  # of mods, with models that are opened by name
@@ -97,6 +108,11 @@ def _found(source: str | Path) -> Path | Traversable:
     """A bundled model's name wins over a file, so that it means the same in every folder."""
     found = _bundled_files().get(source) if isinstance(source, str) else None
     return found or Path(source)
+
+
+def name_of(path: Path) -> str:
+    """What the model in a file is called; bytes that are no text as "�"."""
+    return os.fsencode(path.stem).decode(errors="replace")
 
 
 def _missing(source: str | Path) -> ModelError:
@@ -219,8 +235,19 @@ def replace(path: str | Path, content: bytes) -> None:
         if path.exists():
             shutil.copymode(path, temporary)
         temporary.replace(path)
+        _sync(path.parent)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def _sync(folder: Path) -> None:
+    """Let a folder's entries survive a power cut, where a system can be asked to."""
+    with suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
 
 
 def laid_out(value: Any, depth: int, indent: str = "", *, spaced: bool = True) -> str:

@@ -28,6 +28,8 @@ from systems.schedule import Schedule
 Source = str | Path | Mapping[str, Any]  # of a model: a file, the name of a bundled one, or its content
 Stamp = tuple[int, ...]
 
+EQUILIBRIUM_WITHOUT_MODS = "equilibrium without mods"  # the status of statics that does not know all laws
+
 
 @dataclass(frozen=True)
 class ModelFile:
@@ -43,7 +45,7 @@ class ModelFile:
     @classmethod
     def at(cls, path: Path) -> ModelFile:
         """The file at a path with its present stamp."""
-        return cls(path, path.stem, stamp_of(path))
+        return cls(path, models.name_of(path), stamp_of(path))
 
 
 def stamp_of(path: Path) -> Stamp:
@@ -53,6 +55,14 @@ def stamp_of(path: Path) -> Stamp:
     except OSError:
         return ()
     return found.st_ino, found.st_mtime_ns, found.st_size
+
+
+def without_mods(status: str, left_out: Sequence[str]) -> tuple[str, str]:
+    """A status of statics where laws of mods were left out, by name, and the sentence that names them; "" if none were."""
+    if not left_out:
+        return status, ""
+    status = EQUILIBRIUM_WITHOUT_MODS if status == "equilibrium" else status
+    return status, f"Settling leaves out the laws of mods: {', '.join(left_out)}."
 
 
 class OpenDocument:
@@ -108,7 +118,10 @@ class OpenDocument:
         self.history.end_run()
 
     def settle(self, factors: Sequence[float] | float) -> tuple[str, str]:
-        """Go to the static equilibrium at each load factor; returns its status and the account of the way there."""
+        """Go to the static equilibrium at each load factor; returns its status and the account of the way there.
+
+        It is not called "equilibrium" where laws of mods act that statics does not know.
+        """
         from systems.statics.settle import settle  # scipy
 
         model, clock = self.model, self.model.clock
@@ -133,8 +146,8 @@ class OpenDocument:
                 if len(yielded) > 1
                 else f"{rod[:1].upper()}{rod[1:]} has yielded at once."
             )
-        account.append(self._schedule.left_out_of_statics(model))
-        return found.status, " ".join(filter(None, account))
+        status, note = without_mods(found.status, self._schedule.left_out_of_statics(model))
+        return status, " ".join(filter(None, [*account, note]))
 
     # --- edits and the file ------------------------------------------------------------------------
 

@@ -125,7 +125,10 @@ class Scene:
 
     @property
     def message(self) -> str:
-        """The question, answer or refusal that the scene shows in a place of its own; "" if none."""
+        """The question, answer or refusal of the scene; "" if none.
+
+        Of a scene of a mod it stands where notices do; ours show it in a place of their own.
+        """
         return ""
 
     def enter(self, context: Context) -> None:

@@ -23,7 +23,7 @@ def show(context: Context) -> None:
     """Let the view show the session as it is now."""
     view, scene = context.view, context.scenes.active
     view.forces_known = context.waited_for(context.simulation) is None
-    said = _awaited(context) or context.notice
+    said = _awaited(context) or (scene.message if scene.mod is not None else "") or context.notice
     view.preview = _preview(context)
     view.flashes = _flashes(context)
     view.heading = scene.heading

@@ -71,7 +71,7 @@ class Set:
     def settle(self) -> None:
         """Skip the rest of the motion: go to its equilibrium, if there is one."""
         final = settle(self.model).final
-        if final.status == "equilibrium":
+        if final.balanced:
             with self.model.transaction("settle"):
                 self.model.give("particles.displacement", final.displacement)
                 self.model.give("particles.velocity", np.zeros_like(final.displacement))
@@ -287,7 +287,7 @@ def exact_forces(model: Model, unknowns: Sequence[Unknown]) -> list[float] | Non
     if not unknowns:
         return []
     final = settle(elastic_copy(model)).final
-    if final.status != "equilibrium":
+    if not final.balanced:
         return None
     return [
         float(final.axial_force[unknown.element.row])

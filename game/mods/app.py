@@ -6,50 +6,54 @@ import inspect
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TypeVar
-
-import numpy as np
+from typing import Any, TypeVar
 
 from components.component import Component, add_component
-from components.field import FieldError, Vector
 from components.handle import Handle
 from components.kind import add_kind
 from components.load import HISTORIES, HistoryKind, register_history
 from components.model import ADDED
-from components.obstacles import SHAPES, Pieces, Shape, check_pieces
-from components.view import Readout
+from components.obstacles import SHAPES, Shape
 from game.commands import COMMANDS, Command
-from game.commands.arguments import BAD_INPUT, UsageError
 from game.documents import models
+from game.documents.mod_data import UPGRADES, VERSIONS, Upgrade
 from game.editor.actions import ACTIONS, WHILE_DRAWING, Action, action
-from game.editor.context import PANELS, Context
+from game.editor.context import PANELS
 from game.editor.gestures.drawing import TOOL_HINTS, TOOLS, drawing_of
 from game.editor.scenes import SCENES, Scene, all_scenes
-from game.mods.guard import guarded_history, guarded_integrator, guarded_scene, guarded_system
-from game.mods.mod import Mod, ModError
-from game.paths import PathError
+from game.mods.declared import checks_arguments
+from game.mods.guard import guarded_history, guarded_integrator, guarded_maker, guarded_shape
+from game.mods.interface import (
+    Panel,
+    guarded_action,
+    guarded_command,
+    guarded_layer,
+    guarded_panel,
+    guarded_scene,
+)
+from game.mods.mod import INCLUDED, Mod, ModError
 from systems.base import Integrator, System
 from systems.catalogue import SYSTEMS
-from systems.edit import Refusal
 from systems.input.bindings import (
     LIVE,
     Binding,
     add_binding,
+    add_button,
     add_tool,
     key_named,
     remove_binding,
+    remove_button,
     remove_tool,
 )
 from systems.physics.integrators import INTEGRATORS, register_integrator, remove_integrator
 from systems.render.icons import ADDED as ADDED_ICONS
-from systems.render.icons import Part
+from systems.render.icons import Part, check_icon
 from systems.render.sheet import ABOVE, BELOW, Layer
 
 T = TypeVar("T")
-MISTAKES = (UsageError, models.ModelError, FieldError, PathError)  # of a person at the command line
-Panel = Callable[[Context], Readout | Sequence[Readout] | None]
 
 
+@checks_arguments
 class App:
     """The program, as a mod's `plugin(app)` sees it: one method for each kind of extension.
 
@@ -75,6 +79,7 @@ class App:
         except ValueError as error:
             raise ModError(str(error)) from None
         self._undo += [partial(delattr, component.of, name) for name in names]
+        self._keeps_data()
 
     def kind(self, kind: type[Handle]) -> None:
         """Add a kind of elements: a class with Fields, whose table every model has; see components.Handle.
@@ -87,6 +92,26 @@ class App:
         except ValueError as error:
             raise ModError(str(error)) from None
         self._undo.append(lambda: ADDED.pop(name))
+        self._keeps_data()
+
+    def upgrade(self, upgrade: Upgrade) -> None:
+        """Bring data of earlier versions of the mod in files up to date, such as Fields that were renamed.
+
+        upgrade(document, version) changes the document, what a model file says, before it is read. version: of the
+        mod that wrote the file, older than the present one; "" if the file does not say.
+        """
+        name, what = self.name, "upgrading its data in a file"
+
+        def upgraded(document: dict[str, Any], version: str) -> None:
+            self._mod.call(what, upgrade, document, version)
+            if self._mod.off:
+                wrote = version or "of an unknown version"
+                raise ValueError(
+                    f"the data of {name} {wrote} could not be upgraded; --no-mods opens it without the mod."
+                )
+
+        UPGRADES[name] = upgraded
+        self._undo.append(lambda: UPGRADES.pop(name))
 
     def tool(self, kind: type[Handle], *, key: str, title: str = "", icon: Sequence[Part] = ()) -> None:
         """Let a person draw elements of a kind with two points, from one to the other, by a key and a button.
@@ -105,28 +130,22 @@ class App:
             TOOLS[name].use
         )
         if icon:
-            ADDED_ICONS[name] = tuple(icon)
+            self._icon(name, icon)
             add_tool(name)
-            self._undo += [lambda: ADDED_ICONS.pop(name), lambda: remove_tool(name)]
+            self._undo.append(lambda: remove_tool(name))
 
     def shape(self, kind: type[Handle], shape: Shape) -> None:
         """Let particles collide with elements of a kind: `shape(table)` returns the Pieces that they are."""
         if kind in SHAPES:
             raise ModError(f"What {kind.table} collide as is registered already.")
-        mod, nothing = self._mod, Pieces(np.zeros((0, 2, 2)), np.zeros(0, dtype=np.intp))
-        source = getattr(shape, "__name__", "its function")
-        SHAPES[kind] = lambda table: mod.call(
-            f"the shape of {kind.table}",
-            lambda: check_pieces(table, shape(table), source),
-            otherwise=nothing,
-        )
+        SHAPES[kind] = guarded_shape(self._mod, kind, shape)
         self._undo.append(lambda: SHAPES.pop(kind))
 
     def system(self, system: Callable[[], System]) -> None:
         """Add a frame system, a law or a commit, by its class: every session makes one of its own."""
         name = getattr(system, "name", "")
         self._check_prefix("system", name or getattr(system, "__name__", "?"))
-        self._add(SYSTEMS, lambda: guarded_system(self._mod, system()))
+        self._add(SYSTEMS, guarded_maker(self._mod, system))
 
     def integrator(self, integrator: type[Integrator]) -> None:
         """Add an integrator that models, the command line and the properties can choose."""
@@ -163,6 +182,7 @@ class App:
         """Add a mode. Its `sources` are the scenes from which it can be reached; "pause" must be a target."""
         if scene.name in {other.name for other in all_scenes()}:
             raise ModError(f"There is a scene '{scene.name}' already; call this one something else.")
+        made = guarded_scene(self._mod, scene)
         if "pause" not in scene.targets:
             raise ModError(f"From the scene '{scene.name}' one must be able to go to pause; add it to targets.")
         if hasattr(scene, "advance"):
@@ -170,8 +190,7 @@ class App:
                 f"The scene '{scene.name}' has a method 'advance', which nothing calls any more; write a System with"
                 f" phase = Phase.STEP and scenes = ('{scene.name}',), and register it by app.system."
             )
-        guarded: Callable[[], Scene] = guarded_scene(self._mod, scene)
-        self._add(SCENES, guarded)
+        self._add(SCENES, made)
 
     def action(
         self,
@@ -181,20 +200,26 @@ class App:
         scenes: Sequence[str] = LIVE,
         title: str = "",
         while_drawing: bool = False,
+        icon: Sequence[Part] = (),
     ) -> Callable[[Action], Action]:
-        """Register a function(session, pixel) as a named action, and perhaps a key for it.
+        """Register a function(session, pixel) as a named action, and perhaps a key and a button for it.
 
-        Everything that it changes in the model is one step of undo, dropped whole if it raises.
+        Everything that it changes in the model is one step of undo, dropped whole if it raises. icon: of its button
+        in the toolbar of these scenes, as that of a tool; none, no button.
         """
         self._check_prefix("action", name)
 
         def register(function: Action) -> Action:
             if name in ACTIONS:
                 raise ModError(f"There is an action '{name}' already; call this one something else.")
-            action(name, while_drawing=while_drawing)(self._guarded_action(name, function))
+            action(name, while_drawing=while_drawing)(guarded_action(self._mod, name, function))
             self._undo += [lambda: ACTIONS.pop(name), lambda: WHILE_DRAWING.discard(name)]
             if key:
                 self.key(key, name, scenes, title)
+            if icon:
+                self._icon(name, icon)
+                add_button(Binding(key, name, tuple(scenes), title or name))
+                self._undo.append(lambda: remove_button(name))
             return function
 
         return register
@@ -223,23 +248,32 @@ class App:
         """
         if name in COMMANDS:
             raise ModError(f"There is a command '{name}' already; call this one something else.")
-        what, call = f"the command '{name}'", self._mod.call
-        COMMANDS[name] = Command(
-            lambda words: int(call(what, run, list(words), otherwise=BAD_INPUT, mistakes=MISTAKES)), about
-        )
+        COMMANDS[name] = Command(guarded_command(self._mod, name, run), about)
         self._undo.append(lambda: COMMANDS.pop(name))
 
     # --- what is seen ------------------------------------------------------------------------------------
 
     def layer(self, draw: Layer, *, below: bool = False) -> None:
         """Draw marks with every picture of a model, above its elements or below them; see systems/render/marks.py."""
-        drawn, layers = lambda sheet: list(draw(sheet)), BELOW if below else ABOVE
-        self._add(layers, lambda sheet: self._mod.call("its drawing layer", drawn, sheet, otherwise=[]))
+        self._add(BELOW if below else ABOVE, guarded_layer(self._mod, draw))
 
     def panel(self, read: Panel) -> None:
         """Show small panels beside the model: `read(session)` returns a Readout, several, or None."""
-        checked = _readouts(read)
-        self._add(PANELS, lambda session: self._mod.call("its panel", checked, session, otherwise=()))
+        self._add(PANELS, guarded_panel(self._mod, read))
+
+    def _icon(self, name: str, icon: Sequence[Part]) -> None:
+        try:
+            check_icon(icon)
+        except ValueError as error:
+            raise ModError(f"The icon of '{name}': {error}") from None
+        ADDED_ICONS[name] = tuple(icon)
+        self._undo.append(lambda: ADDED_ICONS.pop(name))
+
+    def _keeps_data(self) -> None:
+        """Note the version, which files state that hold data of the mod."""
+        if self._mod.source != INCLUDED and self.name not in VERSIONS:
+            VERSIONS[self.name] = self._mod.version
+            self._undo.append(lambda: VERSIONS.pop(self.name))
 
     # --- all or nothing ------------------------------------------------------------------------------------
 
@@ -256,22 +290,6 @@ class App:
         if not name.startswith(f"{self.name}."):
             raise ModError(f"The {what} '{name}' must be named after its mod, such as '{self.name}.{name}'.")
 
-    def _guarded_action(self, name: str, function: Action) -> Action:
-        mod = self._mod
-
-        def act(context: Context, pixel: Vector) -> None:
-            if mod.off:
-                raise Refusal(f"The mod '{mod.name}' is switched off: {mod.problem}")
-            try:
-                with context.model.transaction(name):
-                    function(context, pixel)
-            except (Refusal, FieldError):
-                raise
-            except Exception as error:  # any error of code that is not ours
-                mod.fail(f"the action '{name}'", error)
-
-        return act
-
 
 def _checked_key(key: str) -> str:
     """The name of a key in the bindings. Raises ModError."""
@@ -282,17 +300,6 @@ def _checked_key(key: str) -> str:
     if "shift" in key.lower() and "shift" not in named:
         raise ModError(f"The key '{key}' is the same as '{named}'; take that, or 'ctrl+shift+{named}'.")
     return named
-
-
-def _readouts(read: Panel) -> Callable[[Context], Sequence[Readout]]:
-    def readouts(context: Context) -> Sequence[Readout]:
-        made = read(context)
-        several = () if made is None else [made] if isinstance(made, Readout) else made
-        if isinstance(several, str) or not all(isinstance(readout, Readout) for readout in several):
-            raise TypeError(f"{getattr(read, '__name__', 'a panel')} returned {made!r}, not a Readout or None")
-        return several
-
-    return readouts
 
 
 def check_plugin(plugin: object) -> Callable[[App], object]:

@@ -64,6 +64,14 @@ def _of_package(name: str, module: str) -> Mod:
     return made
 
 
+def origin_of_module(name: str) -> str | None:
+    """Where the Python module of a name is from, such as its file or "built-in"; None if there is none."""
+    if name in sys.modules:
+        return str(getattr(sys.modules[name], "__file__", None) or "built-in")
+    spec = importlib.util.find_spec(name)
+    return spec.origin if spec is not None else None  # a folder without __init__.py has no origin
+
+
 # --- order ---------------------------------------------------------------------------------------------
 
 

@@ -1,47 +1,90 @@
-"""Guards around the code of mods: when it fails, the mod is switched off and the session goes on."""
+"""Guards around what mods add to models and their runs: when it fails, the mod is switched off and the session goes on.
+
+What a person sees and does of mods is guarded in interface.py.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from copy import copy
 from dataclasses import replace
-from typing import Any
+from typing import Any, ClassVar, get_args, get_origin, get_type_hints
 
-from components.field import FieldError
+import numpy as np
+from numpy.typing import NDArray
+
+from components.field import Column, FieldError, Role
+from components.handle import Handle
 from components.load import HistoryKind
 from components.model import Model
+from components.obstacles import Pieces, Shape, check_pieces
 from components.snapshot import Snapshot
-from game.editor.context import Scene
-from game.mods.mod import INCLUDED, Mod
-from game.mods.watchdog import interrupted_after, stop_after
-from systems.base import Event, Integrator, StepSystem, System
+from components.table import Table
+from components.view import View
+from game.editor.context import Context
+from game.mods.declared import as_declared, check_fields
+from game.mods.mod import INCLUDED, Mod, ModError
+from game.mods.watchdog import stop_after
+from systems.base import Commit, Event, Integrator, Law, StepSystem, System
 from systems.physics.integrators import VelocityVerlet
 
 PATIENCE = 2.0  # s that a frame system may take; a longer one is interrupted
+
+_ROLES = (Law, Commit, Event, Integrator, StepSystem, System)
+
+
+# --- systems -------------------------------------------------------------------------------------------
+
+
+def guarded_maker(mod: Mod, system: Callable[[], System]) -> Callable[[], System]:
+    """What makes a system of a mod for every session; one that cannot be made any more does nothing."""
+    name = check_declarations(system()).name
+
+    def make() -> System:
+        made = mod.call(f"making the system '{name}'", system)
+        return guarded_system(mod, made) if made is not None else _nothing(name)
+
+    return make
+
+
+def check_declarations(system: Any) -> System:
+    """A system whose class attributes are of the types that its role declares. Raises ModError, TypeError."""
+    role = next((role for role in _ROLES if isinstance(system, role)), None)
+    if role is None:
+        raise ModError(f"{type(system).__name__} is no System; derive it from one of systems.base.")
+    for name, hint in get_type_hints(role).items():
+        if get_origin(hint) is ClassVar:
+            as_declared(getattr(system, name), get_args(hint)[0], f"{type(system).__name__}.{name}")
+    made: System = system
+    return made
+
+
+def _nothing(name: str) -> System:
+    """A system of that name that no model needs."""
+    made = System()
+    vars(made).update(name=name, unneeded="its mod is switched off", needs=lambda model: False)
+    return made
 
 
 def guarded_system(mod: Mod, system: System) -> System:
     """The system of a mod, wrapped so that it is left out once the mod is switched off.
 
     The commands of a frame system, or of an event, are one step of undo. If the system raises or takes too long,
-    its commands are dropped whole, and the columns that it declares in `writes` and `adds` are restored.
+    or leaves what a Field cannot take, such as NaN, its commands are dropped whole, and the columns that it declares
+    in `writes` and `adds` are restored.
     """
-    needs, process = system.needs, system.process
-    what = f"the system '{system.name}'"
-
-    def needed(model: Model) -> bool:
-        return bool(mod.call(f"the question whether '{system.name}' is needed", needs, model, otherwise=False))
-
-    def processed(frame: Any) -> None:
-        _change_whole(mod, system, what, frame.session.model, lambda: process(frame))
-
+    what, process = f"the system '{system.name}'", system.process
     system.mod = mod
-    vars(system)["needs"] = needed
+    _guard_question(mod, system, "needs", bool, otherwise=False)
     if isinstance(system, StepSystem):
-        arrays, asked = system.arrays, f"the question for the arrays of '{system.name}'"
-        vars(system)["arrays"] = lambda model: mod.call(asked, arrays, model, otherwise={})
+        _guard_question(mod, system, "arrays", Mapping[str, NDArray[Any]], otherwise={})
+        _guard_question(mod, system, "leaves_flight_exact", bool, otherwise=False)
     else:
-        vars(system)["process"] = processed
+        vars(system)["process"] = lambda frame: _change_whole(
+            mod, system, what, frame.session.model, lambda: _in_frame(process, frame)
+        )
     if isinstance(system, Event):
         happen = system.happen
         vars(system)["happen"] = lambda model, *elements: _change_whole(
@@ -50,53 +93,99 @@ def guarded_system(mod: Mod, system: System) -> System:
     return system
 
 
+def _guard_question(mod: Mod, system: System, name: str, declared: Any, otherwise: Any) -> None:
+    """Let a question about a model that a system answers switch its mod off if it fails."""
+    own, what = getattr(system, name), f"{name} of '{system.name}'"
+    vars(system)[name] = lambda model: mod.call(what, own, model, otherwise=otherwise, declared=declared)
+
+
 def _change_whole(mod: Mod, system: System, what: str, model: Model, change: Callable[[], None]) -> None:
-    """Let a system change a model, by all of its commands or by none."""
-    tables = {column.partition(".")[0] for column in (*system.writes, *system.adds)}
-    before = Snapshot.take(model, *tables & model.tables.keys()) if tables & model.tables.keys() else None
-    try:
+    """Let a system change a model, by all of its commands or by none, and only to what Fields can take."""
+    tables = {column.partition(".")[0] for column in (*system.writes, *system.adds)} & model.tables.keys()
+    before = Snapshot.take(model, *tables) if tables else None
+
+    def changed() -> bool:
         with model.transaction(system.name):
             if mod.source == INCLUDED:
                 change()
             else:
-                _watched(change, model)
-    except Exception as error:  # any error of code that is not ours
-        if before is not None:
-            before.restore(model)
-        mod.fail(what, error)
+                interruptible(change, model, PATIENCE)
+                _check_state(model, tables)
+        return True
+
+    if not mod.call(what, changed, otherwise=False, patience=PATIENCE) and before is not None:
+        before.restore(model)
 
 
-def _watched(change: Callable[[], None], model: Model) -> None:
-    """Run what a system changes; interrupt it after PATIENCE, and restore entities that it deleted past the tables.
+def _check_state(model: Model, tables: Iterable[str]) -> None:
+    """Raise FieldError if the state of these tables holds what their Fields cannot take, such as NaN."""
+    for table in (model.tables[name] for name in tables):
+        for field in table.fields_in(Role.STATE):
+            if field.dtype is not object:
+                column: Column = table.column(field.name)
+                field.check_column(column, table.count, lambda row, table=table: model.describe(table[row]))  # type: ignore[misc]
 
-    A command is never interrupted; a system that does nothing but give commands is stopped before the next one.
-    """
-    model.before_command = stop_after(PATIENCE)
+
+def _in_frame(process: Callable[[Any], object], frame: Any) -> None:
+    with view_kept(frame.session):
+        process(frame)
+
+
+@contextmanager
+def view_kept(context: Context) -> Iterator[None]:
+    """Put the view and the notice back if the body raises, or leaves in them what cannot be shown."""
+    view, notice = context.view, context.notice
+    attributes, camera = dict(vars(view)), copy(view.camera)
     try:
-        with interrupted_after(PATIENCE, lambda: not model.changing):
-            change()
+        yield
+        check_view(context.view)
+        as_declared(context.notice, str, "the session's notice")
+    except BaseException:
+        vars(view).update(attributes, camera=camera)
+        context.view, context.notice = view, notice
+        raise
+
+
+def check_view(view: View) -> None:
+    """Raise TypeError or ValueError if a view holds what cannot be shown."""
+    check_fields(view, View)
+    numbers = (*view.camera.centre, view.camera.scale, view.pixel_ratio)
+    if not (all(map(math.isfinite, numbers)) and view.camera.scale > 0.0 < view.pixel_ratio):
+        raise ValueError(f"the view's camera is at {numbers[:2]} with {numbers[2]} pixels per metre")
+
+
+def interruptible(change: Callable[[], object], model: Model, patience: float) -> None:
+    """Run what changes a model by commands, and restore entities that it deleted past the tables.
+
+    A command is never interrupted; code that does nothing but give commands is stopped before the first one after
+    `patience` (s).
+    """
+    model.before_command = stop_after(patience)
+    try:
+        change()
     finally:
         model.before_command = None
         model.check_entities()
 
 
+# --- histories, integrators, shapes --------------------------------------------------------------------
+
+
 def guarded_history(mod: Mod, kind: HistoryKind) -> HistoryKind:
     """The history of a mod, whose Python functions switch the mod off if they fail."""
 
-    def guarded(what: str, function: Callable[..., Any], otherwise: Any, *mistakes: type[Exception]) -> Any:
-        what = f"the {what} of the history '{kind.name}'"
-        return lambda *given: mod.call(what, function, *given, otherwise=otherwise, mistakes=mistakes)
+    def guarded(name: str, declared: Any, otherwise: Any, *mistakes: type[Exception]) -> Any:
+        own, what = getattr(kind, name), f"{name} of the history '{kind.name}'"
+        return lambda *given: mod.call(
+            what, own, *given, otherwise=otherwise, declared=declared, mistakes=mistakes
+        )
 
-    static = kind.static
-    if callable(static):
-        own = static
-        static = guarded("static factor", lambda history: float(own(history)), 0.0)
     return replace(
         kind,
-        check=guarded("check", kind.check, None, FieldError),
-        ends=guarded("end", lambda history: float(kind.ends(history)), -math.inf),
-        breaks=guarded("breaks", lambda history: tuple(kind.breaks(history)), ()),
-        static=static,
+        check=guarded("check", Any, None, FieldError),
+        ends=guarded("ends", float, -math.inf),
+        breaks=guarded("breaks", Iterable[float], ()),
+        static=guarded("static", float, 0.0) if callable(kind.static) else kind.static,
         mod=mod,
     )
 
@@ -106,7 +195,7 @@ def guarded_integrator(mod: Mod, integrator: Integrator) -> Integrator:
     own = integrator.stable_step
 
     def stable_step(frequency: float, decay: float) -> float:
-        size = float(own(frequency, decay))
+        size: float = as_declared(own(frequency, decay), float, "it")
         if not size >= 0.0:
             raise ValueError(f"it is {size} s; return a step of at least 0, which says that none is stable")
         return size
@@ -116,27 +205,24 @@ def guarded_integrator(mod: Mod, integrator: Integrator) -> Integrator:
         size: float = mod.call(what, stable_step, frequency, decay, otherwise=math.nan)
         return VelocityVerlet.stable_step(frequency, decay) if math.isnan(size) else size
 
-    integrator.mod = mod
+    check_declarations(integrator).mod = mod
     vars(integrator)["stable_step"] = called
     return integrator
 
 
-_METHODS = tuple(name for name, method in vars(Scene).items() if callable(method) and name[0] != "_")
+def guarded_shape(mod: Mod, kind: type[Handle], shape: Shape) -> Shape:
+    """What elements of a mod's kind collide as, wrapped so that they are nothing if it fails."""
+    nothing = Pieces(np.zeros((0, 2, 2)), np.zeros(0, dtype=np.intp))
+    source = getattr(shape, "__name__", "its function")
 
+    def pieces(table: Table[Any]) -> Pieces:
+        made = shape(table)
+        if not isinstance(made, Pieces):
+            raise TypeError(f"{source} returned {made!r}, not Pieces")
+        return check_pieces(table, as_declared(made, Pieces, source), source)
 
-def guarded_scene(mod: Mod, kind: type[Scene]) -> type[Scene]:
-    """The scene of a mod, wrapped so that it does nothing and leads to pause once the mod is switched off."""
-    methods = {name: _guarded_method(mod, kind, name) for name in _METHODS}
-    return type(kind.__name__, (kind,), {**methods, "mod": mod})
+    def called(table: Table[Any]) -> Pieces:
+        found: Pieces = mod.call(f"the shape of {kind.table}", pieces, table, otherwise=nothing)
+        return found
 
-
-def _guarded_method(mod: Mod, kind: type[Scene], name: str) -> Callable[..., Any]:
-    own, plain = getattr(kind, name), getattr(Scene, name)
-
-    def method(scene: Scene, session: Any, *arguments: Any) -> Any:
-        made = mod.call(f"the scene '{kind.name}'", own, scene, session, *arguments, otherwise=mod)
-        if made is not mod:
-            return made
-        return plain(scene, session, *arguments)
-
-    return method
+    return called

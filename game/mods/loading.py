@@ -5,17 +5,18 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import sys
-from collections.abc import Iterable, Sequence
+import threading
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 
 from game.documents.preferences import preferred_keys
 from game.editor.context import FAULTS
+from game.interrupts import is_persons, mark_interrupts
 from game.mods import finding
 from game.mods.app import App, check_plugin
 from game.mods.finding import in_order, required
 from game.mods.mod import MANIFEST, Mod, ModError
-from game.mods.watchdog import interrupted_after
 from game.version import __version__
 from systems.catalogue import all_systems
 from systems.input.bindings import prefer
@@ -38,6 +39,8 @@ def load(folders: Iterable[str | Path] = (), *, installed: bool = False) -> list
     new = [mod for mod in found if mod.folder not in known]
     ordered = in_order(new, __version__, [mod for mod in MODS if mod.loaded])
     MODS.extend(new)
+    if ordered:
+        mark_interrupts()
     for mod in ordered:
         _load(mod)
     FAULTS.extend(f"The mod '{mod.name}' was left out: {mod.problem}" for mod in new if mod.off)
@@ -71,30 +74,52 @@ def unload(mods: Sequence[Mod]) -> None:
     for mod in reversed(mods):
         if mod.withdraw is not None:
             mod.withdraw()
-            _forget(mod.module)
+            _forget(mod)
         if mod in MODS:
             MODS.remove(mod)
 
 
 def _load(mod: Mod) -> None:
     app = App(mod)
+    modules, threads = dict(sys.modules), set(threading.enumerate())
     try:
         for name in required(mod):
             if any(other.name == name and other.off for other in MODS):
                 raise ModError(f"It requires the mod '{name}', which cannot be used.")
-        with interrupted_after(PATIENCE, lambda: True):
-            module = _import(mod)
-            check_plugin(getattr(module, "plugin", None))(app)
-            Schedule(all_systems())
+        mod.within(PATIENCE, lambda: _plug_in(mod, app))
+        _check_left_behind(modules, threads)
     except ModError as error:
         mod.problem = str(error)
-    except Exception as error:  # any error of code that is not ours
+    except BaseException as error:  # of code that is not ours
+        if is_persons(error):
+            raise
         mod.problem = mod.describe(error)
+    sys.modules.update(modules)
     if mod.off:
         app.withdraw()
-        _forget(mod.module)
+        _forget(mod)
     else:
         mod.withdraw = app.withdraw
+
+
+def _plug_in(mod: Mod, app: App) -> None:
+    """Import a mod and let it register what it has. Raises ModError, or whatever its code raises."""
+    module = _import(mod)
+    check_plugin(getattr(module, "plugin", None))(app)
+    Schedule(all_systems())
+
+
+def _check_left_behind(modules: Mapping[str, ModuleType], threads: set[threading.Thread]) -> None:
+    """Raise ModError if a mod changed these modules, or left a thread running besides these."""
+    for name, module in modules.items():
+        if sys.modules.get(name) is not module:
+            raise ModError(f"It replaced or removed the module '{name}' in sys.modules, which others use.")
+    for thread in set(threading.enumerate()) - threads:
+        if thread.is_alive() and not thread.daemon:
+            raise ModError(
+                f"Its plugin(app) left the thread '{thread.name}' running, which would keep the program from ending;"
+                " start it with daemon=True."
+            )
 
 
 def _import(mod: Mod) -> ModuleType:
@@ -109,12 +134,11 @@ def _find(mod: Mod) -> None:
     file = mod.folder / "__init__.py"
     if not file.is_file():
         raise ModError("It has no __init__.py with a function plugin(app).")
-    present = sys.modules.get(mod.name)
-    if present is not None and _is_from(getattr(present, "__file__", None), file):
-        return
-    spec = None if present is not None else importlib.util.find_spec(mod.name)
-    if present is not None or (spec is not None and not _is_from(spec.origin, file)):
+    origin = finding.origin_of_module(mod.name)
+    if origin is not None and not _is_from(origin, file):
         raise ModError(f"There is a Python module '{mod.name}' already; give the mod another name.")
+    if mod.name in sys.modules:
+        return
     spec = importlib.util.spec_from_file_location(mod.name, file, submodule_search_locations=[str(mod.folder)])
     assert spec is not None
     assert spec.loader is not None
@@ -123,10 +147,15 @@ def _find(mod: Mod) -> None:
     spec.loader.exec_module(module)
 
 
-def _is_from(origin: str | None, file: Path) -> bool:
-    return origin is not None and Path(origin).resolve() == file.resolve()
+def _is_from(origin: str, file: Path) -> bool:
+    return Path(origin).resolve() == file.resolve()
 
 
-def _forget(module: str) -> None:
-    for name in [name for name in sys.modules if name == module or name.startswith(f"{module}.")]:
+def _forget(mod: Mod) -> None:
+    """Let the modules of a mod be imported anew; one of its name that is not its own stays."""
+    root = sys.modules.get(mod.module)
+    file = getattr(root, "__file__", None)
+    if mod.folder is None or not isinstance(file, str) or not Path(file).resolve().is_relative_to(mod.folder):
+        return
+    for name in [name for name in sys.modules if name == mod.module or name.startswith(f"{mod.module}.")]:
         del sys.modules[name]

@@ -4,17 +4,29 @@ from __future__ import annotations
 
 import keyword
 import logging
+import math
+import os
 import traceback
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
+from components.wording import printable
 from game.editor.context import FAULTS
+from game.interrupts import is_persons
+from game.mods.declared import as_declared
+from game.mods.watchdog import is_running, within
+
+T = TypeVar("T")
 
 LOG = logging.getLogger("pinjoint.mods")
+LOG.setLevel(logging.DEBUG)  # tracebacks are for those who listen, such as mods.log
 INCLUDED = "Pinjoint"  # the source of the mods that come with the program
 MANIFEST = "mod.toml"
+LONGEST_MESSAGE = 500  # characters of what an error says
+PATIENCE = 10.0  # s that whatever a mod is asked may take, the compilation of functions of its own included
+OURS = tuple(f"{Path(__file__).parents[2] / part}{os.sep}" for part in ("components", "systems", "game"))
 
 _KEYS = ("name", "version", "description", "requires")  # of a manifest
 
@@ -58,18 +70,20 @@ class Mod:
         self.switch_off(f"{what} failed: {self.describe(error)}", error)
 
     def switch_off(self, reason: str, error: BaseException | None = None) -> None:
-        """Switch the mod off: from now on `call` calls nothing of it."""
+        """Switch the mod off, unless it is already: from now on `call` calls nothing of it."""
+        if self.off:
+            return
         self.problem = reason
         sentence = f"The mod '{self.name}' was switched off: {reason} Your model is as it was before."
         FAULTS.append(sentence)
-        LOG.error(sentence, exc_info=error)
+        LOG.error(sentence)
+        LOG.debug("Traceback of the mod '%s':", self.name, exc_info=error)
 
     def describe(self, error: BaseException) -> str:
         """An error with the file and the line of this mod in which it happened."""
-        place = self._place(error)
-        message = error.msg if isinstance(error, SyntaxError) else str(error)
+        place, message = self._place(error), _message(error)
         said = message if isinstance(error, ModError) else f"{type(error).__name__}: {message}"
-        return f"{said.rstrip('.')}{f' ({place})' if place else ''}."
+        return f"{said.rstrip('.: ')}{f' ({place})' if place else ''}."
 
     def _place(self, error: BaseException) -> str:
         if isinstance(error, SyntaxError) and error.filename:
@@ -84,21 +98,46 @@ class Mod:
         function: Callable[..., Any],
         *arguments: Any,
         otherwise: Any = None,
-        mistakes: tuple[type[Exception], ...] = (),
+        declared: Any = Any,
+        patience: float = PATIENCE,
+        mistakes: tuple[type[BaseException], ...] = (),
     ) -> Any:
-        """The result of a function of the mod; `otherwise` if the mod is off or the function fails, which switches it off.
+        """What a function of the mod returns, made plain; all that the mod does passes here.
 
-        mistakes: errors that tell a person what to correct; they are raised.
+        It is `otherwise` if the mod is off, or if the function raises anything (SystemExit and KeyboardInterrupt
+        included; only Ctrl+C goes on), runs longer than `patience` (s) or returns what is not of the type `declared`,
+        which switches the mod off. mistakes: errors that tell a person what to correct; they are raised.
         """
         if self.off:
             return otherwise
         try:
-            return function(*arguments)
+            if self.source == INCLUDED:
+                return function(*arguments)
+            return self.within(
+                patience, lambda: as_declared(function(*arguments), declared, "what it returned")
+            )
         except mistakes:
             raise
-        except Exception as error:  # any error of code that is not ours
+        except BaseException as error:  # of code that is not ours
+            if is_persons(error):
+                raise
             self.fail(what, error)
             return otherwise
+
+    def within(self, patience: float, function: Callable[[], T]) -> T:
+        """The result of a function; after `patience` TooLong is raised in the mod's code, or in a library's that it calls."""
+        if not math.isfinite(patience) or self.folder is None:
+            return function()
+        return within(patience, is_running(f"{self.folder}{os.sep}", others=OURS), function)
+
+
+def _message(error: BaseException) -> str:
+    """What an error says, in one line."""
+    try:
+        said = str(error.msg if isinstance(error, SyntaxError) else error)
+    except Exception:  # of code that is not ours
+        return "its message cannot be read"
+    return printable(" ".join(said.split()))[:LONGEST_MESSAGE]
 
 
 def _short(path: str) -> str:

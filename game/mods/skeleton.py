@@ -5,6 +5,7 @@ from __future__ import annotations
 import keyword
 from pathlib import Path
 
+from game.mods.finding import origin_of_module
 from game.mods.mod import MANIFEST, ModError
 
 _MANIFEST = """\
@@ -76,6 +77,8 @@ def write_skeleton(name: str, parent: Path, version: str) -> list[Path]:
     if not name.isidentifier() or keyword.iskeyword(name) or "__" in name:
         raise ModError(f"The name '{name}' must be like a Python name, such as 'wind'.")
     folder = parent / name
+    if not folder.exists() and origin_of_module(name) is not None:
+        raise ModError(f"There is a Python module '{name}' already; give the mod another name.")
     try:
         folder.mkdir(parents=True)
         paths = []

@@ -10,6 +10,9 @@ from typing import Any, TextIO
 
 from components.field import Vector
 from game.documents.document import ModelError
+from game.editor.context import FAULTS
+from game.mods.loading import MODS
+from game.mods.mod import INCLUDED, ModError
 from game.paths import apply_override
 from game.scripts.expectation import check
 from game.scripts.script import HEADER, Script, ScriptError
@@ -29,11 +32,44 @@ class Failure:
 
 
 def session_of(script: Script) -> Session:
-    """The session that the header of a script asks for. Raises ScriptError."""
+    """The session that the header of a script asks for; its notice says what differs. Raises ScriptError."""
+    different = check_mods(script)
     try:
-        return Session.open(script.source)
+        session = Session.open(script.source)
     except ModelError as error:
         raise ScriptError(f"{script.path} line {script.lines[0][0]}: {error}") from None
+    session.notice = " ".join(filter(None, (session.notice, different)))
+    return session
+
+
+def check_mods(script: Script) -> str:
+    """How the mods that are loaded differ from those that a script was recorded with, as a sentence; "" if they don't.
+
+    Raises ScriptError if one is missing.
+    """
+    if script.mods is None:
+        return ""
+    here = _loaded_mods()
+    if missing := [f"{name} {version}" for name, version in script.mods.items() if name not in here]:
+        raise ScriptError(
+            f"{script.path} was recorded with the mod {', '.join(missing)}, which is not loaded; name its folder:"
+            " --mods FOLDER."
+        )
+    others = [
+        f"{name} {version} {f'instead of {script.mods[name]}' if name in script.mods else 'besides'}"
+        for name, version in here.items()
+        if version != script.mods.get(name)
+    ]
+    if not others:
+        return ""
+    return (
+        f"{script.path} was recorded with other mods, there is now {', '.join(others)}: it may play otherwise."
+    )
+
+
+def _loaded_mods() -> dict[str, str]:
+    """Versions of the mods that act now, those that come with the program apart, by name."""
+    return {mod.name: mod.version for mod in MODS if mod.loaded and not mod.off and mod.source != INCLUDED}
 
 
 def play(script: Script, session: Session | None = None) -> list[Failure]:
@@ -45,12 +81,19 @@ def play(script: Script, session: Session | None = None) -> list[Failure]:
 
 
 def play_line(script: Script, number: int, entry: Mapping[str, Any], session: Session) -> list[Failure]:
-    """Do what one line of a script says; returns the expectations that did not hold. Raises ScriptError."""
+    """Do what one line of a script says; returns the expectations that did not hold. Raises ScriptError.
+
+    One of every line is that no mod fails.
+    """
+    known, failures = len(FAULTS), list[Failure]()
     try:
-        return [Failure(number, *wrong) for wrong in perform(session, entry)]
+        failures += [Failure(number, *wrong) for wrong in perform(session, entry)]
+    except ModError:
+        pass  # it is among FAULTS
     except (ValueError, LookupError, TypeError) as error:
         reason = error.args[0] if error.args else error
         raise ScriptError(f"{script.path} line {number}: {reason}") from error
+    return failures + [Failure(number, "mods that work", fault) for fault in FAULTS[known:]]
 
 
 _EXAMPLES: dict[str, Any] = {  # by key of a line: a value of the required shape
@@ -150,7 +193,7 @@ class Recorder:
     def __init__(self, session: Session, file: TextIO, model: Any) -> None:
         self._file = file
         self._session = session
-        self._write({**HEADER, "model": model})
+        self._write({**HEADER, "model": model, "mods": _loaded_mods()})
         self._resized()
         self._write({"action": "fit"})
         session.on_press, session.on_resize = self._pressed, self._resized

@@ -2,7 +2,8 @@
 
 The first line is a header, {"format": "pinjoint session", "version": 1, "model": "isostatic"} (a bundled
 name, a path relative to the script, or a whole document; left out: an empty model), perhaps with a "title" and
-a "description". Every further line does one thing:
+a "description", and the "mods" that it was recorded with, {"wind": "1.0"}, without which it is not played. Every
+further line does one thing:
 
     {"press": "space"}                          a key; "over": [x, y] first moves the pointer there (m)
     {"click": [1.0, 1.0]}                       at a point of the model (m); "button": "ctrl+click"
@@ -37,7 +38,7 @@ from typing import Any
 from components.suggestions import remedy
 
 HEADER = {"format": "pinjoint session", "version": 1}
-_HEADER_KEYS = (*HEADER, "model", "title", "description")
+_HEADER_KEYS = (*HEADER, "model", "title", "description", "mods")
 EMPTY = {"format": "pinjoint model", "version": 1}
 
 
@@ -51,6 +52,10 @@ def lessons() -> list[str]:
     return [name.removesuffix(".jsonl") for name in names if name.endswith(".jsonl")]
 
 
+def _are_mods(value: object) -> bool:
+    return isinstance(value, dict) and all(isinstance(version, str) for version in value.values())
+
+
 def _found(source: str | Path) -> Path | Traversable:
     """The lesson of that name, or else a file."""
     if isinstance(source, str) and source in lessons():
@@ -61,7 +66,8 @@ def _found(source: str | Path) -> Path | Traversable:
 class Script:
     """A script read from a file, or a lesson by its name, ready to be played in a session.
 
-    title, description: from its header, or "". has_data: whether a folder is chosen in which the script saves and
+    title, description: from its header, or "". mods: versions, by name, of those that it was recorded with; None: the
+    header says nothing of mods. has_data: whether a folder is chosen in which the script saves and
     loads; else it must be kept away from the models that the person saved.
     """
 
@@ -83,6 +89,10 @@ class Script:
                 )
         if not isinstance(model := header.get("model", EMPTY), str | dict):
             raise ScriptError(f"{source} line 1: model is {json.dumps(model)}; write a name or a document.")
+        self.mods: dict[str, str] | None = header.get("mods")
+        if self.mods is not None and not _are_mods(self.mods):
+            said = json.dumps(self.mods)
+            raise ScriptError(f'{source} line 1: mods is {said}; write names and versions, {{"wind": "1.0"}}.')
         self.title, self.description = (str(header.get(key, "")) for key in ("title", "description"))
 
     def _read(self) -> Iterator[tuple[int, dict[str, Any]]]:

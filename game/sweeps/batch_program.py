@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from components.field import Column
 from game.sweeps.batched_model import BatchedModel
+from systems.program.binding import bind
 from systems.program.compiler import compile_module, note_compiled
 from systems.program.program import Program
 
@@ -54,14 +55,14 @@ class BatchProgram:
         lines = [
             '"""A step program for variants. Generated; safe to delete."""',
             "",
-            "from numba import njit",
+            "from systems.kernels import kept",
             "",
         ]
         for name, parameters in self._parameters.items():
             one_for_all = (*_SHARED, *self._scratch(name))
             arguments = [p if p in one_for_all else f"{p}[k]" for p in parameters]
             lines += [
-                '@njit(error_model="numpy", nogil=True, cache=True)',
+                '@kept(error_model="numpy", nogil=True)',
                 f"def {name}_each(variants, taken, reason, {', '.join(parameters)}):",
                 "    for k in variants:",
                 f"        {_RETURNS.get(name, '')}{name}({', '.join(arguments)})",
@@ -90,7 +91,7 @@ class BatchProgram:
         """The arrays of the systems, made for each variant."""
         variants = [model.part(np.array([variant])).as_model() for variant in range(model.variants)]
         each = [
-            {name: array for system in self.program.systems for name, array in system.arrays(variant).items()}
+            {n: a for system in self.program.systems for n, a in bind(system, variant).stored_arrays.items()}
             for variant in variants
         ]
         return {name: np.array([arrays[name] for arrays in each]) for name in each[0]}

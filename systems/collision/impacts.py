@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from components.model import Model
 from components.obstacles import obstacles
+from components.table import read_only
 
 MOST_KEPT = 2**22  # impacts; of longer runs the earliest are forgotten
 _COLUMNS = ("time", "first", "second", "impulse", "energy_lost", "x", "y")
@@ -64,9 +65,7 @@ class Impacts:
         column = self._table[: len(self), _COLUMNS.index(name)]
         if name in ("first", "second"):
             return column.astype(np.int64)
-        column = column.view()
-        column.flags.writeable = False
-        return column
+        return read_only(column)
 
     def as_csv(self) -> str:
         """One impact a line: time (s), the particles' names, impulse (N·s), energy lost (J), point (m)."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from components.box import FILE_NAME, NUMBER, TEXT, Box
+from components.box import FILE_NAME, NUMBER, TEXT, Box, fits_file_names
 from components.form import Form
 from components.tags import Selected
 
@@ -150,7 +150,7 @@ def _entered(box: Box, character: str) -> tuple[str, int] | None:
         return before + character + after, len(before) + 1
     elif box.accepts == FILE_NAME:
         character = character.replace("/", "-")
-        if character.isalnum() or character in " -._":
+        if fits_file_names(character):
             return before + character + after, len(before) + 1
     return _completed(box, words, character)
 

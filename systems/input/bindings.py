@@ -156,6 +156,7 @@ TOOLBAR: tuple[tuple[str, ...], ...] = (
 
 ADDED_TOOLS: list[str] = []  # drawing actions of mods, at the end of the group of PLACE
 PLACE = "place"
+ADDED_BUTTONS: list[Binding] = []  # other actions of mods, in a group of their own; a button needs no key
 
 _BY_KEY = {(scene, binding.key): binding for binding in BINDINGS for scene in binding.scenes}
 
@@ -179,6 +180,18 @@ def add_tool(action: str) -> None:
 def remove_tool(action: str) -> None:
     """Take back what `add_tool` did."""
     ADDED_TOOLS.remove(action)
+    toolbar.cache_clear()
+
+
+def add_button(binding: Binding) -> None:
+    """Let the toolbar offer an action of a mod in some scenes, by a key that performs it there, or without one."""
+    ADDED_BUTTONS.append(replace(binding, key=""))
+    toolbar.cache_clear()
+
+
+def remove_button(action: str) -> None:
+    """Take back what `add_button` did."""
+    ADDED_BUTTONS[:] = [binding for binding in ADDED_BUTTONS if binding.action != action]
     toolbar.cache_clear()
 
 
@@ -252,10 +265,13 @@ def repeats(scene: str, key: str) -> bool:
 def toolbar(scene: str) -> tuple[tuple[Binding, ...], ...]:
     """Groups of bindings of the toolbar in a scene: the same while time passes as in pause; none in forms."""
     scenes = set(LIVE if scene in LIVE else () if scene in FORMS else (scene,))
-    found = [binding for binding in BINDINGS if scenes & set(binding.scenes)]
-    found.sort(key=lambda binding: scene not in binding.scenes)  # keys that act here come first
+    found = [binding for binding in (*BINDINGS, *ADDED_BUTTONS) if scenes & set(binding.scenes)]
+    found.sort(
+        key=lambda binding: (scene not in binding.scenes, not binding.key)
+    )  # keys that act here come first
     offered = {binding.action: binding for binding in reversed(found)}
-    wanted = ([*group, *(ADDED_TOOLS if PLACE in group else ())] for group in TOOLBAR)
+    wanted = [[*group, *(ADDED_TOOLS if PLACE in group else ())] for group in TOOLBAR]
+    wanted.insert(-1, [binding.action for binding in ADDED_BUTTONS])  # the last group stands at the bottom
     groups = (tuple(offered[action] for action in group if action in offered) for group in wanted)
     return tuple(group for group in groups if group)
 

@@ -64,6 +64,10 @@ class PygameInput(System):
         self._grip: tuple[str, Vector] | None = None  # the kind of click and where, while the button is down
         self._dragging = False
 
+    def close(self) -> None:
+        """Close the window after this frame."""
+        self.closed = True
+
     def process(self, frame: Any) -> None:
         """Collect the events since the last frame; sleep a little if nothing can happen without one."""
         session, events = frame.session, pygame.event.get()

@@ -56,7 +56,7 @@ def _stiffness(model: Model) -> float:
     times = [end if end < math.inf else 0.0, float((rods.damping * rods.rest_length / rods.stiffness).max())]
     if frequency > 0.0:
         times += [2.0 * math.pi / frequency, model.environment.drag / frequency**2]
-    return fastest * max(times)
+    return float(fastest * max(times))
 
 
 def stiffnesses(model: Model, drag: Array) -> Array:

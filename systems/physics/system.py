@@ -53,6 +53,7 @@ class Slackness(Law):
     """Cables do not push: N ≥ 0. Where one goes slack or taut, integrators that locate events end a step."""
 
     name = "physics.slackness"
+    elastic = True
     unneeded = "the model has no cables"
     kernel = "systems.physics.kernels:taut"
     branch = "systems.physics.kernels:slack_branch"

@@ -11,6 +11,7 @@ class Strength(Law):
     """No axial force passes a rod's strength."""
 
     name = "plasticity.strength"
+    elastic = True
     unneeded = "no rod can yield: strengths are unlimited, or settings.plasticity is off"
     kernel = "systems.plasticity.kernels:limited"
     after = ("physics.elasticity_after_yielding",)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import importlib
 import inspect
-from collections.abc import Callable, Iterable, Mapping
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -15,11 +16,14 @@ from components.field import Role
 from components.model import Model
 from systems.base import Commit, Event, Integrator, Law, StepSystem
 from systems.entries import ACCOUNTS
+from systems.program.chance import source_of_chance
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
 PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called for
     "rods": (*_TO_COMMITS, "rate"),
     "particles": ("time", "dt"),
+    "pairs": ("apart", "drift", "time", "dt"),
+    "potential": ("apart",),
     "commit": _TO_COMMITS,
     "branch": ("elongation", "rate", "dt"),
     "margin": ("elongation", "rate", "dt", "branch"),
@@ -29,10 +33,14 @@ PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called f
 PROVIDED = {name for names in PROVIDED_TO.values() for name in names}
 TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
 
-_KINDS = ("rods", "particles", "loads")
+WIDEST_ROW = 64  # numbers of an array that a kernel gets, as a tuple; more would take long to compile
+
+_KINDS = ("rods", "particles", "pairs", "loads")
 _RESULTS = {
     "rods": "one number, the axial force (kN)",
     "particles": "a pair, the force (fx, fy) in kN",
+    "pairs": "a pair, the force (fx, fy) on the first particle in kN",
+    "potential": "one number, the energy of two particles (kN·m)",
     "loads": "one number, the factor of the load",
     "commit": "a pair, the new value of the column and the energy dissipated (kN·m)",
     "event of rods": "one number, whose sign counts",
@@ -53,6 +61,8 @@ class StepRole(Enum):
 
     PARTICLE_FORCE = "adds to the force on a particle"
     RESISTANCE = "adds to the force that resists a particle's motion"
+    PAIR_FORCE = "adds to the forces on two particles"
+    PAIR_RESISTANCE = "adds to the forces that resist the motion of two particles"
     LOAD = "is the factor of a load"
     HISTORY = "is the history of a rod"
     SUMMED = "adds to the axial force of a rod"
@@ -67,13 +77,17 @@ HISTORIES = (StepRole.HISTORY, StepRole.LATE_HISTORY)
 
 @dataclass(frozen=True)
 class Bound:
-    """A step system with its kernel, the names of the kernel's parameters, and its own arrays by name."""
+    """A step system with its kernel, the names of the kernel's parameters, and its own arrays by name.
+
+    cutoff: of a law of pairs (m).
+    """
 
     system: StepSystem
     function: Callable[..., Any]
     parameters: tuple[str, ...]
     arrays: Mapping[str, NDArray[Any]]
     kernel: str = "kernel"
+    cutoff: float = math.inf
 
     @property
     def call(self) -> str:
@@ -85,10 +99,24 @@ class Bound:
         """The system's name as a Python name."""
         return self.system.name.replace(".", "_")
 
+    def stored(self, name: str) -> str:
+        """What the program calls one of its arrays: no other system's array, and nothing else there, is called so."""
+        return name if name.startswith(f"{self.prefix}_") else f"{self.prefix}_{name}"
+
+    @property
+    def stored_arrays(self) -> dict[str, NDArray[Any]]:
+        """Its own arrays, by their names in the program."""
+        return {self.stored(name): array for name, array in self.arrays.items()}
+
     @property
     def each(self) -> str:
         """The table for each row of which the kernel of a law or an event is called; "" for other roles."""
         return self.system.each if isinstance(self.system, Law | Event) else ""
+
+    @property
+    def rows(self) -> str:
+        """The table whose rows its kernel is given."""
+        return "particles" if self.each == "pairs" else self.each or "rods"
 
     @property
     def purpose(self) -> str:
@@ -110,9 +138,9 @@ class Bound:
 
     @property
     def follows_state(self) -> bool:
-        """Whether its result stays the same as long as nothing moves and nothing is edited; loads are apart."""
+        """Whether its result stays the same as long as nothing moves on an island and nothing is edited; loads are apart."""
         others = self.arrays or any(parameter.startswith("clock_") for parameter in self.parameters)
-        return self.each == "loads" or not (others or self.follows_time)
+        return self.each == "loads" or not (others or self.follows_time or self.each == "pairs")
 
     @property
     def role(self) -> StepRole:
@@ -124,6 +152,9 @@ class Bound:
             return StepRole.LOAD
         if self.each == "particles":
             return StepRole.RESISTANCE if "particles_velocity" in given else StepRole.PARTICLE_FORCE
+        if self.each == "pairs":
+            resists = given & {"drift", "particles_velocity"}
+            return StepRole.PAIR_RESISTANCE if resists else StepRole.PAIR_FORCE
         if self.each == "":
             return StepRole.LATE_HISTORY if "axial_force" in given else StepRole.HISTORY
         if "rate" in given:
@@ -155,6 +186,10 @@ def bind(system: StepSystem, model: Model, kernel: str = "kernel") -> Bound:
     except ProgramError as error:
         error.system = system
         raise
+    except Exception as error:
+        if system.mod is None:
+            raise
+        raise ProgramError(f"{system.name} cannot be read: {type(error).__name__}: {error}.", system) from error
 
 
 def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
@@ -163,9 +198,14 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     plain = getattr(function, "py_func", None)
     if plain is None:
         raise ProgramError(f"The kernel of {system.name} is not compiled; put `@njit` of numba above it.")
+    if system.mod is not None and (chance := source_of_chance(function)):
+        raise ProgramError(
+            f"The kernel of {system.name} draws random numbers ({chance}), so that no run could be repeated; draw"
+            " them before, with a seed, and hand them over by `arrays`."
+        )
     parameters = tuple(inspect.signature(plain).parameters)
     arrays = {name: read_only(array) for name, array in system.arrays(model).items()}
-    bound = Bound(system, function, parameters, arrays, kernel)
+    bound = Bound(system, function, parameters, arrays, kernel, _cutoff(system, model))
     for name in bound.arrays:
         if _is_column(name, model):
             raise ProgramError(f"The array '{name}' of {system.name} has the name of a column; rename it.")
@@ -173,6 +213,43 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
         for parameter in bound.parameters:
             _check_parameter(bound, parameter, model)
     return bound
+
+
+def _cutoff(system: StepSystem, model: Model) -> float:
+    """The cutoff of a law of pairs (m); infinite for others. Raises ProgramError."""
+    if not (isinstance(system, Law) and system.each == "pairs"):
+        return math.inf
+    distance = system.cutoff(model)
+    if not distance > 0.0:
+        raise ProgramError(
+            f"The cutoff of {system.name} is {distance}; give a distance above 0 m, or math.inf for all pairs."
+        )
+    return float(distance)
+
+
+def written_row(name: str, index: str, shape: Sequence[int]) -> str:
+    """A row of a column or an array in the source of a program: a number, or a tuple of numbers or of tuples.
+
+    >>> written_row("rods_curve", "r", (3,))
+    '(rods_curve[r, 0], rods_curve[r, 1], rods_curve[r, 2])'
+    """
+    if not shape:
+        return f"{name}[{index}]"
+    parts = [written_row(name, f"{index}, {k}", shape[1:]) for k in range(shape[0])]
+    return f"({', '.join(parts)}{',' if len(parts) == 1 else ''})"
+
+
+def shape_given(b: Bound, parameter: str, model: Model) -> tuple[int, ...]:
+    """The shape of what a kernel gets for a parameter: of a number (), of a vector, such as `apart`, (2,)."""
+    if parameter in PROVIDED:
+        return (2,) if parameter in ("apart", "drift") else ()
+    single, shape = False, ()
+    if parameter in b.arrays:
+        shape = b.arrays[parameter].shape[1:]
+    else:
+        table, _, column = parameter.partition("_")
+        single, shape = model.tables[table].kind.single, model.tables[table].fields[column].shape
+    return (2, *shape) if b.each == "pairs" and not single else shape
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
@@ -186,7 +263,7 @@ def check_names(bound: Iterable[Bound]) -> None:
     """Raise ProgramError if two kernels or arrays would have the same name in the program."""
     owner: dict[str, str] = {}
     for b in bound:
-        for name in (b.call, *b.arrays):
+        for name in (b.call, *b.stored_arrays):
             if name in owner:
                 raise ProgramError(
                     f"{owner[name]} and {b.system.name} are both '{name}' in the step program; rename one.",
@@ -201,7 +278,7 @@ def _check_role(system: StepSystem, model: Model) -> None:
         raise ProgramError(f"The name '{name}' of a step system cannot be used; name it like 'mymod.wind'.")
     if isinstance(system, Law) and system.each not in _KINDS:
         raise ProgramError(f"{name} is a law for each of '{system.each}'; choose one of {', '.join(_KINDS)}.")
-    if isinstance(system, Event) and system.each not in _KINDS[:2]:
+    if isinstance(system, Event) and system.each not in ("rods", "particles"):
         raise ProgramError(f"{name} is an event for each of '{system.each}'; choose rods or particles.")
     if isinstance(system, Law | Commit) and system.account not in ACCOUNTS:
         raise ProgramError(f"{name} has the account '{system.account}'; choose one of {', '.join(ACCOUNTS)}.")
@@ -223,7 +300,7 @@ def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., A
     module, _, attribute = kernel.partition(":")
     try:
         found = getattr(importlib.import_module(module), attribute)
-    except (ImportError, AttributeError, ValueError) as error:
+    except (Exception, SystemExit) as error:  # of the module, which may be a mod's
         raise ProgramError(
             f"The kernel '{kernel}' of {owner.name} cannot be found: {error}; write it like"
             " 'package.module:function'.",
@@ -234,8 +311,17 @@ def find(kernel: str | Callable[..., Any], owner: StepSystem) -> Callable[..., A
 
 def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
     """Raise ProgramError unless the parameter is provided, an array of the system or a column that it declares."""
-    rows, name = b.each or "rods", b.system.name
+    rows, name = b.rows, b.system.name
     provided = PROVIDED_TO[b.purpose]
+    if parameter in ("time", "dt", "drift", "particles_velocity") and getattr(b.system, "potential", ""):
+        raise ProgramError(
+            f"{name} has a potential, so that its force depends on places alone, but takes '{parameter}'; drop one."
+        )
+    if parameter in ("time", "dt") and getattr(b.system, "elastic", False):
+        raise ProgramError(
+            f"{name} is elastic, so that the energy it stores depends on the state alone, but takes '{parameter}';"
+            " drop `elastic` or the parameter."
+        )
     if parameter in provided:
         return
     if parameter in b.arrays:
@@ -243,6 +329,11 @@ def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
             raise ProgramError(
                 f"The array '{parameter}' of {name} has {len(b.arrays[parameter])} rows for"
                 f" {model.tables[rows].count} {rows}; give it one row for each."
+            )
+        width = math.prod(b.arrays[parameter].shape[1:])
+        if not 0 < width <= WIDEST_ROW:
+            raise ProgramError(
+                f"The array '{parameter}' of {name} has {width} numbers in a row; a kernel takes 1 to {WIDEST_ROW}."
             )
         return
     table, _, column = parameter.partition("_")
@@ -286,7 +377,7 @@ def problem_of(b: Bound, model: Model) -> str:
     from numba import types
 
     numbers = tuple(getattr(made, "types", (made,)))
-    wanted = 2 if b.purpose in ("particles", "commit") else 1
+    wanted = 2 if b.purpose in ("particles", "pairs", "commit") else 1
     if len(numbers) != wanted or not all(isinstance(n, types.Number | types.Boolean) for n in numbers):
         return f"The kernel of {b.system.name} returns {made}; it must return {_RESULTS[b.purpose]}."
     return ""
@@ -294,7 +385,7 @@ def problem_of(b: Bound, model: Model) -> str:
 
 def _brief(failure: Exception) -> str:
     lines = [line.strip() for line in str(failure).splitlines() if line.strip()]
-    return f"{'; '.join(lines[1:4])}."
+    return f"{'; '.join(lines[1:4] or lines).rstrip('.')}."
 
 
 def _result_type(b: Bound, model: Model) -> Any:
@@ -304,15 +395,15 @@ def _result_type(b: Bound, model: Model) -> Any:
 
     def type_of(parameter: str) -> Any:
         if parameter in PROVIDED:
-            return types.float64
-        if parameter in b.arrays:
-            storage, shape = b.arrays[parameter].dtype, b.arrays[parameter].shape[1:]
+            made: Any = types.float64
+        elif parameter in b.arrays:
+            made = from_dtype(b.arrays[parameter].dtype)
         else:
             table, _, column = parameter.partition("_")
-            field = model.tables[table].fields[column]
-            storage, shape = field.storage, field.shape
-        scalar = from_dtype(storage)
-        return types.UniTuple(scalar, 2) if shape else scalar  # type: ignore[no-untyped-call]
+            made = from_dtype(model.tables[table].fields[column].storage)
+        for width in reversed(shape_given(b, parameter, model)):
+            made = types.UniTuple(made, width)  # type: ignore[no-untyped-call]
+        return made
 
     of_load = (types.float64, types.Array(types.float64, 1, "C", readonly=True), types.uint32)
     signature = of_load if b.each == "loads" else tuple(map(type_of, b.parameters))

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import importlib.util
 import inspect
-import os
+import linecache
 import sys
-import tempfile
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
-from functools import cache, cached_property
-from pathlib import Path
+from functools import cached_property
 from types import CodeType, ModuleType
 from typing import Any
 
 import numpy as np
-from platformdirs import user_cache_path
+
+from systems import cache
 
 
 def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
@@ -28,12 +26,7 @@ def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
     Read from the functions in memory: their files may have changed since they were imported.
     """
     parts: list[str] = []
-    pending, seen = list(functions), set[Callable[..., Any]]()
-    while pending:
-        function = pending.pop()
-        if function in seen:
-            continue
-        seen.add(function)
+    for function in _reached_from(functions):
         if isinstance(function, type):
             parts.append(_constant(function))
             continue
@@ -42,12 +35,22 @@ def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
             f"{plain.__module__}.{plain.__qualname__}",
             repr(getattr(function, "targetoptions", {})),
             _described(plain.__code__),
+            *(f"{name} = {_constant(value)}" for name, value in sorted(_used_by(plain).items())),
         ]
-        for name, value in sorted(_used_by(plain).items()):
-            parts.append(f"{name} = {_constant(value)}")
-            if hasattr(value, "py_func"):
-                pending.append(value)
     return "\n".join(parts)
+
+
+def _reached_from(functions: Iterable[Callable[..., Any]]) -> Iterator[Callable[..., Any]]:
+    """These functions and all compiled ones that they call, each once."""
+    pending, seen = list(functions), set[Callable[..., Any]]()
+    while pending:
+        function = pending.pop()
+        if function not in seen:
+            seen.add(function)
+            yield function
+            if not isinstance(function, type):
+                used = _used_by(getattr(function, "py_func", function))
+                pending += [value for _, value in sorted(used.items()) if hasattr(value, "py_func")]
 
 
 def _used_by(plain: Callable[..., Any]) -> dict[str, Any]:
@@ -75,43 +78,25 @@ def _constant(value: Any) -> str:
     return repr(value) if plain else type(value).__name__
 
 
-@cache
-def cache_folder() -> Path:
-    """A folder for generated modules that can be written to: the user's cache, or a temporary one.
-
-    Modules in it are run: a folder of another owner is not used.
-    """
-    owner = os.getuid() if hasattr(os, "getuid") else 0
-    shared = Path(tempfile.gettempdir()) / f"pinjoint-programs-{owner}"
-    for folder in (user_cache_path("pinjoint") / "programs", shared):
-        try:
-            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-            with tempfile.TemporaryFile(dir=folder):
-                pass
-            if not hasattr(os, "getuid") or folder.stat().st_uid == owner:
-                return folder
-        except OSError:
-            continue
-    return Path(tempfile.mkdtemp(prefix="pinjoint-programs-"))
-
-
+_LAYOUT = 2  # of what is kept on disk: raise it where former files are of no use any more
 _modules: dict[str, ModuleType] = {}
 _compiled = set[str]()  # names of modules all functions of which this process has called
 
 
 def compile_module(source: str, kernels: Mapping[str, Callable[..., Any]]) -> ModuleType:
     """The module with this source in which `kernels` are known by name; its machine code is cached."""
+    from systems.kernels import forget_own_cache
+
     name = _name_of(source, kernels)
     if name not in _modules:
-        path = cache_folder() / f"{name}.py"
-        _write_once(path, source)
-        spec = importlib.util.spec_from_file_location(name, path)
-        assert spec is not None
-        assert spec.loader is not None
-        module = importlib.util.module_from_spec(spec)
+        for function in _reached_from(kernels.values()):
+            forget_own_cache(function)
+        module = ModuleType(name)
         vars(module).update(kernels)
-        sys.modules[name] = module  # numba's cache looks the module up by its name
-        spec.loader.exec_module(module)
+        sys.modules[name] = module  # what is cached looks the module up by its name
+        shown = f"<{name}>"
+        linecache.cache[shown] = len(source), None, source.splitlines(keepends=True), shown  # for tracebacks
+        exec(compile(source, shown, "exec"), vars(module))
         _modules[name] = module
     return _modules[name]
 
@@ -119,7 +104,7 @@ def compile_module(source: str, kernels: Mapping[str, Callable[..., Any]]) -> Mo
 def _name_of(source: str, kernels: Mapping[str, Callable[..., Any]]) -> str:
     """The name of a generated module, which hashes everything that is compiled into it.
 
-    numba's cache notices neither edits of functions that a cached one calls, nor another processor.
+    numba's own cache would notice neither edits of functions that a cached one calls, nor another processor.
     """
     import numba
     from numba.core.registry import cpu_target
@@ -128,8 +113,8 @@ def _name_of(source: str, kernels: Mapping[str, Callable[..., Any]]) -> str:
 
     processor = repr(cpu_target.target_context.codegen().magic_tuple())
     meaning = _meaning_of(kernels[name] for name in sorted(kernels))
-    everything = "\n".join([source, meaning, numba.__version__, sys.version, processor, f"plain: {PLAIN}"])
-    return "pinjoint_program_" + hashlib.sha256(everything.encode()).hexdigest()[:24]
+    about = source, meaning, numba.__version__, sys.version, processor, f"plain: {PLAIN}", f"layout: {_LAYOUT}"
+    return "pinjoint_program_" + hashlib.sha256("\n".join(about).encode()).hexdigest()[:24]
 
 
 @dataclass(frozen=True)
@@ -170,8 +155,8 @@ def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str
     """Source of a module with an entry to each kernel, under the given names, and the kernels as the source calls them."""
     lines = [
         '"""Entries to kernels. Generated; safe to delete."""',
-        "from numba import njit",
-        'entry = njit(error_model="numpy", _nrt=False, cache=True)',
+        "from systems.kernels import kept",
+        'entry = kept(error_model="numpy", _nrt=False)',
     ]
     for name, kernel in kernels.items():
         arguments = ", ".join(inspect.signature(getattr(kernel, "py_func", kernel)).parameters)
@@ -192,36 +177,27 @@ def is_compiled(source: str, kernels: Mapping[str, Callable[..., Any]]) -> bool:
 
 
 def _is_noted(name: str) -> bool:
-    return name in _compiled or (cache_folder() / f"{name}.done").exists()
+    return name in _compiled or (cache.folder() / f"{name}.done").exists()
 
 
 def is_blank() -> bool:
     """True if nothing at all is compiled yet: the program is started for the first time."""
-    return next(cache_folder().glob("*.done"), None) is None
+    return next(cache.folder().glob("*.done"), None) is None
 
 
 def note_compiled(module: ModuleType) -> None:
-    """Note on disk that all of a module is compiled, and when it was last used."""
+    """Note on disk that all of a module is compiled and kept, and when it was last used."""
     _compiled.add(module.__name__)
-    with contextlib.suppress(OSError):
-        (cache_folder() / f"{module.__name__}.done").touch()
+    if not cache.TROUBLE:
+        with contextlib.suppress(OSError):
+            (cache.folder() / f"{module.__name__}.done").touch()
 
 
 def forget_unused(days: float = 60.0) -> None:
-    """Delete modules unused for so many days, mostly of former versions."""
-    folder = cache_folder()
-    for done in folder.glob("pinjoint_program_*.done"):
+    """Delete modules unused for so many days, mostly of former versions, and what killed processes left."""
+    folder, now = cache.folder(), time.time()
+    for path in (*folder.glob("pinjoint_program_*.done"), *folder.glob("pinjoint_program_*.tmp")):
         with contextlib.suppress(OSError):
-            if time.time() - done.stat().st_mtime > 86400.0 * days:
-                for path in (*folder.glob(f"__pycache__/{done.stem}.*"), folder / f"{done.stem}.py", done):
-                    path.unlink(missing_ok=True)
-
-
-def _write_once(path: Path, text: str) -> None:
-    """Write a file unless it is there with this text, in one go: no other process reads a part of it."""
-    if path.exists() and path.read_text(encoding="utf-8") == text:
-        return
-    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-    with os.fdopen(handle, "w", encoding="utf-8") as file:
-        file.write(text)
-    os.replace(temporary, path)
+            if now - path.stat().st_mtime > 86400.0 * days:
+                for old in (*folder.glob(f"__pycache__/{path.stem}.*"), *folder.glob(f"{path.stem}.*")):
+                    old.unlink(missing_ok=True)

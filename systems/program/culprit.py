@@ -11,6 +11,7 @@ from components.model import Model
 from components.snapshot import Snapshot
 from systems.base import Mod, StepSystem
 from systems.program.binding import ProgramError, bind
+from systems.program.near_pairs import pairs_within
 from systems.program.program import MOTION, Program
 from systems.program.reference_laws import in_turn
 from systems.program.writer import REVIEW_INTERVAL
@@ -91,6 +92,9 @@ def _bad_kernel(program: Program, model: Model) -> tuple[StepSystem, str, float]
 
 def _element(system: StepSystem, model: Model, row: int) -> str:
     each = getattr(system, "each", "rods")
+    if each == "pairs":
+        pair = pairs_within(model, bind(system, model).cutoff)[row].tolist()
+        return " and ".join(model.describe(model.particles[particle]) for particle in pair)
     return model.describe(model.tables[each][row]) if row < model.tables[each].count else f"row {row}"
 
 

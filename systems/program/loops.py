@@ -19,7 +19,7 @@ _APART = 7
 
 ALL = "0, rods_between.shape[0]"
 
-_ELEMENT = re.compile(r"\b([A-Za-z_]\w*)\[r(?:, (\d))?\]")
+_ELEMENT = re.compile(r"\b([A-Za-z_]\w*)\[r((?:, \d+)*)\]")
 
 
 @dataclass(frozen=True)
@@ -72,10 +72,10 @@ class RodLoop:
             return f"scratch[k + {CHUNK * slots[name]}]"
 
         def there(match: re.Match[str]) -> str:
-            return _entry((match[1], match[2] or ""))
+            return _entry((match[1], match[2]))
 
         def here(match: re.Match[str]) -> str:
-            element = match[1], match[2] or ""
+            element = match[1], match[2]
             return place(element) if element in slots else _entry(element)
 
         begin, end = span.split(", ")
@@ -113,4 +113,4 @@ class RodLoop:
 
 def _entry(element: tuple[str, str]) -> str:
     name, part = element
-    return f"{name}_[k, {part}]" if part else f"{name}_[k]"
+    return f"{name}_[k{part}]"

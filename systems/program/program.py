@@ -21,6 +21,7 @@ from systems.program.binding import Bound, bind, explain
 from systems.program.block_writer import BlockWriter
 from systems.program.compiler import compile_module, is_compiled, note_compiled
 from systems.program.controlled_writer import ControlledWriter
+from systems.program.near_pairs import NearPairs
 from systems.program.writer import STATE, VERY_MANY, Writer, form_of, sides_of
 
 _ORIGIN = ("origin", "step_limit")
@@ -79,20 +80,19 @@ class Program:
 
     def _compile(self) -> None:
         """Call every function once, which makes numba compile it, or load it from the cache."""
-        from numba.core.errors import NumbaError
-
         try:
             self.advance(0)
             self.observe()
             if self._writer.commits:  # with no rods: a commit changes history
                 state = [self._arrays[name][:0] for name in STATE]
                 self.module.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
-        except NumbaError as error:
+        except Exception as error:  # numba raises many kinds
             raise explain(self._writer.bound, self.integrator, self.model, error) from error
         note_compiled(self.module)
 
     def _of_no_rods(self) -> list[Column]:
-        return [column[:0] for column in self._columns]
+        whole = {"pair_reach": np.array([0.0, math.inf])}  # of no pairs there is no list
+        return [whole.get(name, column[:0]) for name, column in self.columns.items()]
 
     @property
     def columns(self) -> dict[str, Column]:
@@ -124,9 +124,11 @@ class Program:
         model = self.model
         extra: dict[str, Any] = {}
         for system in self.systems:
-            extra.update(bind(system, model).arrays)
+            extra.update(bind(system, model).stored_arrays)
         written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
         extra |= {name: self._storage(path) for name, path in written.items()}
+        self._near = NearPairs(model, [b.cutoff for b in self._writer.pairs]) if self._writer.pairs else None
+        extra |= self._near.arrays if self._near is not None else {}
         self._sides = [(b, self._sides_of(b)) for b in self._writer.events]
         extra |= {sides_of(b): sides for b, sides in self._sides}
         self._columns = [
@@ -249,6 +251,8 @@ class Program:
         if self._sides and not self._is_fresh:
             for b, sides in self._sides:
                 sides[:] = self._sides_of(b)
+        if self._near is not None:
+            self._renew(self._near)
         controlled, (time, size) = self.integrator.controlled, self._control[:2].tolist()
         if until < math.inf and not controlled:
             steps = min(steps, max(int((until - time) / size * (1.0 + 1e-12)), 0))
@@ -280,6 +284,16 @@ class Program:
             self._mark_changes()
         self._state_revision = self.model.newest(Role.STATE)
         return taken, _REASONS[reason]
+
+    def _renew(self, near: NearPairs) -> None:
+        """Have the list of near pairs made anew in another state, and room for all of them."""
+        if near.outgrown:
+            near.grow()
+            place = self._writer.columns.index("pair_other")
+            self._columns[place] = near.arrays["pair_other"]
+            self._bind_arguments()
+        elif not self._is_fresh:
+            near.begin()
 
     @property
     def _is_fresh(self) -> bool:

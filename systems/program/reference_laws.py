@@ -15,14 +15,20 @@ from numpy.typing import NDArray
 
 from components.model import Model
 from systems.base import StepSystem
-from systems.program.binding import Bound, StepRole, bind, by_role
+from systems.broad_phase import Rows
+from systems.program.binding import Bound, StepRole, bind, by_role, written_row
 from systems.program.loops import RodLoop
+from systems.program.near_pairs import pairs_within
 from systems.program.pasting import fragment
 from systems.program.templates import rods
 from systems.program.writer import DRIFT, SHIFT
 
 Numbers = NDArray[np.float64]
 
+_OF_PAIRS = {
+    "apart": ("particles.position", "particles.displacement"),
+    "drift": ("particles.velocity",),
+}
 _OF_RODS = ("between", "difference", "original_length", "misfit")
 
 CALLS, TRIALS = 100_000, 5  # the fastest trial counts
@@ -52,15 +58,16 @@ class KernelRows:
 
     def _arguments(self, bound: Bound) -> Iterator[Sequence[Any]]:
         """The arguments of the kernel, row by row."""
-        columns = [column.tolist() for column in self._columns(bound)]
-        vectors = [[tuple(v) if isinstance(v, list) else v for v in column] for column in columns]
-        rows = zip(*vectors, strict=True) if vectors else [()] * self._count(bound)
+        columns = [list(map(_as_tuples, column.tolist())) for column in self._columns(bound)]
+        rows = zip(*columns, strict=True) if columns else [()] * self._count(bound)
         if bound.each == "loads":
             values = bound.arrays[f"{bound.prefix}_values"]
             return ((time, values, first) for time, first in rows)
         return iter(rows)
 
     def _count(self, bound: Bound) -> int:
+        if bound.each == "pairs":
+            return len(self._pairs(bound))
         if bound.each == "loads":
             return len(bound.arrays[f"{bound.prefix}_first"])
         return self.model.tables[bound.each or "rods"].count
@@ -72,7 +79,20 @@ class KernelRows:
             return [np.full(count, self.provided["time"]), bound.arrays[f"{bound.prefix}_first"]]
         return [self._column(bound, parameter, count) for parameter in bound.parameters]
 
+    def _pairs(self, bound: Bound) -> Rows:
+        """The rows of the particles that a law of pairs acts on."""
+        return pairs_within(self.model, bound.cutoff)
+
     def _column(self, bound: Bound, parameter: str, count: int) -> NDArray[Any]:
+        if parameter in _OF_PAIRS:
+            first, second = self._pairs(bound).T
+            values = sum(self.model.column(name) for name in _OF_PAIRS[parameter])
+            return np.asarray(values[second] - values[first])
+        if bound.each == "pairs" and (parameter in bound.arrays or parameter.startswith("particles_")):
+            own = bound.arrays.get(parameter)
+            return (self.model.column(parameter.replace("_", ".", 1)) if own is None else own)[
+                self._pairs(bound)
+            ]
         if parameter in bound.arrays:
             return bound.arrays[parameter]
         if parameter in self.provided:
@@ -82,19 +102,22 @@ class KernelRows:
         return np.repeat(column, count, axis=0) if self.model.tables[table].kind.single else column
 
 
+def _as_tuples(value: Any) -> Any:
+    """A row as kernels get it."""
+    return tuple(map(_as_tuples, value)) if isinstance(value, list) else value
+
+
 def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..., float]:
     """A compiled function of these columns that calls the kernel for each row and adds up what it gives."""
     from numba import njit
 
     names = [f"c{index}" for index in range(len(columns))]
     scope: dict[str, Any] = {"kernel": bound.function}
-    arguments = [
-        f"({n}[i, 0], {n}[i, 1])" if c.ndim > 1 else f"{n}[i]" for n, c in zip(names, columns, strict=True)
-    ]
+    arguments = [written_row(n, "i", c.shape[1:]) for n, c in zip(names, columns, strict=True)]
     if bound.each == "loads":
         scope["values"] = bound.arrays[f"{bound.prefix}_values"]
         arguments.insert(1, "values")
-    pair = bound.each in ("particles", "")
+    pair = bound.each in ("particles", "pairs", "")
     lines = [
         f"def loop({', '.join(names)}):",
         "    total = 0.0",
@@ -122,6 +145,8 @@ def in_turn(systems: Sequence[StepSystem], model: Model) -> Iterator[tuple[StepS
         for b in some:
             given = rows.of(b)
             yield b.system, given
+            if getattr(b.system, "potential", ""):
+                yield b.system, rows.of(bind(b.system, model, "potential"))
             if role is StepRole.SUMMED:
                 rows.provided["axial_force"] = rows.provided["axial_force"] + given[:, 0]
             elif role is StepRole.REPLACING:

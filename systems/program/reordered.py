@@ -93,7 +93,7 @@ class ReorderedProgram(Program):
                 ordered |= self._loads(bound.prefix, columns)
                 continue
             rows = self._places[bound.each or "rods"]
-            for name, array in bound.arrays.items():
+            for name, array in bound.stored_arrays.items():
                 if name in columns:
                     ordered[name] = array[rows]
                     self._of_kernels.append((array, rows, ordered[name]))

@@ -26,10 +26,12 @@ from systems.program.binding import (
     by_role,
     check_names,
     find,
+    written_row,
 )
 from systems.program.loops import RodLoop
+from systems.program.near_pairs import ARRAYS
 from systems.program.pasting import expanded, fragment, indented, pasted, source_of
-from systems.program.templates import events, fixed_steps, forces, observing, rods
+from systems.program.templates import events, fixed_steps, forces, observing, pairs, rods
 
 REVIEW_INTERVAL = 8192  # steps between reviews of the step size, and between safe states
 ROUND_OFF = 2.220446049250313e-16  # of forces, relative to stiffness × displacement
@@ -51,6 +53,8 @@ _OBSERVED = (
 )
 _ENTRIES = (Account, Control, Mark, Measure, Search, Side, StopReason)
 
+_OF_PAIRS = pairs.list_pairs, pairs.sort_along_x, pairs.sweep, pairs.sort_row
+
 STATE = ("displacement", "velocity", "force", "resisting", "direction")
 EVERY = "displacement.shape[0]"  # particles
 _IN_BLOCK = "{0}[block], {0}[block + 1]"
@@ -62,6 +66,11 @@ RESISTED = "time, dt, displacement, velocity, resisting, direction"
 
 SHIFT = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
 DRIFT = {f"drift_{d}": f"velocity[b, {i}] - velocity[a, {i}]" for i, d in enumerate("xy")}
+
+_OF_PAIR = {  # what kernels of pairs are provided with
+    "apart": "(x, y)",
+    "drift": "(velocity[j, 0] - velocity[i, 0], velocity[j, 1] - velocity[i, 1])",
+}
 
 NO_POWER = tuple(f"power_{name} = 0.0" for name in ACCOUNTS)
 POWER_RETURNED = tuple(f"power[Account.{name.upper()}] = power_{name}" for name in ACCOUNTS)
@@ -98,11 +107,11 @@ def form_of(model: Model, integrator: Integrator, systems: Iterable[StepSystem] 
     """The form of program that suits a model: rod by rod, in stages, or in blocks shared by cores.
 
     Rod by rod the programs of controlled steps are the quickest at any size, and take half as long to compile. Events
-    look at all rods after each step, in the order of the model.
+    look at all rods after each step, and laws of pairs at all particles, in the order of the model.
     """
     if integrator.controlled or model.rods.count <= SMALL:
         return FEW
-    whole = any(isinstance(system, Event) for system in systems)
+    whole = any(isinstance(s, Event) or getattr(s, "each", "") == "pairs" for s in systems)
     return MANY if whole or model.rods.count < BLOCKS_FROM else VERY_MANY
 
 
@@ -132,12 +141,22 @@ class Writer:
         self.names: dict[str, Callable[..., Any]] = {b.call: b.function for b in self.bound}
         self.names |= {"conserved": conserved, "judge": judge}
         self.names |= {kind.__name__: kind for kind in _ENTRIES}
-        self.rates = bool(self.of[StepRole.RATE] or self.of[StepRole.RESISTANCE])
-        self.working = [b for b in self.of[StepRole.SUMMED] if not getattr(b.system, "elastic", False)]
-        self.powers = self.rates or bool(self.of[StepRole.PARTICLE_FORCE] or self.working)
+        self.pairs = [*self.of[StepRole.PAIR_FORCE], *self.of[StepRole.PAIR_RESISTANCE]]
+        conservative = [b.system for b in self.pairs if getattr(b.system, "potential", "")]
+        self.potentials = {system.name: bind(system, model, "potential") for system in conservative}
+        self.names |= {b.call: b.function for b in self.potentials.values()}
+        self.rates = bool(
+            self.of[StepRole.RATE] or self.of[StepRole.RESISTANCE] or self.of[StepRole.PAIR_RESISTANCE]
+        )
+        in_rods = [*self.of[StepRole.SUMMED], *self.of[StepRole.REPLACING]]
+        self.working = [b for b in in_rods if not getattr(b.system, "elastic", False)]
+        pushing = bool(self.of[StepRole.PARTICLE_FORCE]) or len(self.potentials) < len(self.pairs)
+        self.powers = self.rates or pushing or bool(self.working)
         # All arrays that the functions read or write besides the integrator's own.
         self.columns = [*_ALWAYS, *(["rods_misfit"] if self.warm else [])]
-        self._add_columns(self.bound)
+        self._add_columns([*self.bound, *self.potentials.values()])
+        if self.pairs:
+            self.columns = list(dict.fromkeys([*self.columns, "particles_position", *ARRAYS]))
 
     def _add_columns(self, bound: Iterable[Bound]) -> None:
         names = dict.fromkeys(self.columns)
@@ -145,7 +164,8 @@ class Writer:
             if b.role is StepRole.LOAD:
                 names.update(dict.fromkeys(f"{b.prefix}_{part}" for part in ("on", "force", "values", "first")))
             else:
-                names.update(dict.fromkeys(p for p in b.parameters if p not in PROVIDED and p not in TRIAL))
+                taken = (p for p in b.parameters if p not in PROVIDED and p not in TRIAL)
+                names.update(dict.fromkeys(b.stored(p) if p in b.arrays else p for p in taken))
             if b.role is StepRole.EVENT:
                 names[sides_of(b)] = None
         self.columns = list(names)
@@ -153,17 +173,20 @@ class Writer:
     # --- expressions ------------------------------------------------------------------------------
 
     def _argument(self, b: Bound, parameter: str, index: str) -> str:
-        """How a kernel's parameter is written inside the loop over its rows."""
+        """How a kernel's parameter is written inside the loop over its rows, or over pairs of particles i and j."""
         if parameter in PROVIDED:
-            return parameter
-        name = TRIAL.get(parameter, parameter)
+            return _OF_PAIR.get(parameter, parameter)
+        name, single = TRIAL.get(parameter, parameter), False
         if parameter in b.arrays:
-            shape = b.arrays[parameter].shape[1:]
+            name, shape = b.stored(parameter), b.arrays[parameter].shape[1:]
         else:
             table, _, column = parameter.partition("_")
-            index = "0" if self.model.tables[table].kind.single else index
+            single = self.model.tables[table].kind.single
             shape = self.model.tables[table].fields[column].shape
-        return f"({name}[{index}, 0], {name}[{index}, 1])" if shape else f"{name}[{index}]"
+            index = "0" if single else index
+        if b.each == "pairs" and not single:
+            return f"({written_row(name, 'i', shape)}, {written_row(name, 'j', shape)})"
+        return written_row(name, index, shape)
 
     def _apply(self, b: Bound, index: str) -> str:
         return f"{b.call}({', '.join(self._argument(b, p, index) for p in b.parameters)})"
@@ -178,6 +201,7 @@ class Writer:
             self._integrate(),
             *(self._pasted(part, "inlined") for part in reversed(self.integrator.parts)),
             *self._of_steps(),
+            *(pasted(template, "compiled") for template in (_OF_PAIRS if self.pairs else ())),
             pasted(forces.external, "compiled", particle_forces=self._particle_forces()),
             self._measure(),
             self._observe(),
@@ -261,7 +285,24 @@ class Writer:
                 *([f"power_work += {_load_power(b)}"] if powers else []),
             ]
             lines += self._each_load(b, *push, within="" if span == EVERY else f"block_{b.prefix}")
-        return lines
+        return lines + self._each_pair((b, self._pair_forces(b, powers)) for b in self.pairs)
+
+    def _each_pair(self, lines: Iterable[tuple[Bound, Sequence[str]]]) -> list[str]:
+        """A loop over the pairs of particles, with the lines of each law for those within its cutoff."""
+        laws: list[str] = []
+        for b, own in lines:
+            laws += [f"if squared < pair_reach[{2 + self.pairs.index(b)}]:", *indented(own)] if own else []
+        return fragment(pairs.each_pair, laws=laws) if laws else []
+
+    def _pair_forces(self, b: Bound, powers: bool) -> list[str]:
+        """Lines that add the force of a law to those on both particles."""
+        target = "force" if b.role is StepRole.PAIR_FORCE else "resisting"
+        return [
+            f"fx, fy = {self._apply(b, 'i')}",
+            *(f"{target}[i, {d}] += f{axis}" for d, axis in enumerate("xy")),
+            *(f"{target}[j, {d}] -= f{axis}" for d, axis in enumerate("xy")),
+            *(self._pair_power(b) if powers else []),
+        ]
 
     @staticmethod
     def _each_load(b: Bound, *lines: str, within: str = "") -> list[str]:
@@ -296,8 +337,8 @@ class Writer:
         if name == "direction":
             return True
         for b in self.bound:
-            if name in b.arrays:
-                return bool(b.arrays[name].dtype == np.float64)
+            if name in b.stored_arrays:
+                return bool(b.stored_arrays[name].dtype == np.float64)
         table, _, column = name.partition("_")
         return bool(np.dtype(self.model.tables[table].fields[column].storage) == np.float64)
 
@@ -310,7 +351,17 @@ class Writer:
     def _axial_force(self, *, without: Sequence[Bound] = ()) -> list[str]:
         lines = ["axial_force = 0.0"]
         lines += [f"axial_force += {self._apply(b, 'r')}" for b in self.of[StepRole.SUMMED] if b not in without]
-        return lines + [f"axial_force = {self._apply(b, 'r')}" for b in self.of[StepRole.REPLACING]]
+        replacing = [b for b in self.of[StepRole.REPLACING] if b not in without]
+        return lines + [f"axial_force = {self._apply(b, 'r')}" for b in replacing]
+
+    def _working_forces(self) -> list[str]:
+        """Lines that give the force that stores energy, then with the working laws of one account after the other."""
+        lines = [*self._axial_force(without=self.working), "stored_force = axial_force"]
+        later = list(self.working)
+        for name in accounts_of(self.working)[:-1]:
+            later = [b for b in later if b.account != name]
+            lines += [*self._axial_force(without=later), f"force_{name} = axial_force"]
+        return lines
 
     def _forces(self, name: str, commits: Sequence[Bound]) -> str:
         lines = self._with_losses(commits, self._rod_loop(self._rod_forces(commits)))
@@ -326,7 +377,7 @@ class Writer:
     def _rod_forces(self, commits: Sequence[Bound], powers: bool = False) -> RodLoop:
         compute, lost = self._histories(commits)
         if powers and self.working:
-            compute += [*self._axial_force(without=self.working), "stored_force = axial_force"]
+            compute += self._working_forces()
         compute += [*self._axial_force(), *_along_axis("pull", "axial_force")]
         pull = RodLoop(
             SHIFT,
@@ -358,9 +409,13 @@ class Writer:
             if powers:
                 gains[f"gain_{b.prefix}"] = f"power_{b.account} {_sign(b, '-', '+')}= gain_{b.prefix}"
                 compute.append(f"gain_{b.prefix} = part * rate")
-        if powers and self.working:
-            gains["gain_working"] = "power_work -= gain_working"
-            compute.append("gain_working = (axial_force - stored_force) * rate")
+        if powers:
+            before, accounts = "stored_force", accounts_of(self.working)
+            for name in accounts:
+                force = "axial_force" if name == accounts[-1] else f"force_{name}"
+                gains[f"taken_{name}"] = f"power_{name} {'-' if name == 'work' else '+'}= taken_{name}"
+                compute.append(f"taken_{name} = ({force} - {before}) * rate")
+                before = force
         compute += _along_axis("drag", "damping_force")
         scatter = [*gains.values(), *_scatter("resisting", "drag")]
         return RodLoop(DRIFT, compute, ["drag_x", "drag_y", *gains], scatter)
@@ -375,13 +430,13 @@ class Writer:
             particles += [f"fx, fy = {self._apply(b, 'i')}", _particle_power(b)]
         if particles:
             body += [f"for i in range({span}):", *indented(particles)]
+        body += self._each_pair((b, self._pair_resistance(b)) for b in self.pairs)
         acting = [*self.of[StepRole.RATE], *self.working]
         if acting:
             needed = {parameter for b in acting for parameter in b.parameters}
             drag = self._dampers(powers=True)
             if self.working or needed & {"elongation", "axial_force"}:
-                stored = [*self._axial_force(without=self.working), "stored_force = axial_force"]
-                compute = [*(stored if self.working else []), *self._axial_force()]
+                compute = [*(self._working_forces() if self.working else []), *self._axial_force()]
                 body += self._rod_loop(RodLoop(SHIFT, [*self.geometry(), *compute]) + drag)
             else:  # too little is computed to gain from stages
                 axis = RodLoop({}, ["nx = direction[r, 0]", "ny = direction[r, 1]"])
@@ -466,8 +521,32 @@ class Writer:
             observing.measure,
             "compiled",
             rods=RodLoop(SHIFT, stored).one_by_one(),
+            pairs=self._each_pair((b, self._pair_energy(b)) for b in self.pairs),
             round_off=str(ROUND_OFF),
         )
+
+    def _pair_resistance(self, b: Bound) -> list[str]:
+        """Lines that give the power of a law, and the force if it resists motion."""
+        if b.role is StepRole.PAIR_RESISTANCE:
+            return self._pair_forces(b, powers=True)
+        power = self._pair_power(b)
+        return [f"fx, fy = {self._apply(b, 'i')}", *power] if power else []
+
+    def _pair_power(self, b: Bound) -> list[str]:
+        """The line that adds what the force of a law does per second to two particles; none where a potential tells."""
+        if b.system.name in self.potentials:
+            return []
+        slower = "velocity[i, {0}] - velocity[j, {0}]".format
+        return [f"power_{b.account} {_sign(b, '+', '-')}= fx * ({slower(0)}) + fy * ({slower(1)})"]
+
+    def _pair_energy(self, b: Bound) -> list[str]:
+        """Lines that measure the energy of two particles and the force between them, as far as they follow from places."""
+        lines = []
+        if b.system.name in self.potentials:
+            lines.append(f"potential -= {self._apply(self.potentials[b.system.name], 'i')}")
+        if b.role is StepRole.PAIR_FORCE and not {"time", "dt"} & set(b.parameters):
+            lines += [f"fx, fy = {self._apply(b, 'i')}", "largest = max(largest, abs(fx), abs(fy))"]
+        return lines
 
     @property
     def _evaluation(self) -> str:

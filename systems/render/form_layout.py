@@ -85,7 +85,7 @@ def beside(viewport: Viewport, unit: float, *, at_left: bool) -> tuple[Viewport 
 def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
     """Place all visible rows; rows that do not fit whole are scrolled away."""
     u, v = unit, viewport
-    width = min(v.width - 2 * EDGE * u, WIDEST * u)
+    width = max(min(v.width - 2 * EDGE * u, WIDEST * u), 1.0)
     left = v.left + (v.width - width) / 2
     low = v.height < LOW * u
     header = v.top + (18.0 if low else 26.0) * u

@@ -7,6 +7,8 @@ Every part is a kind and its numbers: "line" x, y, x, y, …; "area" x, y, x, y,
 from __future__ import annotations
 
 import json
+import math
+from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
 
@@ -16,6 +18,25 @@ STROKE = 1.8  # the width of lines
 
 
 ADDED: dict[str, tuple[Part, ...]] = {}  # icons of mods
+
+
+_NUMBERS = {"disc": 3, "arc": 5}  # of one part; lines and areas have two for each of their points
+
+
+def check_icon(parts: Sequence[Part]) -> None:
+    """Raise ValueError if a part of an icon is none that can be drawn."""
+    for kind, numbers in parts:
+        few = {"line": 4, "area": 6}.get(kind, 0)
+        fits = (
+            len(numbers) == _NUMBERS[kind]
+            if kind in _NUMBERS
+            else few <= len(numbers) and len(numbers) % 2 == 0
+        )
+        if kind not in (*_NUMBERS, "line", "area") or not fits or not all(map(math.isfinite, numbers)):
+            raise ValueError(
+                f"{(kind, numbers)!r} is no part of an icon; a part is like ('line', (-5, 0, 5, 0)), 'area' with three"
+                " points or more, ('arc', (x, y, radius, from, to)) or ('disc', (x, y, radius))."
+            )
 
 
 def icon(name: str) -> tuple[Part, ...]:

@@ -28,7 +28,7 @@ from systems.render.sheet import BELOW, measure
 from systems.render.structure import draw_particles, draw_rods
 from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Colour, Theme, faded
-from systems.render.typography import at_most, font_size, shortened, text_width, wrapped
+from systems.render.typography import at_most, fitting, font_size, shortened, text_width, wrapped
 
 _TEXT = 13.0  # points, size of type in a box
 _PAD = 8.0  # points between a box's edge and its text
@@ -225,13 +225,8 @@ def _turning(x: float, y: float, u: float, colour: Colour) -> Fills:
 
 def _window(text: str, caret: int, room: float, size: int) -> tuple[int, str]:
     """The part of a text around the caret that fits, and the number of characters hidden before it."""
-    start = 0
-    while text_width(text[start:caret], size) > room:
-        start += 1
-    end = len(text)
-    while text_width(text[start:end], size) > room:
-        end -= 1
-    return start, text[start:end]
+    start = caret - fitting(reversed(text[:caret]), room, size)
+    return start, text[start : start + fitting(text[start:], room, size)]
 
 
 def caret_at(place: Place, box: Box, x: float, unit: float) -> int:

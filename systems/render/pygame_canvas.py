@@ -120,6 +120,8 @@ class Canvas:
     def _panel(self, surface: pygame.Surface, mark: Panel) -> None:
         left, top = round(mark.left), round(mark.top)
         size = round(mark.left + mark.width) - left, round(mark.top + mark.height) - top
+        if min(size) <= 0:  # what a window of some pixels leaves of it
+            return
         key = ("panel", size, mark.radius, mark.fill, mark.outline)
         surface.blit(self._kept(key, partial(_rounded, size, mark)), (left, top))
 

@@ -89,11 +89,11 @@ def load_raster() -> Raster:
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     from systems.render import kernels  # imports numba
 
-    lines = ["from numba import njit", ""]
+    lines = ["from systems.kernels import kept", ""]
     for name, signature in SIGNATURES.items():
         parameters = ", ".join(inspect.signature(getattr(kernels, name).py_func).parameters)
         lines += [
-            f'@njit("{signature}", error_model="numpy", cache=True)',
+            f'@kept("{signature}", error_model="numpy")',
             f"def {name}({parameters}):",
             f"    {name}_kernel({parameters})",
             "",

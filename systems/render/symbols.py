@@ -29,8 +29,8 @@ def symbol_parts(symbol: str, size: float, unit: float) -> Parts:
 
     The size of an icon is how many pixels the unit of its square takes.
     """
-    if symbol in _SYMBOLS:
-        return _SYMBOLS[symbol](size, unit)
+    if symbol in SYMBOLS:
+        return SYMBOLS[symbol](size, unit)
     return [("ink", polygon * size) for polygon in _icon(symbol)]
 
 
@@ -112,7 +112,7 @@ def _pinned(size: float, unit: float) -> Parts:
     return [*_triangle(unit), *(("ink", part * unit) for part in [plate, *hatch])]
 
 
-_SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
+SYMBOLS: dict[str, Callable[[float, float], Parts]] = {
     "ring": _ring,
     "disc": lambda radius, unit: [("ink", circle(radius))],
     "arrow": _arrow,

@@ -62,9 +62,10 @@ class _Writer:
         if button is None:
             return []
         u, theme, size = self.unit, self.theme, font_size(12.0, self.unit)
-        title, key = button.tool.title[:1].upper() + button.tool.title[1:], written_key(button.tool.key)
+        title = button.tool.title[:1].upper() + button.tool.title[1:]
+        key = written_key(button.tool.key) if button.tool.key else ""
         title_width, key_width = text_width(title, size), text_width(key, size, "semibold")
-        pad, gap, height = 10.0 * u, 14.0 * u, line_height(size) + 10.0 * u
+        pad, gap, height = 10.0 * u, 14.0 * u if key else 0.0, line_height(size) + 10.0 * u
         left, middle = self.view.canvas.left + 6.0 * u, button.top + button.height / 2
         window = self.view.camera.viewport
         top = min(max(middle - height / 2, window.top + 2.0 * u), window.bottom - height - 2.0 * u)
@@ -72,5 +73,5 @@ class _Writer:
         return [
             Panel(left, top, width, height, 6.0 * u, theme.background, theme.line),
             Text(title, left + pad, y, size, theme.text),
-            Text(key, left + pad + title_width + gap, y, size, theme.muted, "semibold"),
+            *([Text(key, left + pad + title_width + gap, y, size, theme.muted, "semibold")] if key else []),
         ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterable
 from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Any, TypeVar
@@ -58,11 +59,19 @@ def shortened(text: str, width: float, size: int, weight: str = "regular") -> st
     """The text, or as much of its beginning as fits with an ellipsis; "" if not even that."""
     if text_width(text, size, weight) <= width:
         return text
-    for end in range(len(text) - 1, 0, -1):
-        candidate = text[:end].rstrip(" ,;:.") + "…"
-        if text_width(candidate, size, weight) <= width:
-            return candidate
-    return ""
+    end = fitting(text, width - text_width("…", size, weight), size, weight)
+    return text[:end].rstrip(" ,;:.") + "…" if end else ""
+
+
+def fitting(characters: Iterable[str], width: float, size: int, weight: str = "regular") -> int:
+    """How many characters of a text, from the first one, fit into a width; none into less than none."""
+    count, taken = 0, 0
+    for character in characters:
+        taken += _character_width(character, size, weight)
+        if taken > width:
+            break
+        count += 1
+    return count
 
 
 def wrapped(text: str, width: float, size: int, weight: str = "regular") -> list[str]:

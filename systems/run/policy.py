@@ -18,7 +18,7 @@ from systems.entries import Measure
 from systems.physics.automatic import SMALL
 
 GOING_ON = (StopReason.DONE, StopReason.REVIEW)  # stop reasons after which a run simply goes on
-ENDING = (StopReason.EVENT, StopReason.DIVERGED, StopReason.UNRESOLVED)  # with which no moment in a step is reached
+ENDING = (StopReason.EVENT, StopReason.DIVERGED, StopReason.UNRESOLVED)  # reasons that end a step early
 
 SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
 ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square

@@ -151,9 +151,21 @@ class Programs:
 
     def _make(self, plan: list[StepSystem]) -> Dynamics:
         if not self.integrator.exact:
-            return make_program(self._model, plan, self.integrator)
+            return self._made_by(self.integrator, plan)
         hand = next((system for system in plan if isinstance(system, Pull)), None)
         return Flight(self._model, self._impacts, hand)
+
+    def _made_by(self, integrator: Integrator, plan: list[StepSystem]) -> Program:
+        """The program of a plan with an integrator. Raises ProgramError for whatever is wrong with that of a mod."""
+        try:
+            return make_program(self._model, plan, integrator)
+        except ProgramError:
+            raise
+        except Exception as error:
+            if integrator.mod is None:
+                raise
+            said = f"{type(error).__name__}: {error}"
+            raise ProgramError(f"{integrator.name} makes no step program: {said}.", integrator) from error
 
     def _key(self, plan: list[StepSystem]) -> Key:
         warmth = ("rods.misfit",) if is_warm(self._model) else ()

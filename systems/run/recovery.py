@@ -70,5 +70,10 @@ class Recovery:
         self.safe.restore(self._model)
         return (
             f"The simulation diverged near t = {failed:.6g} s: {why}. {self._step_size.remedy(size)}"
-            f" The last good state, at t = {self._model.clock.time:.6g} s, was kept."
+            f" The last good state, at t = {self._model.clock.time:.6g} s, was kept.{self._acting_mods()}"
         )
+
+    def _acting_mods(self) -> str:
+        """The sentence that names the laws of mods in the run that was given up, which may be the cause."""
+        laws = [law.name for law in self._programs.plan if law.kernel and law.mod is not None]
+        return f" Laws of mods act in it: {', '.join(laws)}; see whether it runs without them." if laws else ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import product
 
 import numpy as np
@@ -19,6 +20,29 @@ def yielding_set(matrix: Array, growth: Array, guess: Flags) -> Flags | None:
     symmetric: yielding at the rates γ lowers them by M γ. None if no set was found. Principal pivoting on the least
     index [K. G. Murty, 1974] ends from any guess if M is positive definite.
     """
+    chosen = _pivoted(matrix, growth, guess)
+    if chosen is not None:
+        return chosen
+    for chosen in yielding_sets(matrix, growth, guess):
+        if not chosen.any() or np.linalg.eigvalsh(matrix[np.ix_(chosen, chosen)])[0] > 0.0:
+            return chosen
+    return None
+
+
+def yielding_sets(matrix: Array, growth: Array, guess: Flags) -> Iterator[Flags]:
+    """All sets that solve the problem, the largest first; of more than ENUMERATED rods those that pivoting finds."""
+    if len(growth) <= ENUMERATED:
+        trials = (np.array(trial, dtype=bool) for trial in product([True, False], repeat=len(growth)))
+        yield from (trial for trial in trials if not _violations(matrix, growth, trial).any())
+    else:
+        for start in (guess, np.ones_like(guess), np.zeros_like(guess)):
+            chosen = _pivoted(matrix, growth, start)
+            if chosen is not None:
+                yield chosen
+
+
+def _pivoted(matrix: Array, growth: Array, guess: Flags) -> Flags | None:
+    """The set that principal pivoting finds from a guess, if it ends."""
     chosen = guess.copy()
     for _ in range(PIVOTS):
         wrong = _violations(matrix, growth, chosen)
@@ -26,12 +50,6 @@ def yielding_set(matrix: Array, growth: Array, guess: Flags) -> Flags | None:
             return chosen
         first = int(wrong.argmax())
         chosen[first] = not chosen[first]
-    if len(growth) <= ENUMERATED:
-        for trial in product([True, False], repeat=len(growth)):
-            chosen = np.array(trial)
-            definite = not any(trial) or np.linalg.eigvalsh(matrix[np.ix_(chosen, chosen)])[0] > 0.0
-            if definite and not _violations(matrix, growth, chosen).any():
-                return chosen
     return None
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from systems.statics.complementarity import yielding_set
+from systems.statics.complementarity import yielding_set, yielding_sets
 from systems.statics.equations import ROUND_OFF, Array, Branches, Flags, Response, Structure, largest
 from systems.statics.factor import Factor, regular
 
@@ -33,6 +33,7 @@ SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
 NARROWINGS = 42  # halvings that locate a loss of stability
 FEW_NARROWINGS = 14  # the same in structures larger than EXACT_EVENTS
 ACTIVE_SET_ROUNDS = 12
+INDIFFERENT = 1e-11  # of the largest rate of elongation: a smaller one is round-off
 
 
 @dataclass(frozen=True)
@@ -71,8 +72,8 @@ class Tangent:
 
     @property
     def stable(self) -> bool:
-        """True if the equilibrium resists every small motion, and t grows."""
-        return self.consistent and self.factor.definite and self.sense > 0.0
+        """True if the equilibrium resists every small motion."""
+        return self.consistent and self.factor.definite
 
 
 @dataclass(frozen=True)
@@ -143,12 +144,34 @@ class Path:
         found = self._direction(response, branches, kept, onward)
         if self._agrees(response, branches, found) and (found.factor.definite or self.passes_limits):
             return found
-        if self.passes_limits:
-            found = self._direction(response, branches, limited, onward)
-            if not self._agrees(response, branches, found):
-                found = self._soften_by_trial(response, branches, kept, onward)
-            return replace(found, consistent=self._agrees(response, branches, found))
+        if self.passes_limits and onward is not None:
+            return self._onward_tangent(response, branches, kept, onward)
         return self._stable_tangent(response, branches, kept, onward)
+
+    def _onward_tangent(self, response: Response, branches: Branches, guess: Flags, onward: Array) -> Tangent:
+        """Of all directions, with a growing or a falling load, the one most like the last."""
+        elastic = self._direction(response, branches, np.zeros_like(guess), onward)
+        limited, matrix, growth = self._limits(response, branches, elastic)
+        best, likeness = (
+            replace(self._direction(response, branches, guess, onward), consistent=False),
+            -math.inf,
+        )
+        for sense in (1.0, -1.0):
+            for chosen in yielding_sets(matrix, sense * elastic.sense * growth, guess[limited]):
+                giving = np.zeros_like(guess)
+                giving[limited] = chosen
+                found = replace(self._direction(response, branches, giving, onward), sense=sense)
+                like = sense * self._likeness(response, branches, found.rate, onward)
+                if like > likeness and self._agrees(response, branches, found):
+                    best, likeness = found, like
+        return best
+
+    def _likeness(self, response: Response, branches: Branches, motion: Array, other: Array) -> float:
+        """The cosine of the angle between two motions, as measured by the forces that they cause in elastic rods."""
+        stiffness = np.where(branches.slack, 0.0, self.structure.stiffness / self.structure.rest_length)
+        one, two = (self.structure.elongation_rate(each, response) for each in (motion, other))
+        size = math.sqrt(float(stiffness @ one**2) * float(stiffness @ two**2))
+        return float(stiffness @ (one * two)) / size if size > 0.0 else 0.0
 
     def _stable_tangent(
         self, response: Response, branches: Branches, guess: Flags, onward: Array | None
@@ -162,7 +185,7 @@ class Path:
             return elastic
         if not self.exact_events:
             return self._soften_by_trial(response, branches, growth > 0.0, onward)
-        soft = self._soften_exactly(response, branches, growth, elastic.factor, guess)
+        soft = self._soften_exactly(response, branches, elastic, guess)
         if soft is not None:
             return self._direction(response, branches, soft, onward)
         return replace(self._direction(response, branches, growth > 0.0, onward), consistent=False)
@@ -175,8 +198,17 @@ class Path:
         flowing, slack = giving & ~branches.verge, branches.slack | (giving & branches.verge)
         factor = regular(structure.tangent(response, flowing | slack), structure.weight)
         rate = factor.solve(self.push) if factor.exists else np.zeros(structure.size)
-        forward = factor.definite or onward is None or float(rate @ onward) >= 0.0
+        forward = onward is None or self._goes_on(response, branches, factor, rate, onward)
         return Tangent(rate, flowing, slack, factor, 1.0 if forward else -1.0)
+
+    def _goes_on(
+        self, response: Response, branches: Branches, factor: Factor, rate: Array, onward: Array
+    ) -> bool:
+        """True if a growing load leads onward."""
+        if not self.passes_limits:
+            return factor.definite or float(rate @ onward) >= 0.0
+        like = self._likeness(response, branches, rate, onward)
+        return like > 0.0 or (like == 0.0 and factor.definite)
 
     def _growth(self, response: Response, branches: Branches, tangent: Tangent) -> Array:
         """Rates at which rods at the end of a piece elongate outward along the path."""
@@ -185,25 +217,36 @@ class Path:
 
     def _agrees(self, response: Response, branches: Branches, tangent: Tangent) -> bool:
         """True if exactly those rods at the end of a piece give way that go on outward."""
-        grows = self._growth(response, branches, tangent) > 0.0
-        return tangent.factor.exists and np.array_equal(grows, tangent.soft & ~branches.slack)
+        rate = self.structure.elongation_rate(tangent.sense * tangent.rate, response)
+        growth = rate * branches.outward
+        wrong = (growth > 0.0) != (tangent.soft & ~branches.slack)
+        return tangent.factor.exists and not (np.abs(growth[wrong]) > INDIFFERENT * largest(rate)).any()
 
     def _soften_exactly(
-        self, response: Response, branches: Branches, growth: Array, elastic: Factor, guess: Flags
+        self, response: Response, branches: Branches, elastic: Tangent, guess: Flags
     ) -> Flags | None:
         """The rods at the end of a piece that give way, by the complementarity problem; None without a solution."""
+        limited, matrix, growth = self._limits(response, branches, elastic)
+        chosen = yielding_set(matrix, growth, guess[limited])
+        if chosen is None:
+            return None
+        limited[limited] = chosen
+        return limited
+
+    def _limits(self, response: Response, branches: Branches, elastic: Tangent) -> tuple[Flags, Array, Array]:
+        """The rods at the end of a piece, and the matrix and growth of their complementarity problem.
+
+        elastic: the direction if none of them gives way.
+        """
         structure = self.structure
         limited: Flags = branches.outward != 0.0
         sign = branches.outward[limited]
         stiffness = (structure.stiffness / structure.rest_length)[limited]
         pull = structure.compatibility(response, np.flatnonzero(limited)).toarray() * sign[:, None]
-        softening = pull @ elastic.solve(np.ascontiguousarray(pull.T))
+        softening = pull @ elastic.factor.solve(np.ascontiguousarray(pull.T))
         matrix = np.diag(stiffness) - stiffness[:, None] * softening * stiffness
-        chosen = yielding_set(0.5 * (matrix + matrix.T), stiffness * growth[limited], guess[limited])
-        if chosen is None:
-            return None
-        limited[limited] = chosen
-        return limited
+        growth = stiffness * self._growth(response, branches, elastic)[limited]
+        return limited, 0.5 * (matrix + matrix.T), growth
 
     def _soften_by_trial(
         self, response: Response, branches: Branches, soft: Flags, onward: Array | None
@@ -233,8 +276,7 @@ class Path:
         far = LARGEST_MOVE / max(self.structure.move(tangent.rate, point.response.reach), 1e-300)
         nearest = min(self._until_event(point, tangent), 0.99 * far * self.stretch(tangent))
         trial, failed = min(increment, nearest), False
-        smallest = SMALLEST * self.stretch(tangent)
-        while trial > smallest:
+        while trial > SMALLEST:
             found = self.attempt(point, tangent, trial)
             if isinstance(found, tuple):
                 return Step(*found, trial, increment if failed else 2.0 * increment)
@@ -257,17 +299,51 @@ class Path:
             found = self.correct(point, found.displacement, self.end, None)
         if found is None:
             return HALF
+        reached = self._reached(point, tangent, found, dt)
+        if isinstance(reached, tuple) and self._turned_back(point, tangent, *reached):
+            straight = self.correct(point, guess, point.t + dt, None)
+            reached = HALF if straight is None else self._reached(point, tangent, straight, dt)
+            if isinstance(reached, tuple) and self._is_near(point, tangent, *reached, predicted):
+                return reached
+            return HALF
+        if not isinstance(reached, tuple):
+            return reached
         change = structure.gather(found.displacement - point.displacement)
+        if self._reversed(tangent, found, reached[1], increment):
+            return HALF
+        fine = self._went_along(point.response.reach, tangent, reached[1], predicted, change)
+        switched = not np.array_equal(found.response.soft, tangent.soft)
+        coarse = not self.exact_events and switched and abs(dt) <= RESOLUTION
+        return reached if fine or coarse else HALF
+
+    def _reached(
+        self, point: Point, tangent: Tangent, found: Point, dt: float
+    ) -> tuple[Point, Tangent] | float:
+        """A point found, with its tangent; or the share of the increment after which a rod left its piece."""
         kink = self._kink(point, tangent, found, dt)
         if kink < 1.0:
             return max(kink, HALF)  # far sooner than by the tangent: the point found is on another branch
-        following = self.tangent(found, change, tangent)
-        if self._reversed(tangent, found, following, increment):
-            return HALF
-        fine = self._went_along(point.response.reach, tangent, following, predicted, change)
-        switched = not np.array_equal(found.response.soft, tangent.soft)
-        coarse = not self.exact_events and switched and abs(dt) <= RESOLUTION
-        return (found, following) if fine or coarse else HALF
+        change = self.structure.gather(found.displacement - point.displacement)
+        return found, self.tangent(found, change, tangent)
+
+    def _turned_back(self, point: Point, tangent: Tangent, found: Point, following: Tangent) -> bool:
+        """True if the path turns back though stability is not lost.
+
+        As where rods without force become straight: their bent shapes to either side are one path on which the
+        load grows and falls; what goes on from its top is another, on which they are pulled.
+        """
+        if not (tangent.stable and following.stable and tangent.sense > 0.0):
+            return False
+        fell = not self.passes_limits and found.t < point.t - 4.0 * ROUND_OFF
+        return fell or float(tangent.rate @ following.rate) < 0.0
+
+    def _is_near(
+        self, point: Point, tangent: Tangent, found: Point, following: Tangent, predicted: Array
+    ) -> bool:
+        """True if a stable point is not farther away than was predicted."""
+        change, reach = self.structure.gather(found.displacement - point.displacement), point.response.reach
+        limit = (1.0 + MISS) * self.structure.move(predicted, reach)
+        return following.stable and self.structure.move(change, reach) <= limit
 
     def correct(self, start: Point, guess: Array, t: float, across: Tangent | None) -> Point | None:
         """The equilibrium near a guess: at constant t, or on the plane across a tangent; None if not found."""

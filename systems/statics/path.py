@@ -77,7 +77,7 @@ def load_path(model: Model, goal: Goal, *, points: int = 500, detail: float = DE
     scale, or without an equilibrium at the factor 0.
     """
     unloaded = settle(model, (0.0,)).final
-    if unloaded.status != "equilibrium":
+    if not unloaded.balanced:
         raise ValueError(f"There is no equilibrium to start from. {unloaded.message}")
     structure, external = Structure.of(model), external_forces(model)
     if not structure.gather(external.scaled).any():

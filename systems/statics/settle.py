@@ -20,10 +20,11 @@ from systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, 
 from systems.statics.events import Event, NoEquilibrium
 from systems.statics.explain import describe_motion, describe_way, slack_named
 from systems.statics.external import external_forces, loose_bodies, loose_event
-from systems.statics.factor import soft_modes, softest
+from systems.statics.factor import SOFT, soft_modes, softest
 from systems.statics.follow import Path, Point
 from systems.statics.loading import Loading, first_order_mechanism
 
+STABLE, NEUTRAL, UNSTABLE = EQUILIBRIA = ("equilibrium", "neutral equilibrium", "unstable equilibrium")
 MOST_TOLD = 3  # events in an account besides the message
 TOLD = ("free body", "mechanism", "snap-through", "bifurcation", "note")  # kinds of events that messages repeat
 NEARLY_SOFT = 1e-9  # of the rods' stiffness: a note about a motion that is resisted less
@@ -41,10 +42,11 @@ class StaticState:
     """The state at one load factor, in m, kN and J: the particles' fields are (n, 2), the rods' (rods,).
 
     reaction: the supports' force in constrained directions, 0 elsewhere. residual: the largest unbalanced
-    force over the largest force so far. dissipated_plastic: since settling began. status: "equilibrium",
-    "mechanism", "collapse" or "limit reached"; if not the first, all values are those of the last equilibrium
-    on the way. events: those on the way from the state before. contacts: rows of the discs that press each
-    other, (k, 2), with contact_force (k,).
+    force over the largest force so far. dissipated_plastic: since settling began. status: "equilibrium";
+    "neutral equilibrium" where nothing resists some motion, so that the place is one of many; "unstable equilibrium";
+    "mechanism", "collapse" or "limit reached", with which all values are those of the last equilibrium on the way.
+    events: those on the way from the state before. contacts: rows of the discs that press each other, (k, 2), with
+    contact_force (k,).
     """
 
     load_factor: float
@@ -63,6 +65,11 @@ class StaticState:
     events: tuple[Event, ...]
     contacts: Rows
     contact_force: Array
+
+    @property
+    def balanced(self) -> bool:
+        """True if all forces are in balance, whether or not the state is stable."""
+        return self.status in EQUILIBRIA
 
 
 @dataclass(frozen=True)
@@ -124,7 +131,7 @@ def settle(
     Factors multiply forces and loads; accelerations grow from 0 to 1 with the first factor and then stay.
     In a model that has not moved yet, lack of fit and moved supports act before the load; in any other model the
     forces that hold its present state are exchanged for the load, and load factors on the way count both.
-    Ends early, with a status other than "equilibrium", where there is no further equilibrium.
+    Ends early, with the status "mechanism", "collapse" or "limit reached", where there is no further equilibrium.
     geometry: "linear" for first-order theory about the original positions, with the same yielding.
     Raises FieldError for numbers too large or too small to compute with, ValueError for no load factors.
     """
@@ -214,20 +221,20 @@ class _Settling:
         states: list[StaticState] = []
         for factor in factors:
             states.append(self.to(factor))
-            if states[-1].status != "equilibrium":
+            if not states[-1].balanced:
                 break
         return Settlement(tuple(states))
 
     def to(self, factor: float) -> StaticState:
         """The state at a load factor."""
         target = self.external.at(factor)
-        status, message = "equilibrium", ""
+        message = ""
         try:
             self._check_bodies(target, factor)
             if self.load.any() and not self.structure.gather(self.point.displacement).any():
                 self._change(self._nothing, self.factor)
             self._change(target, factor)
-            self._note_softness(factor)
+            status = self._stability(factor)
             self._check_balance(factor)
         except NoEquilibrium as end:
             status, message = end.status, str(end)
@@ -252,23 +259,31 @@ class _Settling:
         finally:
             self.slack = loading.slack
 
-    def _note_softness(self, factor: float) -> None:
-        """Report a motion against so little stiffness that few digits are certain."""
+    def _stability(self, factor: float) -> str:
+        """The kind of equilibrium; a motion against so little stiffness that few digits are certain is reported."""
         structure = self.structure
-        known = any(event.kind in ("mechanism", "plastic mechanism") for event in self.events)
-        if structure.size == 0 or known or self.soft:
-            self.soft = True
-            return
+        if structure.size == 0:
+            return STABLE
         share, mode = softest(structure, self.point.response)
-        if share < NEARLY_SOFT:
-            self.soft = True
+        kind = NEUTRAL if share < SOFT else STABLE
+        known = any(event.kind in ("mechanism", "plastic mechanism") for event in self.events)
+        if share < NEARLY_SOFT and not (known or self.soft):
             motion = structure.spread(mode)
-            digits = max(0, int(np.log10(max(share, ROUND_OFF) / ROUND_OFF)))
-            message = (
-                f"Nearly a mechanism: moving {describe_motion(self.model, motion[None])} meets only"
-                f" {max(share, 0.0):.1g} of the rods' stiffness, so that about {digits} digits are certain."
-            ) + slack_named(self.model, self.point.response.slack)
+            moving = f"moving {describe_motion(self.model, motion[None])}"
+            if kind == NEUTRAL:
+                message = (
+                    f"Neutral equilibrium: nothing resists {moving}, so that this place is one of many."
+                    " Hold it if that is not meant."
+                )
+            else:
+                message = (
+                    f"Nearly a mechanism: {moving} meets only {share:.1g} of the rods' stiffness, so that about"
+                    f" {int(np.log10(share / ROUND_OFF))} digits are certain."
+                )
+            message += slack_named(self.model, self.point.response.slack)
             self.events.append(Event("note", factor, message, motion=normalised(motion)))
+        self.soft = self.soft or known or share < NEARLY_SOFT
+        return kind
 
     def _check_balance(self, factor: float) -> None:
         """Report forces that rounding leaves unbalanced. Raises NoEquilibrium if they are many."""
@@ -339,7 +354,7 @@ class _SettlingWithDiscs(_Settling):
         self.discs = discs
         self.structure = self.bare = discs.beside(self.structure)
         self.point = replace(self.point, displacement=self._all(start.displacement))
-        self.load, self.factor = self._nothing, 0.0
+        self.load, self.factor, self.outcome = self._nothing, 0.0, ""
 
     def _all(self, field: Array) -> Array:
         """A field over the particles (n, 2) as one over particles and obstacles."""
@@ -372,13 +387,7 @@ class _SettlingWithDiscs(_Settling):
             self._note_mechanism(sinking.point)
         self.structure, self.point = sinking.path.structure, sinking.point
         self.load, self.factor = target, factor
-        if outcome == "unstable":
-            motion = self._particles(self.structure.spread(softest(self.structure, self.point.response)[1]))
-            message = (
-                f"An unstable balance: the slightest push moves {describe_motion(self.model, motion[None])}"
-                " further and further. Add something that holds it if that is not meant."
-            )
-            self.events.append(Event("note", factor, message, motion=normalised(motion)))
+        self.outcome = outcome
 
     def _check_apart(self) -> None:
         """Raise NoEquilibrium if two discs are so nearly in one place that no direction parts them."""
@@ -404,5 +413,14 @@ class _SettlingWithDiscs(_Settling):
     def _check_bodies(self, target: Array, factor: float) -> None:
         """None: loose bodies move until something is in their way."""
 
-    def _note_softness(self, factor: float) -> None:
-        """None: discs roll on one another without resistance, and an unstable balance is reported."""
+    def _stability(self, factor: float) -> str:
+        """Whether the least push ends the balance; that discs roll on one another without resistance is usual."""
+        if self.outcome != "unstable":
+            return STABLE
+        motion = self._particles(self.structure.spread(softest(self.structure, self.point.response)[1]))
+        message = (
+            f"An unstable balance: the slightest push moves {describe_motion(self.model, motion[None])}"
+            " further and further. Add something that holds it if that is not meant."
+        )
+        self.events.append(Event("note", factor, message, motion=normalised(motion)))
+        return UNSTABLE

@@ -46,7 +46,7 @@ class Theories:
     def exact(self) -> StaticState | None:
         """The equilibrium in exact geometry, or None if there is none under the whole load."""
         final = self.settlement.final
-        return final if final.status == "equilibrium" else None
+        return final if final.balanced else None
 
 
 def theories(model: Model, start: Start | None = None) -> Theories:

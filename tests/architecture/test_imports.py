@@ -26,7 +26,7 @@ KERNELS = (  # numba is imported as soon as they are
     "systems/collision/free/pile_equilibrium.py",
 )
 COMPILED = (*KERNELS, "systems/program/*.py")
-SHARED = ("base", "broad_phase", "entries", "islands", "kernels", "program")  # by all systems
+SHARED = ("base", "broad_phase", "cache", "entries", "islands", "kernels", "program")  # by all systems
 COMPOSED = ("program", "run", "catalogue.py")  # of what other folders of systems hold
 MODULES_OF = {"pygame-ce": "pygame", "pillow": "PIL"}  # distributions whose module has another name
 

@@ -11,6 +11,7 @@ import pytest
 
 from components.settings import INTEGRATORS
 from game.commands import bench
+from game.commands.arguments import UsageError
 from game.commands.output import FORMATS, Format
 from tests.benchmarks import collisions, drawing, ratios, speed, stability
 from tests.benchmarks.ceiling import bandwidth, seconds_per_rod
@@ -48,6 +49,18 @@ def test_what_was_measured_is_printed_in_every_format(
             ["steps"],
             ["rods", "us"],
         ]
+
+
+@pytest.mark.parametrize("words", [["--seed", "1"], ["speed", "--seed", "1"], ["differential", "--seed", "-1"]])
+def test_only_models_drawn_by_lot_have_numbers(words: list[str]) -> None:
+    with pytest.raises(UsageError, match="--seed takes a whole number"):
+        bench.command(words)
+
+
+def test_one_model_is_examined_by_its_number(capsys: pytest.CaptureFixture[str]) -> None:
+    assert bench.command(["differential", "--seed", "14", "--format", "json"]) == 0
+    (row,) = json.loads(capsys.readouterr().out)["differential"]["model"]
+    assert row["seed"] == 14
 
 
 @pytest.mark.parametrize("rods", [100, 1_000, 10_000])

@@ -340,3 +340,29 @@ def test_scripts_write_nothing(data: Path) -> None:
     session.rods["AB"].stiffness = 5.0
     session.frame(5.0)
     assert not data.exists()
+
+
+def test_what_is_no_file_is_passed_over(data: Path) -> None:
+    """The other recovery files are offered, and unsaved work is kept."""
+    left = left_behind(data, 5.0)
+    folder = left.parent
+    (folder / "other.lock").mkdir()
+    (folder / "dead.2.folder.json").mkdir()
+    if hasattr(os, "symlink"):
+        (folder / "dead.3.loop.json").symlink_to(folder / "dead.3.loop.json")
+    keeper = Autosave(interval=0.0)
+    assert left in keeper.left()
+    session = with_autosave(keeper)
+    session.rods["AB"].stiffness = 6.0
+    kept(keeper, session)
+    keeper.discard()
+    assert not left.exists()
+    keeper.close(session.documents)
+
+
+@pytest.mark.skipif(not hasattr(os, "symlink"), reason="the system has no links")
+def test_a_saved_model_that_is_gone_hides_no_other(data: Path) -> None:
+    (data / "models").mkdir(parents=True)
+    models.save(models.parse(triangle()), data / "models" / "a.json")
+    (data / "models" / "b.json").symlink_to(data / "models" / "gone.json")
+    assert [path.stem for path in library.saved()] == ["a"]

@@ -1,15 +1,20 @@
 """Ctrl+C while the program loads, and while a script does."""
 
+import os
 import signal
+import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 import game
-from game.interrupts import quietly_interrupted
+from game.documents.library import DATA_VARIABLE
+from game.interrupts import CLOSING, closed_by_signals, quietly_interrupted
 
+ROOT = Path(game.__file__).parents[1]
 PROGRAM = ["/usr/bin/pinjoint", "-m", str(Path(game.__file__).parent / "__main__.py")]
 
 
@@ -43,3 +48,54 @@ def test_scripts_are_left_alone(argv: list[str], monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(sys, "argv", argv)
     with quietly_interrupted():
         assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+@pytest.mark.parametrize("number", CLOSING)
+def test_signals_close_a_window(number: signal.Signals) -> None:
+    closed: list[bool] = []
+    before = signal.getsignal(number)
+    with closed_by_signals(lambda: closed.append(True)):
+        signal.raise_signal(number)
+    assert closed == [True]
+    assert signal.getsignal(number) is before
+    if hasattr(signal, "setitimer"):
+        assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+
+
+ENDLESS = """
+import signal
+from game import interrupts
+
+interrupts.PATIENCE = 0.2
+with interrupts.closed_by_signals(lambda: None):
+    signal.raise_signal(signal.SIGTERM)
+    while True:
+        pass
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="the system has no timers")
+def test_a_window_that_hangs_is_ended() -> None:
+    done = subprocess.run([sys.executable, "-c", ENDLESS], cwd=ROOT, capture_output=True, timeout=60)
+    assert done.returncode == -signal.SIGALRM
+
+
+def test_a_window_ends_cleanly_when_it_is_told_to(tmp_path: Path) -> None:
+    """It leaves no recovery file behind."""
+    folders = {"XDG_DATA_HOME": str(tmp_path), "XDG_CONFIG_HOME": str(tmp_path), "SDL_VIDEODRIVER": "dummy"}
+    record, said = tmp_path / "record.jsonl", tmp_path / "said"
+    with said.open("w") as file:
+        window = subprocess.Popen(
+            [sys.executable, "-m", "game", "isostatic", "--record", str(record)],
+            env=os.environ | folders | {DATA_VARIABLE: str(tmp_path)},
+            cwd=ROOT,
+            stdout=file,
+            stderr=file,
+        )
+        while not record.exists() and window.poll() is None:
+            time.sleep(0.02)
+        time.sleep(0.5)
+        window.send_signal(signal.SIGTERM)
+        assert window.wait(60) == 0
+    assert said.read_text() == ""
+    assert not list((tmp_path / "autosave").iterdir())

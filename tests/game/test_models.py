@@ -6,9 +6,11 @@ import gc
 import json
 import math
 import os
+import sys
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -18,7 +20,10 @@ from components.model import Model
 from game.commands.command_line import main
 from game.documents import document as documents
 from game.documents import models
+from game.documents.document import gathered
 from game.documents.models import ModelError
+from tests.benchmarks.models import mesh
+from tests.reference.lines import lines_run
 from tests.reference.models import model, particle, rod, square, triangle
 
 BASE = {"format": "pinjoint model", "version": 1}
@@ -375,6 +380,46 @@ def test_everything_round_trips_bit_for_bit(tmp_path: Path) -> None:
     assert math.copysign(1.0, loaded.particles["A"].position[0]) == -1.0
 
 
+def test_a_document_by_columns_is_the_same_model(tmp_path: Path) -> None:
+    """It is made and written in a fraction of the time, for what is written every few seconds."""
+    for made in (everything(), models.parse(triangle()), Model()):
+        path = tmp_path / "columns.json"
+        path.write_bytes(msgspec.json.encode(gathered(made)))
+        assert_same(made, models.load(path))
+    large = mesh(10_000)
+    assert lines_run(lambda: gathered(large)) < 5000  # none for each rod
+
+
+COLUMNS = msgspec.json.decode(msgspec.json.encode(gathered(models.parse(triangle()))))
+NUMBERS = {"kind": "<f8", "pairs": True, "absent": False, "data": "AAAA"}
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"sections": {"particles": [10**12, []]}},
+        {"sections": {"particles": [-1, []]}},
+        {"sections": {"particles": [2, [["name", "", None, ["A"]]]]}},
+        {"sections": {"particles": [1, [["name", "", [7], ["A"]]]]}},
+        {"sections": {"particles": [1, [["name", "", None, ["A"]], ["position", "", None, NUMBERS]]]}},
+        {
+            "sections": {
+                "particles": [1, [["name", "", None, ["A"]], ["x", "", None, NUMBERS | {"kind": "|O"}]]]
+            }
+        },
+        {"sections": {"particles": [1, [["components", "", None, [5]]]]}},
+        {"sections": {"nothing": [1, []]}},
+        {"sections": {}, "version": "1"},
+        {"sections": {}, "version": 99},
+    ],
+)
+def test_damaged_columns_are_explained(changed: dict[str, Any], tmp_path: Path) -> None:
+    path = tmp_path / "columns.json"
+    path.write_bytes(msgspec.json.encode(COLUMNS | changed))
+    with pytest.raises(ModelError, match=r"columns\.json: \$"):
+        models.load(path)
+
+
 def test_what_is_as_by_default_is_left_out() -> None:
     document = models.document(models.parse(triangle() | {"state": {"time": 0}}))
     assert document["particles"][0] == {"name": "A", "position": [0.0, 0.0], "fixed": [False, True]}
@@ -457,6 +502,17 @@ def test_a_failure_keeps_the_old_file(step: str, tmp_path: Path, monkeypatch: py
         models.save(models.parse(triangle()), path)
     assert path.read_text(encoding="utf-8") == "old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="folders cannot be synchronised there")
+def test_the_folder_is_synchronised_after_a_file_was_replaced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else a power cut could bring the old file back."""
+    synchronised: list[int] = []
+    monkeypatch.setattr(os, "fsync", lambda handle: synchronised.append(os.fstat(handle).st_ino))
+    models.replace(tmp_path / "some.json", b"content")
+    assert synchronised == [(tmp_path / "some.json").stat().st_ino, tmp_path.stat().st_ino]
 
 
 def test_a_text_that_no_file_can_hold_keeps_the_old_file(tmp_path: Path) -> None:

@@ -24,10 +24,10 @@ from game.editor.view_model import COMPILING
 from game.preparation import Preparation
 from game.prepare import Job, _example
 from game.session import Session
+from systems import cache
 from systems.collision.driven import compiled as driven_kernels
 from systems.input import pygame_input
-from systems.program import compiler as cache
-from systems.program.compiler import CompiledUnit
+from systems.program.compiler import CompiledUnit, forget_unused
 from systems.program.program import _writer
 from systems.program.writer import FEW, form_of
 
@@ -353,7 +353,7 @@ SMALL = """
 from numba import njit
 from systems.program.compiler import compile_module
 double = njit(lambda x: 2.0 * x)
-source = "from numba import njit\\n\\n@njit(cache=True)\\ndef answer(x):\\n    return kernel(x)\\n"
+source = "from systems.kernels import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
 print(compile_module(source, {"kernel": double}).answer(21.0))
 """
 
@@ -371,18 +371,20 @@ def test_processes_that_compile_at_once_do_not_disturb_each_other(tmp_path: Path
 
 
 def test_programs_that_nobody_uses_are_forgotten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cache, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(cache, "folder", lambda: tmp_path)
     (tmp_path / "__pycache__").mkdir()
     for name, age in (("pinjoint_program_old", 61 * 86400), ("pinjoint_program_new", 0)):
-        for file in (f"{name}.py", f"{name}.done", f"__pycache__/{name}.advance-1.nbi"):
+        for file in (f"{name}.done", f"{name}.advance-1.code", f"__pycache__/{name}.advance-1.nbi"):
             (tmp_path / file).touch()
-        before = (tmp_path / f"{name}.done").stat().st_mtime - age
-        os.utime(tmp_path / f"{name}.done", (before, before))
-    cache.forget_unused()
-    left = {path.name for path in tmp_path.rglob("*.*")}
-    assert left == {
-        "pinjoint_program_new.py",
+        for file in (f"{name}.done", f"{name}.advance-1.code-killed.tmp"):
+            (tmp_path / file).touch()
+            before = (tmp_path / file).stat().st_mtime - age
+            os.utime(tmp_path / file, (before, before))
+    forget_unused()
+    assert {path.name for path in tmp_path.rglob("*.*")} == {
         "pinjoint_program_new.done",
+        "pinjoint_program_new.advance-1.code",
+        "pinjoint_program_new.advance-1.code-killed.tmp",
         "pinjoint_program_new.advance-1.nbi",
     }
 
@@ -394,7 +396,7 @@ def test_a_folder_of_somebody_else_is_not_used(tmp_path: Path, monkeypatch: pyte
     (tmp_path / "blocked").write_text("not a folder")
     monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
     monkeypatch.setattr(os, "getuid", lambda: 12345)
-    find: Callable[[], Path] = cache.cache_folder.__wrapped__
+    find: Callable[[], Path] = cache.folder.__wrapped__
     assert find().parent != tmp_path or find().name != "pinjoint-programs-12345"
 
 
@@ -418,3 +420,12 @@ def test_parts_that_nobody_has_called_are_not_taken_for_compiled(tmp_path: Path)
         timeout=300,
     )
     assert done.stdout.split() == ["False"] * 3
+
+
+def test_a_cache_that_cannot_be_written_is_said_once(app: App, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cache, "TROUBLE", ["Compiled programs cannot be kept."])
+    frames(app, 1)
+    assert app.session.notice == "Compiled programs cannot be kept."
+    app.session.notice = ""
+    frames(app, 2)
+    assert app.session.notice == ""

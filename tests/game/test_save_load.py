@@ -6,6 +6,8 @@ import itertools
 import json
 import os
 import re
+import sys
+import unicodedata
 from collections.abc import Callable
 from pathlib import Path
 
@@ -118,7 +120,25 @@ def test_overwriting_is_asked_and_confirmed_by_a_second_return(session: Session,
     assert stiffness_in(path) == 5.0
 
 
-@pytest.mark.parametrize("name", ["", "   ", ".", "..", ".hidden", "end.", "con", "NUL.x", "lpt1", "a" * 101])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "",
+        "   ",
+        ".",
+        "..",
+        ".hidden",
+        "end.",
+        "con",
+        "con .a",
+        "NUL.x",
+        "lpt1",
+        "COM¹",
+        "lpt³.b",
+        "a" * 101,
+        "क" * 99,
+    ],
+)
 def test_a_name_that_no_file_can_have_is_refused(session: Session, data: Path, name: str) -> None:
     saved_as(session, name)
     assert session.scene == "save"
@@ -130,6 +150,30 @@ def test_a_name_that_no_file_can_have_is_refused(session: Session, data: Path, n
 def test_no_name_leads_out_of_the_folder(name: str) -> None:
     with pytest.raises(library.NameRefused):
         library.path_of(name)
+
+
+@pytest.mark.parametrize("name", ["पुल", "Brücke", "Bru\u0308cke", "pont très léger", "γέφυρα", "橋", "สะพาน"])
+def test_names_may_be_of_any_script(session: Session, data: Path, name: str) -> None:
+    """Many write vowels and accents as characters that combine with the one before."""
+    saved_as(session, name)
+    (path,) = (data / "models").glob("*.json")
+    assert path.stem == unicodedata.normalize("NFC", name)
+    assert library.find(name) == path
+
+
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="file names are texts there")
+def test_a_file_whose_name_is_no_text_is_shown_and_saved(data: Path, tmp_path: Path) -> None:
+    path = tmp_path / os.fsdecode(b"\xff-\n.json")
+    models.save(models.parse(triangle()), path)
+    session = Session.open(path)
+    assert session.file.name.encode().decode() == "\ufffd-\n"
+    session.rods["AB"].stiffness = 5.0
+    session.press("ctrl+s")
+    assert stiffness_in(path) == 5.0
+    (data / "models").mkdir(parents=True)
+    models.save(session.model, data / "models" / path.name)
+    session.press("d")
+    assert "\ufffd-\n" in shown_tiles(session)
 
 
 @pytest.mark.skipif(os.geteuid() == 0 if hasattr(os, "geteuid") else True, reason="root may write anywhere")

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from components import Environment, World
+from components.camera import Viewport
 from components.commands import Command
 from game import Session, mods
 from game.commands.command_line import main
@@ -267,3 +268,45 @@ def test_a_tool_of_a_mod_draws_its_kind(write_mod: Write) -> None:
     mods.unload(mods.MODS[-1:])
     session.update_view()
     assert "apple.gate" not in [tool.action for group in session.view.toolbar.groups for tool in group]
+
+
+TOGGLED = """
+done = []
+@app.action("apple.toggle", key={key!r}, scenes=("pause",), title="turn it", icon={icon})
+def toggle(session, pixel):
+    session.model.particles["C"].force = (7.0, 0.0)
+"""
+CROSS = [("line", (-5.0, -5.0, 5.0, 5.0)), ("disc", (0.0, 0.0, 2.0))]
+
+
+@pytest.mark.parametrize(("key", "shown"), [("y", "Y"), ("", ""), ("space", "")])
+def test_an_action_with_an_icon_has_a_button_whatever_became_of_its_key(
+    write_mod: Write, key: str, shown: str
+) -> None:
+    session = opened(write_mod, TOGGLED.format(key=key, icon=CROSS))
+    session.view.camera.viewport = Viewport(0, 0, 1000, 720)
+    session.update_view()
+    assert session.view.toolbar.groups[-2][-1].action == "apple.toggle"
+    found = session.view.toolbar.buttons(session.view.camera.viewport, 1.0)
+    button = next(button for button in found if button.tool.action == "apple.toggle")
+    session.view.pointer = button.left + 5.0, button.top + 5.0
+    toolbar, view = session.stages[-1]
+    assert compose(toolbar, view, load_theme()).texts == ["Turn it", *([shown] if shown else [])]
+    session.press("click", session.view.pointer)
+    assert session.particles["C"].force == (7.0, 0.0)
+    session.press("space")
+    session.update_view()
+    assert not session.view.toolbar.groups[-2][-1].enabled  # an action of pause
+    mods.unload(mods.MODS[-1:])
+    session.update_view()
+    assert "apple.toggle" not in [tool.action for group in session.view.toolbar.groups for tool in group]
+
+
+@pytest.mark.parametrize("icon", ["[('circle', (0, 0, 1))]", "[('line', (0, 0, 1))]", "[('disc', (0, 0))]"])
+def test_an_icon_that_cannot_be_drawn_is_refused(write_mod: Write, icon: str) -> None:
+    from game.mods import ModError
+
+    with pytest.raises(
+        ModError, match=r"The icon of 'apple\.toggle': .* is no part of an icon; a part is like"
+    ):
+        opened(write_mod, TOGGLED.format(key="y", icon=icon))

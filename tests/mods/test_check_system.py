@@ -19,6 +19,7 @@ from game.checks import BODIES, ELASTIC, EVERYTHING
 from game.documents.autosave import Autosave
 from game.documents.document import document
 from game.included.probes import Sampling
+from game.mods import ModError
 from game.preparation import Preparation
 from systems.base import Law, Phase, StepSystem, System
 from systems.catalogue import SYSTEMS, step_systems
@@ -271,3 +272,14 @@ def test_the_order_of_registration_must_not_matter() -> None:
 
     with pytest.raises(SystemCheckError, match="registered in another order"):
         check_system(Tight, [EVERYTHING])
+
+
+def test_a_system_of_a_mod_is_checked_by_its_name_with_its_components(unloaded: None) -> None:
+    ball = {"name": "A", "position": [0, 0], "components": {"wind.Sail": {"area": 1.0}}}
+    document = {"format": "pinjoint model", "version": 1, "particles": [ball]}
+    folder = Path(__file__).parents[2] / "assets" / "mods" / "wind"
+    assert check_system("wind.push", [document], mods=[folder]).needed == 1
+    with pytest.raises(SystemCheckError, match=r"no 'wind\.pull' among the systems.*did you mean 'wind\.push'"):
+        check_system("wind.pull", [document])
+    with pytest.raises(ModError, match="There is no mod in"):
+        check_system("wind.push", mods=[folder.parent.parent / "fonts"])

@@ -90,7 +90,10 @@ def test_a_handler_that_fails_switches_its_mod_off_and_leaves_the_model_as_it_wa
     (mod / "__init__.py").write_text(fails, encoding="utf-8")
     mods.load([mod])
     session = Session.open(pulled())
-    session.run(time=0.2)
+    with pytest.raises(
+        mods.ModError, match=r"no luck \(breaking/__init__.py, line 16\). The run stopped at t = 0.026"
+    ):
+        session.run(time=0.2)
     assert session.rods.count == 1
     assert session.environment.force == (0.0, 0.0)
     assert "RuntimeError: no luck" in mods.FAULTS[-1]

@@ -8,6 +8,10 @@ from typing import Any
 import pytest
 
 from game import Session, check_system, mods
+from game.scripts.playing import perform
+from systems.render.picture import compose
+from systems.render.theme import load_theme
+from tests.mods.conftest import Write
 
 FOLDER = Path(__file__).parents[2] / "assets" / "mods"
 NAMES = sorted(path.parent.name for path in FOLDER.glob("*/mod.toml"))
@@ -101,3 +105,59 @@ def test_the_count_down_has_keys_of_its_own_and_ends_in_the_simulation(unloaded:
     for _ in range(4):
         session.frame(1.0)
     assert session.scene == "simulation"
+
+
+def test_one_can_point_and_click_in_the_scene_of_a_mod(unloaded: None) -> None:
+    session = Session.open("pendulum", mods=[FOLDER / "countdown"])
+    session.press("n")
+    pixel = session.point(0.5, 0.25)
+    assert session.focus[1].pointer == pixel
+    session.click(0.5, 0.25)
+    session.drag((0.0, 0.0), (0.5, 0.0))
+    session.frame(0.5)
+    assert session.scene == "count down"
+    assert not session.fault
+    assert list(perform(session, {"click": [0.5, 0.25]})) == []
+
+
+TARGETS = """
+from game.editor.scenes import Scene
+
+class Aim(Scene):
+    name = "aim"
+    heading = "Aim"
+    sources = ("pause",)
+    hits = 0
+    finished = False
+
+    @property
+    def message(self):
+        return f"{self.hits} hits" if self.hits else ""
+
+    def finish(self):
+        self.finished = True
+
+def plugin(app):
+    app.scene(Aim)
+    app.action("apple.aim", key="q", scenes=("pause",))(lambda session, pixel: session.scenes.request("aim"))
+
+    @app.action("apple.hit", key="click", scenes=("aim",))
+    def hit(session, pixel):
+        session.scenes.active.hits += 1
+        session.scenes.active.at = pixel
+"""
+
+
+def test_the_message_of_a_mods_scene_is_seen_and_clicks_are_its_own(write_mod: Write) -> None:
+    session = Session.open("pendulum", mods=[write_mod("apple", TARGETS)])
+    session.press("q")
+    assert session.message == ""
+    session.click(0.5, 0.25)
+    scene: Any = session.scenes.active
+    assert scene.at == session.point(0.5, 0.25)
+    assert scene.finished
+    session.update_view()
+    assert session.view.status.notice == session.message == "1 hits"
+    texts = compose(session.model, session.view, load_theme("light")).texts
+    assert "1 hits" in texts
+    assert "Aim" in texts

@@ -53,7 +53,7 @@ def test_the_guide_works_at_the_first_try(
     assert not mods.FAULTS
 
 
-@pytest.mark.parametrize("module", ["components", "systems.base", "game", "game.mods"])
+@pytest.mark.parametrize("module", ["components", "systems.base", "game", "game.mods", "game.api"])
 def test_what_is_public_exists_and_is_documented(module: str) -> None:
     public = importlib.import_module(module)
     for name in public.__all__:
@@ -62,7 +62,8 @@ def test_what_is_public_exists_and_is_documented(module: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "module", ["components", "systems.base", "game.mods", "game.session", "game.checks", "game.mods.app"]
+    "module",
+    ["components", "systems.base", "game.mods", "game.session", "game.checks", "game.mods.app", "game.api"],
 )
 def test_the_examples_in_docstrings_are_true(module: str) -> None:
     found = doctest.testmod(importlib.import_module(module))

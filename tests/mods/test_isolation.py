@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import pytest
@@ -188,8 +189,12 @@ def test_what_a_system_does_by_commands_is_one_step_of_undo(session: Any) -> Non
 )  # fmt: skip
 def test_a_law_that_spoils_the_step_program(session: Any, kernel: str, more: str, said: str) -> None:
     made, before = session(LAW.format(kernel=kernel, more=more))
-    assert made.run(time=0.01) == "time reached"
+    with pytest.raises(
+        mods.ModError, match=r"The mod 'apple' was switched off: .* The run stopped at t = 0 s\."
+    ):
+        made.run(time=0.01)
     check_switched_off(made, before, said)
+    assert made.run(time=0.01) == "time reached"
     alone = Session.open(TRUSS)
     mods.unload(mods.MODS[-1:])
     alone = Session.open(TRUSS)
@@ -209,8 +214,11 @@ def bad(particles_position, particles_velocity, time):
     made, _ = session(LAW.format(kernel=kernel, more=more))
     made.settings.integrator = integrator
     before = document(made.model)
-    assert made.run(time=0.01) == "time reached"
+    with pytest.raises(mods.ModError, match="The run stopped at t = "):
+        made.run(time=0.01)
+    assert 0.0 <= made.time < 0.006
     check_switched_off(made, before, "apple.bad gave nan for particle A (apple/__init__.py, line 7)")
+    assert made.run(time=0.01 - made.time) == "time reached"  # without the mod
 
 
 HISTORY = """
@@ -239,7 +247,8 @@ def test_a_history_that_fails(session: Any, body: str, ends: str, said: str) -> 
     session_with = {**TRUSS, "loads": [{"on": "C", "force": [1.0, 0.0], "history": {"kind": "apple"}}]}
     made.open_here(session_with)
     before = document(made.model)
-    assert made.run(time=0.01) == "time reached"
+    with pytest.raises(mods.ModError, match="The mod 'apple' was switched off"):
+        made.run(time=0.01)
     check_switched_off(made, before, said)
 
 
@@ -259,7 +268,7 @@ def test_an_action_that_fails_changes_nothing(session: Any) -> None:
 
 def test_a_panel_that_fails(session: Any) -> None:
     made, before = session(OTHER.format("app.panel(lambda session: 'text')"))
-    check_switched_off(made, before, "returned 'text', not a Readout or None")
+    check_switched_off(made, before, "returned is 'text'; it must be one of Readout, Sequence[Readout], None")
 
 
 def test_a_layer_that_fails(session: Any) -> None:
@@ -342,6 +351,78 @@ def test_a_kernel_that_returns_no_numbers_is_told_in_one_sentence(session: Any, 
     made, _ = session(
         LAW.format(kernel=f"@njit\ndef bad(particles_position):\n    {result or 'pass'}", more="")
     )
-    made.run(steps=1)
+    with pytest.raises(mods.ModError):
+        made.run(steps=1)
     assert "it must return a pair, the force (fx, fy) in kN" in made.fault
     assert len(made.fault) < 300
+
+
+HARDER = """
+from numba import njit
+from systems.base import Law
+
+class Harder(Law):
+    name = "apple.harder"
+    kernel = njit(lambda {given}, elongation: {force})
+    adds = ("rods.axial_force",)
+    {more}
+
+def plugin(app):
+    app.system(Harder)
+"""
+PULLED: dict[str, Any] = {
+    "format": "pinjoint model",
+    "version": 1,
+    "settings": {"integrator": "velocity_verlet", "time_step": 2e-6},
+    "particles": [
+        {"name": "A", "position": [0, 0], "fixed": [True, True]},
+        {"name": "B", "position": [1, 0], "fixed": [False, True], "mass": 1, "velocity": [2.0, 0]},
+    ],
+    "rods": [
+        {
+            "name": "r",
+            "between": ["A", "B"],
+            "stiffness": 1000,
+            "damping": 0,
+            "tensile_strength": 1,
+            "compressive_strength": 1,
+        }
+    ],
+}
+
+
+def test_the_work_of_a_law_that_takes_the_axial_force_is_accounted_for(write_mod: Write) -> None:
+    """It is given what plasticity has cut, 1 kN, and may go beyond: what it adds is work of the law."""
+    law = HARDER.format(given="axial_force", force="axial_force * (1.0 + 100.0 * abs(elongation))", more="")
+    session = Session.open(PULLED, mods=[write_mod("apple", law)])
+    session.run(time=0.0015)
+    assert not mods.FAULTS
+    assert session.rods["r"].axial_force > 1.05
+    assert abs(session.energy.imbalance) < 2e-3 * session.energy.initial
+
+
+def test_a_law_takes_the_place_of_plasticity(write_mod: Write) -> None:
+    law = HARDER.format(given="axial_force", force="axial_force", more='replaces = ("plasticity",)')
+    session = Session.open(PULLED, mods=[write_mod("apple", law)])
+    plan = session.plan("simulation")
+    assert (
+        plan.left_out["plasticity.yielding"]
+        == plan.left_out["plasticity.strength"]
+        == "replaced by apple.harder"
+    )
+    session.run(time=0.0015)
+    assert session.rods["r"].axial_force == pytest.approx(2.0 * math.sin(1.5), rel=1e-4)  # v √(k m) sin ωt
+    assert session.rods["r"].plastic_strain == 0.0
+    mods.MODS[-1].switch_off("for this test")
+    session.rods["r"].stiffness = 1001  # an edit, after which there is another plan
+    session.run(time=0.0015)
+    assert session.rods["r"].plastic_strain > 0.0  # plasticity is back
+
+
+def test_where_a_run_diverges_the_laws_of_mods_are_named(write_mod: Write) -> None:
+    law = HARDER.format(
+        given="rods_stiffness", force="1e9 * elongation", more='elastic, reads = True, ("rods.stiffness",)'
+    )
+    session = Session.open(PULLED, mods=[write_mod("apple", law)])
+    assert session.run(time=1.0) == "diverged"
+    assert "Laws of mods act in it: apple.harder; see whether it runs without them." in session.message

@@ -56,5 +56,5 @@ def test_settling_says_which_laws_it_does_not_know(unloaded: None) -> None:
     assert session.settle() == "equilibrium"
     assert "leaves out" not in session.notice
     session.rods[0].stiffening_cubic = 1.0  # type: ignore[attr-defined]
-    session.settle()
+    assert session.settle() == "equilibrium without mods"
     assert session.notice.endswith("Settling leaves out the laws of mods: stiffening.cubic.")

@@ -1,4 +1,4 @@
-"""A person who does anything, in every scene: `python -m tests.properties.fuzz --actions 10000 --seed 1`.
+"""A person who does anything, in every scene: `python -m tests.properties.fuzz editing --count 20 --seed 1`.
 
 What they do is recorded like any session, so that a failure can be played again by `pinjoint play`. After
 every action the models are sound; from time to time a file is saved and read, and the picture composed. At
@@ -9,9 +9,12 @@ played in another session to the same end.
 from __future__ import annotations
 
 import argparse
+import contextlib
+import importlib
 import os
 import random
 import tempfile
+import traceback
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -23,6 +26,7 @@ from components.field import Vector
 from components.view import drawn_positions
 from game import Session
 from game.documents import library, models
+from game.documents.library import data_in
 from game.documents.open_documents import OpenDocument
 from game.scripts.playing import Recorder, play, session_of
 from game.scripts.script import EMPTY, Script
@@ -61,6 +65,11 @@ OFTEN = {  # keys that are pressed more often than others, so that every scene i
     "force method": ("k", "k", "k", "k", "click", "click", "click", "x", "y", "i"),
 }
 FRAMES = (0.0, 1.0 / 60.0, 1.0 / 60.0, 0.1)
+KINDS = {  # what `python -m tests.properties.fuzz` can try: modules with explore(first seed, count)
+    "editing": "tests.properties.fuzz",
+    "windows": "tests.properties.windows",
+    "damage": "tests.properties.damage",
+}
 MOST_ELEMENTS = 60  # beyond this the person deletes before going on, so that everything stays quick
 
 
@@ -223,26 +232,38 @@ def _same(one: Print, other: Print) -> bool:
     return one.keys() == other.keys()
 
 
-def main(words: Sequence[str] | None = None) -> None:
-    """Fuzz in sessions of some hundred actions each."""
-    parser = argparse.ArgumentParser(prog="python -m tests.properties.fuzz", description=__doc__)
-    parser.add_argument("--actions", type=int, default=10_000, help="in all")
-    parser.add_argument("--each", type=int, default=500, help="actions in one session")
-    parser.add_argument("--seed", type=int, default=1, help="of the first session")
-    options = parser.parse_args(words)
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        for seed in range(options.seed, options.seed + max(options.actions // options.each, 1)):
+def explore(first: int, count: int, actions: int = 500) -> int:
+    """Sessions with so many actions each; returns how many went wrong."""
+    wrong = 0
+    with tempfile.TemporaryDirectory() as folder, data_in(Path(folder)), contextlib.chdir(folder):
+        for seed in range(first, first + count):
             fuzz = Fuzz(seed, Path(folder))
             try:
-                fuzz.run(options.each)
-            except BaseException:
+                fuzz.run(actions)
+            except Exception:
+                wrong += 1
                 kept = Path(tempfile.gettempdir()) / fuzz.record.name
                 kept.write_bytes(fuzz.record.read_bytes())
-                print(f"seed {seed} failed; what was done: {kept}")
-                raise
-            print(f"seed {seed}: {options.each} actions, sound", flush=True)
+                print(
+                    f"editing, seed {seed}, what was done is in {kept}:\n{traceback.format_exc()}", flush=True
+                )
+            else:
+                print(f"editing, seed {seed}: {actions} actions, sound", flush=True)
+    return wrong
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Try what is named, or everything; returns 1 if anything went wrong."""
+    parser = argparse.ArgumentParser(prog="python -m tests.properties.fuzz", description=__doc__)
+    parser.add_argument("what", nargs="*", metavar="WHAT", help=f"of {', '.join(KINDS)}; all by default")
+    parser.add_argument("--count", type=int, default=20, help="of sessions, windows, files, …, of each kind")
+    parser.add_argument("--seed", type=int, default=1, help="of the first one")
+    options = parser.parse_args(words)
+    if unknown := set(options.what) - set(KINDS):
+        parser.error(f"there is no {', '.join(unknown)}; choose from {', '.join(KINDS)}")
+    tried = [importlib.import_module(KINDS[name]) for name in options.what or KINDS]
+    return int(sum(module.explore(options.seed, options.count) for module in tried) > 0)
 
 
 if __name__ == "__main__":
-    main()
+    raise SystemExit(main())

@@ -7,9 +7,14 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 Vector = tuple[float, float]
 Document = dict[str, Any]
 Model = Document
+DEFAULTS = {"ramp": {"start": 0.0, "duration": 1.0}, "pulse": {"start": 0.0, "duration": 1.0}}
+DEFAULTS["sine"] = {"frequency": 1.0, "phase": 0.0}
+VALUES = {"table": "factors", "record": "accelerations"}  # of histories that are linear between points
 
 
 @dataclass(frozen=True)
@@ -55,20 +60,41 @@ class Load:
     history: Document
 
     def factor(self, time: float) -> float:
-        """Return 1 for a constant history; for a ramp 0 before `start`, 1 after `start + duration`."""
-        if self.history["kind"] == "constant":
+        """Return what the force is multiplied by at a time; infinite: in the end, 0 of a vibration."""
+        h = self.history
+        if h["kind"] == "constant":
             return 1.0
-        since = time - self.history["start"]
-        if since < 0:
+        if h["kind"] == "sine":
+            return math.sin(2 * math.pi * h["frequency"] * time + h["phase"]) if time < math.inf else 0.0
+        if h["kind"] in VALUES:
+            last = 0.0 if h["kind"] == "record" and time == math.inf else h[VALUES[h["kind"]]][-1]
+            return float(np.interp(time, h["times"], h[VALUES[h["kind"]]], right=last))
+        start, end = self.kinks()
+        if h["kind"] == "pulse":
+            return 1.0 if start <= time < end else 0.0
+        if time < start:
             return 0.0
-        return 1.0 if since >= self.history["duration"] else since / self.history["duration"]
+        return 1.0 if time >= end else (time - start) / h["duration"]
+
+    def kinks(self) -> list[float]:
+        """Return the times of jumps and kinks."""
+        h = self.history
+        if h["kind"] in ("ramp", "pulse"):
+            return [h["start"], h["start"] + h["duration"]]
+        return list(h["times"]) if h["kind"] in VALUES else []
 
     def breaks(self) -> list[float]:
         """Return the times of jumps and kinks, and those just before, where a step ends early."""
-        if self.history["kind"] == "constant":
-            return []
-        kinks = (self.history["start"], self.history["start"] + self.history["duration"])
-        return [side for kink in kinks for side in (math.nextafter(kink, -math.inf), kink)]
+        return [side for kink in self.kinks() for side in (math.nextafter(kink, -math.inf), kink)]
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A straight line on which discs bounce; its restitution None: that of the model."""
+
+    start: Vector  # m
+    end: Vector  # m
+    restitution: float | None
 
 
 @dataclass(frozen=True)
@@ -78,6 +104,7 @@ class Elements:
     particles: list[Particle]
     rods: list[Rod]
     loads: list[Load]
+    walls: list[Wall]
     environment_force: Vector  # kN on every particle
     environment_acceleration: Vector  # m/s²
     drag: float  # 1/s
@@ -98,6 +125,10 @@ def read(model: Model) -> Elements:
         particles=[_read_particle(document, index, rods) for index, document in enumerate(documents)],
         rods=rods,
         loads=[_read_load(document, number) for document in model.get("loads", [])],
+        walls=[
+            Wall(_vector(wall, "start"), _vector(wall, "end"), wall.get("restitution"))
+            for wall in model.get("components", {}).get("walls.Wall", [])
+        ],
         environment_force=_vector(environment, "force"),
         environment_acceleration=_vector(environment, "acceleration"),
         drag=float(environment.get("drag", 0.0)),
@@ -157,11 +188,8 @@ def _read_rod(document: Document, particles: list[Document], number: dict[str, i
 
 def _read_load(document: Document, number: dict[str, int]) -> Load:
     history = document.get("history", {"kind": "constant"})
-    if history["kind"] not in ("constant", "ramp"):
-        raise ValueError(
-            f"The load on {document['on']} has the history {history['kind']}; use constant or ramp."
-        )
-    return Load(particle=number[document["on"]], force=_vector(document, "force"), history=history)
+    full = DEFAULTS.get(history["kind"], {}) | history
+    return Load(particle=number[document["on"]], force=_vector(document, "force"), history=full)
 
 
 def _strength(value: float | None, yielding: bool) -> float:

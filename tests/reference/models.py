@@ -170,6 +170,35 @@ def random_truss(seed: int, nodes: int = 6, redundant: int = 2, load: float = 10
     )
 
 
+def random_structure(seed: int) -> Model:
+    """Return a structure of soft and weak rods and cables between nodes drawn by lot: stable, a mechanism, or neither.
+
+    It moves far under its load, so that rods yield, unload, go slack, become straight and snap through.
+    """
+    lot = np.random.default_rng(seed)
+    count = int(lot.integers(4, 9))
+    points = lot.uniform(0.0, 5.0, (count, 2))
+    while min(math.dist(points[i], points[j]) for i in range(count) for j in range(i)) < 0.6:
+        points = lot.uniform(0.0, 5.0, (count, 2))
+    pairs = [(i, j) for i in range(count) for j in range(i + 1, count)]
+    lot.shuffle(pairs)
+    pairs = sorted(map(tuple, pairs[: 2 * count - 3 + int(lot.integers(-2, 4))]))
+    particles = [particle(f"n{row}", *point) for row, point in enumerate(points.tolist())]
+    for each in particles:
+        if lot.random() < 0.6:
+            each["force"] = lot.uniform(-12.0, 12.0, 2).tolist()
+    pinned, guided = lot.permutation(count)[:2].tolist()
+    particles[pinned]["fixed"], particles[guided]["fixed"] = [True, True], [bool(lot.random() < 0.3), True]
+    has_cables, rods = lot.random() < 0.4, []
+    for i, j in pairs:
+        each = rod(f"n{i}", f"n{j}", stiffness=float(np.exp(lot.uniform(np.log(200.0), np.log(7000.0)))))
+        each["tension_only"] = bool(has_cables and lot.random() < 0.4)
+        if lot.random() < 0.7:
+            each["tensile_strength"], each["compressive_strength"] = lot.uniform(5.0, 60.0, 2).tolist()
+        rods.append(each)
+    return model(particles, rods, settings={"collisions": False})
+
+
 def opensees_truss() -> Model:
     """Return the three-rod elastic truss of the OpenSees manual (inches and kips; E 3000, A 10, 5, 5)."""
     supports = [particle(str(i), x, 0, fixed=[True, True]) for i, x in enumerate((0, 144, 168), start=1)]

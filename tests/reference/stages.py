@@ -84,8 +84,8 @@ class Stages:
         self.u = model.particles.displacement.tolist()
         self.v = model.particles.velocity.tolist()
         self.history = {k.system.writes[0]: model.column(k.system.writes[0]).tolist() for k in self.commits}
-        stored = [k for k in of_rods if not k.takes_rate and (k.replaces or k.system.elastic)]
-        self.working = [k for k in self.adding if k not in stored]
+        stored = [k for k in of_rods if not k.takes_rate and k.system.elastic]
+        self.working = [k for k in (*self.adding, *self.replacing) if k not in stored]
         self.account = dict.fromkeys(ACCOUNTS, 0.0)
         self.ends = model.rods.between.tolist()
         self.mobility = model.particles.mobility.tolist()
@@ -146,6 +146,8 @@ class Stages:
         for part in parts:
             total = [so_far + force for so_far, force in zip(total, part, strict=True)]
         for kernel in self.replacing:
+            if kernel in without:
+                continue
             total = [kernel(r, given[r] | {"axial_force": force}) for r, force in enumerate(total)]
         return total
 
@@ -261,10 +263,14 @@ class Stages:
         self.scatter(total, damping, directions)
         for account, value in taken:
             power[account] += value
-        if self.working:
-            stored = self.axial_forces(elongations, time, dt, without=self.working)
-            for force, own, rate in zip(axial, stored, rates, strict=True):
-                power["work"] -= (force - own) * rate
+        left = list(self.working)
+        before = self.axial_forces(elongations, time, dt, without=left)
+        for account in [name for name in ACCOUNTS if any(k.system.account == name for k in self.working)]:
+            left = [k for k in left if k.system.account != account]
+            after = self.axial_forces(elongations, time, dt, without=left)
+            for force, own, rate in zip(after, before, rates, strict=True):
+                power[account] += (force - own) * rate * (-1.0 if account == "work" else 1.0)
+            before = after
         return total, power
 
     def run(self, integrator: str, dt: float, steps: int) -> None:

@@ -9,11 +9,12 @@ from 0 to 1 along with the first factor and then stay.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from scipy.optimize import minimize
 
 from tests.reference.elements import Document, Elements, Model, read
 
@@ -111,9 +112,67 @@ def solve(model: Model, factors: Sequence[float] = (1.0,), geometry: str = "exac
     names, displacement [m], reaction [kN], axial_force [kN], plastic_strain, and factor and residual [kN].
     Raises NoEquilibrium where stability is lost: a limit point, a bifurcation, or a plastic collapse.
     """
-    path = _Path(model, geometry)
-    path.settle_initial_state()
-    return [path.follow_to(factor) for factor in factors]
+    return list(path(model, factors, geometry))
+
+
+def path(
+    model: Model, factors: Sequence[float], geometry: str = "exact", largest_increment: float = 1.0
+) -> Iterator[Document]:
+    """The same, one state after the other. largest_increment: of the way to the next factor; in smaller ones rods that
+    unload do so nearer to where they should."""
+    followed = Path(model, geometry, largest_increment)
+    followed.settle_initial_state()
+    yield from (followed.follow_to(factor) for factor in factors)
+
+
+def least_energy(model: Model, factor: float = 1.0) -> Document:
+    """An elastic equilibrium where energy is least, found by going down from the initial state; mechanisms may move.
+
+    Raises NoEquilibrium where there is no end of it.
+    """
+    followed = Path(model)
+    free, force = followed.free, (factor * followed.patterns[0] + followed.patterns[1])
+    at = followed.u.copy()
+
+    def respond(x: np.ndarray) -> _Response:
+        at[free] = x
+        return followed.respond(at)
+
+    def energy(x: np.ndarray) -> float:
+        rods, forces = followed.elements.rods, respond(x).axial_force
+        stored = sum(n**2 * rod.rest_length / (2 * rod.stiffness) for n, rod in zip(forces, rods, strict=True))
+        return float(stored - force[free] @ (x - followed.u[free]))
+
+    found = minimize(
+        energy,
+        followed.u[free],
+        jac=lambda x: (respond(x).internal - force)[free],
+        hess=lambda x: respond(x).tangent[np.ix_(free, free)],
+        method="trust-exact",
+        options={"gtol": 1e-9 * max(np.abs(force).max(), 1e-12), "maxiter": 3000, "initial_trust_radius": 0.05},
+    )
+    for _ in range(4):  # to round-off
+        response = respond(found.x)
+        found.x = (
+            found.x
+            + np.linalg.lstsq(
+                response.tangent[np.ix_(free, free)], (force - response.internal)[free], rcond=1e-13
+            )[0]
+        )
+    followed.u[free] = found.x
+    followed.amounts = np.array([factor, 1.0, 0.0])
+    state = followed.state()
+    if not state["residual"] <= 1e-8 * max(np.abs(force).max(), *map(abs, state["axial_force"].values())):
+        raise NoEquilibrium(factor, state)
+    return state
+
+
+def stability(model: Model, displacement: np.ndarray) -> float:
+    """The least eigenvalue of an elastic structure's tangent at displacements (n, 2), relative to the largest."""
+    followed = Path(model)
+    free = followed.free
+    eigenvalues = np.linalg.eigvalsh(followed.respond(displacement.ravel()).tangent[np.ix_(free, free)])
+    return float(eigenvalues[0] / max(abs(eigenvalues[-1]), 1e-300)) if free.any() else 1.0
 
 
 @dataclass(frozen=True)
@@ -126,14 +185,15 @@ class _Response:
     plastic_strain: list[float]
 
 
-class _Path:
+class Path:
     """The equilibrium path: the last state in equilibrium, and the way on to the next factor.
 
     The external force is `amounts @ patterns`: so much of the forces and loads, of the accelerations' forces,
     and of the forces that hold the given initial state.
     """
 
-    def __init__(self, model: Model, geometry: str):
+    def __init__(self, model: Model, geometry: str = "exact", largest_increment: float = 1.0):
+        self.largest_increment = largest_increment
         if geometry not in ("exact", "linear"):
             raise ValueError(f"The geometry {geometry!r} is unknown; use 'exact' or 'linear'.")
         self.exact = geometry == "exact"
@@ -161,7 +221,7 @@ class _Path:
         """Follow the path to `amounts`; halve an increment that fails, double one that succeeds."""
         start = self.amounts
         scale = max(np.abs(start @ self.patterns).max(), np.abs(amounts @ self.patterns).max())
-        reached, increment = 0.0, 1 / 8
+        reached, increment = 0.0, min(1 / 8, self.largest_increment)
         while reached < 1.0 and scale > 0.0:
             target = min(1.0, reached + increment)
             trial = start + target * (amounts - start)
@@ -169,7 +229,7 @@ class _Path:
             if found is not None:
                 self.u, self.plastic_strain = found
                 self.amounts = trial
-                reached, increment = target, 2 * increment
+                reached, increment = target, min(2 * increment, self.largest_increment)
                 continue
             increment = (target - reached) / 2
             if increment < SMALLEST_INCREMENT:

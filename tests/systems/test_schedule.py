@@ -81,6 +81,24 @@ def test_each_system_is_timed_and_what_the_model_does_not_need_is_left_out() -> 
     assert schedule.seconds["busy"] > 0.0
 
 
+def test_a_system_takes_the_place_of_those_it_replaces_where_it_acts() -> None:
+    wanted = [True]
+    both = system("old.one", writes=("x.y",)), system("old.two")
+    new = system("new", replaces=("old",), writes=("x.y",), scenes=("pause",), needs=lambda self, m: wanted[0])
+    schedule = Schedule([*both, new])
+    for wanted[0], scene, ran in (
+        (True, "pause", ["new"]),
+        (False, "pause", ["old.one", "old.two"]),
+        (True, "simulation", ["old.one", "old.two"]),
+    ):
+        frame = Noting(scene)
+        schedule.run(Phase.EDIT, frame)
+        assert frame.ran == ran
+        assert [s.name for s in schedule.plan(scene, Model()).phases[Phase.EDIT]] == ran
+    wanted[0] = True
+    assert schedule.plan("pause", Model()).left_out["old.one"] == "replaced by new"
+
+
 # --- mistakes --------------------------------------------------------------------------------------------
 
 
@@ -91,6 +109,11 @@ def test_each_system_is_timed_and_what_the_model_does_not_need_is_left_out() -> 
         ([system("a", before=("a",))], "wait for each other: a → a"),
         ([system("a"), system("a")], "Two systems are called a"),
         ([system("")], "Noted has no name"),
+        (
+            [system("a.one", replaces=("b",)), system("b.two", replaces=("a",))],
+            "replace each other: .*drop one",
+        ),
+        ([system("a", replaces="beta"), system("bets")], "a replaces 'beta', but no other .* mean 'bets'"),
         (
             [system("a", phase=Phase.INPUT), system("b", after=("a",))],
             "b asks to be ordered with a, which runs in another phase",

@@ -264,3 +264,24 @@ def test_references_follow_the_rows_they_point_to(gone: list[int]) -> None:
     model.apply(log.pop())
     assert model.rods.between.tolist() == [list(pair) for pair in pairs]
     assert isinstance(model.rods[0], Rod)
+
+
+@pytest.mark.parametrize("column", ["name", "position", "fixed", "velocity"])
+def test_what_is_read_cannot_be_made_writable(column: str) -> None:
+    model = Model()
+    model.create(Particle, 3, position=[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)])
+    for seen in (model.particles.column(column), model.particles.entities, model.column("settings.sleeping")):
+        for array in (seen, seen.view(), seen[1:]):
+            with pytest.raises(ValueError, match="WRITEABLE"):
+                array.flags.writeable = True
+    before = model.particles.column(column).tolist()
+    model.create(Particle, 50, position=[(float(x), 5.0) for x in range(50)])
+    assert model.particles.column(column)[:3].tolist() == before
+
+
+def test_what_was_read_follows_its_column() -> None:
+    model = Model()
+    model.create(Particle, 2, position=[(0.0, 0.0), (1.0, 0.0)])
+    seen = model.particles.velocity
+    model.writable("particles.velocity")[1] = (3.0, 4.0)
+    assert seen[1].tolist() == model.particles.velocity[1].tolist() == [3.0, 4.0]

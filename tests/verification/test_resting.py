@@ -73,7 +73,7 @@ def test_a_stack_in_a_slot_presses_with_all_its_weight() -> None:
 def test_a_ball_exactly_on_top_of_another_balances_and_that_is_said() -> None:
     document = model([particle("base", 0, 0, **HELD), particle("ball", 0, 1, mass=2.0)], [], **WEIGHT)
     found = settle(models.load(document))
-    assert found.status == "equilibrium"
+    assert found.status == "unstable equilibrium"
     assert found.final.displacement[1] == pytest.approx([0.0, -0.9], abs=1e-12)
     assert "An unstable balance: the slightest push moves ball along x" in found.message
 

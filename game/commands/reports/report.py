@@ -13,6 +13,9 @@ import numpy as np
 from components.model import Model
 from game.commands.output import ResultError
 from game.commands.reports.results import Run, State, state
+from game.documents.open_documents import without_mods
+from game.mods.heeding import check_mods, heeding_mods
+from game.mods.mod import ModError
 from game.paths import ENERGIES
 from game.session import DEFAULT_LIMIT, Session
 from systems.base import StopReason
@@ -23,6 +26,7 @@ if TYPE_CHECKING:  # they import scipy
     from systems.statics.events import Event
     from systems.statics.settle import StaticState
 
+MOD_FAILED = "mod failed"
 FOUND = ("equilibrium", "at rest", "time reached")  # statuses of a run that found what was asked for
 
 
@@ -44,7 +48,15 @@ class Analysis:
     measures_error: bool = False
 
     def run(self, simulation: Simulation, name: str) -> Run:
-        """The result of the analysis, in which `name` is the model. Raises AnalysisError, ResultError, FieldError."""
+        """The result of the analysis, in which `name` is the model.
+
+        Raises AnalysisError, ResultError, FieldError, and ModError if a mod has failed or fails meanwhile.
+        """
+        check_mods()
+        with heeding_mods(simulation):
+            return self._found(simulation, name)
+
+    def _found(self, simulation: Simulation, name: str) -> Run:
         if self.load_factors is not None:
             return run_static(simulation, name, self.load_factors)
         if self.times is not None:
@@ -53,11 +65,14 @@ class Analysis:
 
     def run_in(self, session: Session, name: str) -> Run:
         """The same in a session, which adds remarks of theory on a run through time and its measured error."""
-        if self.load_factors is not None:
-            return self.run(session.simulation, name)
-        session.run(steps=0)  # records the beginning, for theory beside the run
-        with session.without_frames():
-            found = self.run(session.simulation, name)
+        try:
+            if self.load_factors is not None:
+                return self.run(session.simulation, name)
+            session.run(steps=0)  # records the beginning, for theory beside the run
+            with session.without_frames():
+                found = self.run(session.simulation, name)
+        except ModError as failure:
+            return _failed(session.simulation, name, failure)
         happened = [asdict(event) for event in session.simulation.events]
         error = session.document.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
         return {
@@ -66,6 +81,11 @@ class Analysis:
             "events": [*happened, *_records(session.model, session.remarks)],
             "error_estimate": asdict(error) if error is not None else None,
         }
+
+
+def _failed(simulation: Simulation, name: str, error: ModError) -> Run:
+    """The result of a run that stopped because a mod failed, with the state in which it did."""
+    return {**_run(simulation, name, MOD_FAILED, [_state(simulation)]), "message": str(error)}
 
 
 def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
@@ -103,8 +123,10 @@ def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> R
     settlement = settle(simulation.model, factors)
     seconds = time.perf_counter() - started
     states = [_static_state(simulation, found) for found in settlement.states]
-    return _run(simulation, name, settlement.status, states, moves=False) | {
-        "message": " ".join(filter(None, [settlement.message, left_out])),
+    status, note = without_mods(settlement.status, left_out)
+    return _run(simulation, name, status, states, moves=False) | {
+        "message": " ".join(filter(None, [settlement.message, note])),
+        "left_out": left_out,
         "wall_seconds": seconds,
         "events": _records(simulation.model, settlement.events),
     }
@@ -143,7 +165,10 @@ def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
 def _run(
     simulation: Simulation, name: str, status: str, states: list[State], *, moves: bool = True
 ) -> dict[str, Any]:
-    """A result without events. moves: the run went through time, by an integrator; False in statics."""
+    """A result without events. moves: the run went through time, by an integrator; False in statics.
+
+    left_out: the laws of mods that act in the model and are not in the result.
+    """
     clock = simulation.model.clock
     return {
         "model": name,
@@ -155,6 +180,7 @@ def _run(
         "integrator": simulation.integrator.key if moves else None,
         "wall_seconds": simulation.compute_seconds,
         "compile_seconds": simulation.programs.compile_seconds,
+        "left_out": [],
         "events": [],
         "states": states,
     }

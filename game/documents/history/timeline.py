@@ -32,7 +32,8 @@ class Timeline:
     def clear(self) -> None:
         """Forget all checkpoints, since after an edit earlier steps cannot be run again."""
         self._checkpoints: dict[int, Checkpoint] = {}
-        self._hands: list[tuple[int, Moment, Hand | None]] = []  # steps begun, when the hand changed, and to what
+        # Steps begun and the moment when the hand changed, and to what.
+        self._hands: list[tuple[int, Moment, Hand | None]] = []
         self._interval = FIRST_INTERVAL
         self._went_back = False
 

@@ -140,7 +140,11 @@ class Offer(NamedTuple):
 
 def saved_models() -> list[Offer]:
     """The person's own models, the newest first."""
-    return [Offer(SAVED, p.stem, library.written_age(p), p.stem, p) for p in library.saved()]
+    return [
+        Offer(SAVED, name, library.written_age(p), name, p)
+        for p in library.saved()
+        if (name := models.name_of(p))
+    ]
 
 
 @cache

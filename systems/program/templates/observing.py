@@ -27,6 +27,7 @@ def measure(displacement, velocity, force, resisting, measures, *columns):
     elastic = 0.0
     stiffest = 0.0
     insert(rods)
+    insert(pairs)
     round_off = insert(round_off) * stiffest * moved
     measures[Measure.KINETIC] = measures[Measure.ASLEEP_KINETIC] + 0.5 * kinetic
     measures[Measure.POWER_NORM] = measures[Measure.ASLEEP_POWER_NORM] + 1000.0 * power_norm

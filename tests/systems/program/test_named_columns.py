@@ -11,9 +11,9 @@ from systems.kernels import compiled
 from systems.program.compiler import compile_module
 
 SOURCE = """
-from numba import njit
+from systems.kernels import kept
 
-@njit(cache=True)
+@kept()
 def second(row):
     return kernel(row)
 """
@@ -30,11 +30,11 @@ def second(row):
 
 
 def test_a_column_with_another_number_is_compiled_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("systems.program.compiler.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("systems.cache.folder", lambda: tmp_path)
     answers = []
     for number in (1, 2):
         names = {"Column": IntEnum("Column", {"FIRST": 0, "SECOND": number}), "__name__": __name__}
         kernel = compiled(FunctionType(second.__code__, names))
         answers.append(compile_module(SOURCE, {"kernel": kernel}).second(np.array([0.5, 1.5, 2.5])))
     assert answers == [1.5, 2.5]
-    assert len(list(tmp_path.glob("pinjoint_program_*.py"))) == 2
+    assert len(list(tmp_path.glob("pinjoint_program_*.code"))) == 2

@@ -1,0 +1,32 @@
+"""Wording: names and values as sentences quote them, cut, and without characters that do not print."""
+
+from __future__ import annotations
+
+import re
+import reprlib
+from typing import Any
+
+LONGEST = 60  # characters of a name or value in a sentence
+
+# Controls, line separators, marks that turn the direction of a line, and halves of characters.
+_UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+_VALUES = reprlib.Repr()
+_VALUES.maxlevel, _VALUES.maxstring, _VALUES.maxother = 3, LONGEST, LONGEST
+
+
+def printable(text: str) -> str:
+    """A text whose characters that do not print are written as Python writes them: \\x1b."""
+    return _UNPRINTABLE.sub(lambda found: ascii(found[0])[1:-1], text)
+
+
+def cut(text: str) -> str:
+    """A name, or another text that a person gave, as a part of a sentence."""
+    return printable(text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…")
+
+
+def quoted(value: Any) -> str:
+    """A value of any type as a part of a sentence, as Python writes it."""
+    try:
+        return printable(_VALUES.repr(value))
+    except (ValueError, RecursionError):  # numbers of thousands of digits; what contains itself
+        return f"a value of type {type(value).__name__}"

@@ -1,0 +1,191 @@
+"""Guards around what mods let a person see and do: scenes, actions, commands, layers and panels."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from inspect import getattr_static
+from typing import Any
+
+from components.field import FieldError, Vector
+from components.view import Plot, Readout, View
+from components.wording import printable
+from game.commands.arguments import BAD_INPUT, UsageError
+from game.documents import models
+from game.editor.actions import Action
+from game.editor.context import Context, Scene
+from game.mods.declared import as_declared, result_of
+from game.mods.guard import check_view, interruptible, view_kept
+from game.mods.mod import INCLUDED, PATIENCE, Mod
+from game.paths import PathError
+from systems.edit import Refusal
+from systems.render.framing import framed
+from systems.render.marks import Mark
+from systems.render.sheet import Layer, Sheet
+
+Panel = Callable[[Context], Readout | Sequence[Readout] | None]
+
+MISTAKES = (UsageError, models.ModelError, FieldError, PathError, SystemExit)  # of a person at the command line
+LONGEST = 400  # characters of a text in the window
+
+
+# --- what is done ----------------------------------------------------------------------------------------
+
+
+def guarded_action(mod: Mod, name: str, function: Action) -> Action:
+    """An action of a mod: one step of undo, dropped whole if it fails."""
+    what = f"the action '{name}'"
+
+    def act(context: Context, pixel: Vector) -> None:
+        if mod.off:
+            raise Refusal(f"The mod '{mod.name}' is switched off: {mod.problem}")
+        mod.call(what, changed, context, pixel, mistakes=(Refusal, FieldError))
+
+    def changed(context: Context, pixel: Vector) -> None:
+        model = context.model
+        with model.transaction(name), view_kept(context):
+            interruptible(lambda: function(context, pixel), model, PATIENCE)
+
+    return act
+
+
+def guarded_command(mod: Mod, name: str, run: Callable[[list[str]], int]) -> Callable[[list[str]], int]:
+    """A command of a mod for the command line, which may run as long as it likes."""
+
+    def command(words: list[str]) -> int:
+        status: int = mod.call(
+            f"the command '{name}'",
+            run,
+            list(words),
+            otherwise=BAD_INPUT,
+            declared=int,
+            patience=math.inf,
+            mistakes=MISTAKES,
+        )
+        return status
+
+    return command
+
+
+# --- what is seen ------------------------------------------------------------------------------------------
+
+
+def guarded_layer(mod: Mod, draw: Layer) -> Layer:
+    """A layer of a mod, whose marks are cut to what is seen; what it adds to the sheet itself is not drawn."""
+
+    def drawn(sheet: Sheet) -> list[Mark]:
+        if mod.source == INCLUDED:
+            return list(draw(sheet))
+        own = replace(sheet, marks=list(sheet.marks), labels=[], legend=[], notes=[])
+        marks = as_declared(draw(own), Iterable[Mark], "what the layer draws")
+        return [part for mark in marks for part in framed(mark, sheet.viewport, sheet.unit)]
+
+    return lambda sheet: mod.call("its drawing layer", drawn, sheet, otherwise=[])
+
+
+def guarded_panel(mod: Mod, read: Panel) -> Callable[[Context], Sequence[Readout]]:
+    """The panels that a function of a mod makes, as several or none."""
+    called = f"what {getattr(read, '__name__', 'a panel')} returned"
+
+    def readouts(context: Context) -> Sequence[Readout]:
+        made = as_declared(read(context), Readout | Sequence[Readout] | None, called)
+        several = () if made is None else (made,) if isinstance(made, Readout) else made
+        return tuple(map(_checked_readout, several))
+
+    return lambda context: mod.call("its panel", readouts, context, otherwise=())
+
+
+def _checked_readout(readout: Readout) -> Readout:
+    """A readout whose texts can be printed. Raises ValueError for curves that cannot be drawn."""
+    rows = tuple((readable(name), readable(value)) for name, value in readout.rows)
+    return Readout(readable(readout.title), rows, readout.plot and _checked_plot(readout.plot))
+
+
+def _checked_plot(plot: Plot) -> Plot:
+    for name, x, y in plot.curves:
+        if x.ndim != 1 or x.shape != y.shape:
+            raise ValueError(
+                f"the curve '{name}' has x of shape {x.shape} and y of {y.shape}; give (n,) and (n,)"
+            )
+    curves = tuple((readable(name), x, y) for name, x, y in plot.curves)
+    return replace(plot, x_title=readable(plot.x_title), y_title=readable(plot.y_title), curves=curves)
+
+
+def readable(text: str) -> str:
+    """A text of a mod as it can be shown."""
+    return printable(text[:LONGEST])
+
+
+# --- scenes ------------------------------------------------------------------------------------------------
+
+
+_METHODS = tuple(name for name, method in vars(Scene).items() if callable(method) and name[0] != "_")
+_READ = ("heading", "message", "boxes")  # as attributes or properties
+_CLASS = {"name": str, "targets": tuple[str, ...], "sources": tuple[str, ...], "systems": tuple[str, ...]}
+
+
+def guarded_scene(mod: Mod, kind: type[Scene]) -> Callable[[], Scene]:
+    """What makes the scene of a mod for every session; once the mod is switched off it does nothing and leads to pause."""
+    for name, declared in _CLASS.items():
+        as_declared(getattr(kind, name, None), declared, f"{kind.__name__}.{name}")
+    kind()  # raises here what it would raise in every session
+    guards: dict[str, Any] = {name: _guarded_method(mod, kind, name) for name in _METHODS}
+    guards |= {name: _guarded_property(mod, kind, name) for name in _READ}
+    guarded: type[Scene] = type(kind.__name__, (kind,), {**guards, "mod": mod})
+    plain: type[Scene] = type(kind.__name__, (Scene,), {"name": kind.name, "sources": kind.sources, "mod": mod})
+
+    def make() -> Scene:
+        made = mod.call(f"making the scene '{kind.name}'", guarded)
+        return made if made is not None else plain()
+
+    return make
+
+
+def _guarded_method(mod: Mod, kind: type[Scene], name: str) -> Callable[..., Any]:
+    """A method of a scene; if it fails, that of all scenes takes its place."""
+    own, plain = getattr(kind, name), getattr(Scene, name)
+    declared = result_of(plain)
+    mistakes = (LookupError,) if name == "click_box" else ()
+
+    def asked(scene: Scene, *arguments: Any) -> Any:
+        made = own(scene, *arguments)
+        return None if declared is None else _shown(as_declared(made, declared, f"what {name} returned"))
+
+    def method(scene: Scene, *arguments: Any) -> Any:
+        what = f"the scene '{kind.name}'"
+        made = mod.call(what, asked, scene, *arguments, otherwise=mod, mistakes=mistakes)
+        return plain(scene, *arguments) if made is mod else made
+
+    return method
+
+
+def _guarded_property(mod: Mod, kind: type[Scene], name: str) -> property:
+    """An attribute or property of a scene that is read; if it cannot be shown, it is empty."""
+    own, plain = getattr_static(kind, name), getattr_static(Scene, name)
+    declared = result_of(plain.fget) if isinstance(plain, property) and plain.fget else type(plain)
+    empty: Any = {} if name == "boxes" else ""
+
+    def asked(scene: Scene) -> Any:
+        made = own.__get__(scene) if isinstance(own, property) else vars(scene).get(name, own)
+        return _shown(as_declared(made, declared, name))
+
+    def write(scene: Scene, value: Any) -> None:
+        if isinstance(own, property):
+            own.__set__(scene, value)
+        else:
+            vars(scene)[name] = value
+
+    return property(lambda scene: mod.call(f"the scene '{kind.name}'", asked, scene, otherwise=empty), write)
+
+
+def _shown(made: Any) -> Any:
+    """What a scene shows. Raises TypeError for a View with what cannot be drawn."""
+    if isinstance(made, str):
+        return readable(made)
+    for view in made if isinstance(made, tuple) else ():
+        if isinstance(view, tuple):  # a stage
+            _shown(view)
+        elif isinstance(view, View):
+            check_view(view)
+    return made

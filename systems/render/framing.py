@@ -1,0 +1,209 @@
+"""Framing: marks of others, checked and cut so that a canvas can draw them, wherever they lie and however large they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from components.camera import Viewport
+from components.wording import printable
+from systems.render.clip import bounds, clip_segments
+from systems.render.icons import icons
+from systems.render.marks import (
+    Bars,
+    Discs,
+    Fills,
+    Mark,
+    Panel,
+    Points,
+    Rectangles,
+    Stamps,
+    Strokes,
+    Text,
+)
+from systems.render.symbols import LARGEST_STAMP, SUPPORT_DEPTH, SYMBOLS, circle, symbol_parts
+from systems.render.theme import Colour
+from systems.render.typography import WEIGHTS
+
+_MARGIN = 4.0  # pixels around the viewport within which cuts are not seen
+_FAR = 1e7  # pixels; what is larger looks the same
+_SHAPES: dict[type, dict[str, tuple[int | None, ...]]] = {  # of a mark's arrays; None: any number
+    Strokes: {"start": (None, 2), "end": (None, 2)},
+    Fills: {"corners": (None, None, 2)},
+    Bars: {"start": (None, 2), "end": (None, 2), "rise": (None, 2)},
+    Stamps: {"at": (None, 2)},
+    Discs: {"at": (None, 2), "radius": (None,)},
+    Rectangles: {"boxes": (None, 4)},
+}
+_SIZES = {"width", "height", "radius", "size", "unit"}  # what cannot be negative
+_COLOURS = {"colour", "ink", "hollow", "fill", "outline"}
+_WORDS = {"weight": tuple(WEIGHTS), "anchor": ("left", "centre", "right")}
+
+
+def framed(mark: Mark, viewport: Viewport, unit: float) -> Iterator[Mark]:
+    """What is seen of a mark in a viewport, as marks that are not much larger. unit: pixels per point.
+
+    Raises ValueError if its arrays have other shapes than they should, or a number, colour or symbol is none.
+    """
+    check_mark(mark)
+    low, high = bounds(viewport)
+    match mark:
+        case Strokes():
+            width = min(mark.width, 4.0 * float(np.hypot(*(high - low))))
+            start, end, _ = clip_segments(mark.start, mark.end, low - width - _MARGIN, high + width + _MARGIN)
+            yield replace(mark, start=start, end=end, width=width)
+        case Fills():
+            yield from _fills(mark.corners, mark.colour, viewport)
+        case Bars():
+            yield from _fills(mark.corners, mark.colour, viewport)
+        case Stamps():
+            yield from _stamps(mark, viewport)
+        case Discs():
+            yield from _discs(mark, viewport, unit)
+        case Rectangles():
+            yield replace(mark, boxes=_boxes(mark.boxes, low, high))
+        case Panel():
+            yield from _panel(mark, low, high)
+        case Text():
+            yield from _text(mark, viewport)
+
+
+# --- checks ------------------------------------------------------------------------------------------------
+
+
+def check_mark(mark: Mark) -> None:
+    """Raise ValueError, naming the part, if a mark of the right types cannot be drawn."""
+    kind = type(mark)
+    names = getattr(mark, "_fields", None) or [*vars(mark)]
+    for name in names:
+        problem = _problem(name, getattr(mark, name), _SHAPES.get(kind, {}).get(name))
+        if problem:
+            raise ValueError(f"{kind.__name__}.{name} {problem}")
+    if len({len(getattr(mark, name)) for name in _SHAPES.get(kind, ())}) > 1:
+        raise ValueError(f"{kind.__name__}: {' and '.join(_SHAPES[kind])} have different numbers of rows")
+
+
+def _problem(name: str, value: Any, shape: tuple[int | None, ...] | None) -> str:
+    """What is wrong with a part of a mark, "" if nothing is."""
+    if shape is not None:
+        fits = len(value.shape) == len(shape) and all(
+            n in (None, m) for n, m in zip(shape, value.shape, strict=True)
+        )
+        if not fits and value.size:
+            wanted = ", ".join("n" if n is None else str(n) for n in shape)
+            return f"has the shape {value.shape}; it must be ({wanted})"
+    if name in _COLOURS:
+        wrong = value is not None and not all(0 <= part <= 255 for part in value)
+        return f"is {value}; red, green, blue and opacity go from 0 to 255" if wrong else ""
+    if name == "symbol":
+        return "" if value in SYMBOLS or value in icons() else f"is '{value}'; there is no such symbol"
+    if name in _WORDS:
+        return "" if value in _WORDS[name] else f"is '{value}'; choose one of {', '.join(_WORDS[name])}"
+    if isinstance(value, str):
+        return ""
+    bad = ~np.isfinite(value) | (np.less(value, 0) if name in _SIZES else False)
+    if np.any(bad):
+        wanted = "0 or more" if name in _SIZES else "finite"
+        return f"has {np.asarray(value)[bad].flat[0]} in it; it must be {wanted}, in pixels"
+    return ""
+
+
+# --- cutting -------------------------------------------------------------------------------------------------
+
+
+def _fills(corners: Points, colour: Colour, viewport: Viewport) -> Iterator[Fills]:
+    """Polygons, those that stick out of the viewport cut to it."""
+    if not corners.size:
+        return
+    low, high = bounds(viewport)
+    low, high = low - _MARGIN, high + _MARGIN
+    inside = ((corners >= low) & (corners <= high)).all(axis=(1, 2))
+    if inside.any():
+        yield Fills(corners[inside], colour)
+    for polygon in corners[~inside]:
+        cut = _cut(polygon, low, high)
+        if len(cut) > 2:
+            yield Fills(cut[None], colour)
+
+
+def _cut(polygon: Points, low: Points, high: Points) -> Points:
+    """A polygon (k, 2) cut to a rectangle, side by side (Sutherland and Hodgman's method)."""
+    for axis in (0, 1):
+        for limit, sign in ((low[axis], 1.0), (high[axis], -1.0)):
+            depth = sign * (polygon[:, axis] - limit)  # positive inside
+            following, after = np.roll(polygon, -1, axis=0), np.roll(depth, -1)
+            crosses = (depth >= 0.0) != (after >= 0.0)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                crossing = polygon + (depth / (depth - after))[:, None] * (following - polygon)
+            both = np.stack([polygon, crossing], axis=1).reshape(-1, 2)
+            polygon = both[np.stack([depth >= 0.0, crosses], axis=1).ravel()]
+            if len(polygon) == 0:
+                return polygon
+    return polygon
+
+
+def _near(at: Points, reach: float, viewport: Viewport) -> Any:
+    """Which of some places (n, 2) lie within a reach of the viewport."""
+    low, high = bounds(viewport)
+    return ((at >= low - reach) & (at <= high + reach)).all(axis=1)
+
+
+def _stamps(mark: Stamps, viewport: Viewport) -> Iterator[Mark]:
+    """Stamps near the viewport; large ones as polygons."""
+    mark = replace(mark, at=mark.at.reshape(-1, 2), size=min(mark.size, _FAR), unit=min(mark.unit, _FAR))
+    largest = mark.size if mark.symbol in SYMBOLS else 20.0 * mark.size  # of an icon: of a unit of its square
+    reach = largest + 2.0 * SUPPORT_DEPTH * mark.unit
+    mark = replace(mark, at=mark.at[_near(mark.at, reach, viewport)])
+    if not len(mark.at) or not mark.size or not mark.unit:
+        return
+    if reach <= 4.0 * LARGEST_STAMP:
+        yield mark
+        return
+    turn = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])[mark.turns % 4]
+    rotation = np.array([[turn[0], -turn[1]], [turn[1], turn[0]]], dtype=np.float64)
+    for role, corners in symbol_parts(mark.symbol, mark.size, mark.unit):
+        colour = mark.ink if role == "ink" else mark.hollow
+        yield from _fills(mark.at[:, None] + corners @ rotation.T, colour, viewport)
+
+
+def _discs(mark: Discs, viewport: Viewport, unit: float) -> Iterator[Mark]:
+    """Discs near the viewport; large ones as polygons."""
+    at, radius = mark.at.reshape(-1, 2), np.minimum(mark.radius, _FAR)
+    large = radius > LARGEST_STAMP * unit
+    small = ~large & _near(at, LARGEST_STAMP * unit, viewport)
+    yield replace(mark, at=at[small], radius=radius[small], rim=min(mark.rim, LARGEST_STAMP * unit))
+    for place, reach in zip(at[large], radius[large].tolist(), strict=True):
+        yield from _fills((place + circle(reach))[None], mark.ink, viewport)
+        if 0.0 < mark.rim < reach:
+            yield from _fills((place + circle(reach - mark.rim))[None], mark.hollow, viewport)
+
+
+def _boxes(boxes: Any, low: Points, high: Points) -> Any:
+    """Rectangles (n, 4), cut to the viewport; those outside are left out."""
+    given = boxes.reshape(-1, 4).astype(np.float64)
+    first = np.maximum(given[:, :2], low)
+    last = np.minimum(given[:, :2] + given[:, 2:], high)
+    seen = (last > first).all(axis=1)
+    return np.concatenate([first, last - first], axis=1)[seen].astype(np.int64)
+
+
+def _panel(mark: Panel, low: Points, high: Points) -> Iterator[Panel]:
+    """A panel, cut where its round corners are not seen."""
+    radius = min(mark.radius, mark.width / 2, mark.height / 2, float((high - low).max()))
+    reach = 2.0 * radius + _MARGIN
+    left, top = max(mark.left, low[0] - reach), max(mark.top, low[1] - reach)
+    right, bottom = min(mark.left + mark.width, high[0] + reach), min(mark.top + mark.height, high[1] + reach)
+    if right - left >= 1.0 and bottom - top >= 1.0:
+        yield Panel(float(left), float(top), float(right - left), float(bottom - top), radius, *mark[5:])
+
+
+def _text(mark: Text, viewport: Viewport) -> Iterator[Text]:
+    """A text as much of which as fits into three viewports, without characters that do not print."""
+    size = int(min(mark.size, viewport.height))
+    text = printable(mark.text[: 3 * viewport.width // max(size // 4, 1) + 1])
+    reach = size * (len(text) + 1.0)
+    if size > 0 and text and _near(np.array([[mark.x, mark.y]]), reach, viewport)[0]:
+        yield mark._replace(text=text, size=size)

@@ -1,0 +1,175 @@
+"""The cache of compiled programs: damaged files are compiled anew, and a full disk is done without."""
+
+import os
+import random
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from numba import njit
+
+from systems import cache
+from systems.program import compiler
+
+SOURCE = """
+from systems.kernels import kept
+
+@kept(error_model="numpy")
+def answer(x):
+    return kernel(x)
+"""
+
+
+def emptied(content: bytes) -> bytes:
+    """As a power cut leaves it."""
+    return b""
+
+
+def cut(content: bytes) -> bytes:
+    """As a full disk leaves it."""
+    return content[: len(content) // 2]
+
+
+def garbage(content: bytes) -> bytes:
+    """As a damaged file system leaves it."""
+    return random.Random(1).randbytes(len(content))
+
+
+def flipped(content: bytes) -> bytes:
+    """As a failing disk leaves it: machine code with other bytes here and there."""
+    damaged, chance = bytearray(content), random.Random(1)
+    for _ in range(50):
+        damaged[chance.randrange(len(damaged))] ^= 1 << chance.randrange(8)
+    return bytes(damaged)
+
+
+ROOT = Path(__file__).parents[2]
+DAMAGES = (emptied, cut, garbage, flipped)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty cache."""
+    monkeypatch.setattr(cache, "folder", lambda: tmp_path)
+    monkeypatch.setattr(cache, "TROUBLE", [])
+    return tmp_path
+
+
+@njit
+def kernel(x):  # type: ignore[no-untyped-def]
+    return 2.0 * x
+
+
+def answer(monkeypatch: pytest.MonkeyPatch) -> float:
+    """What the compiled module answers that a new process would load."""
+    monkeypatch.setattr(compiler, "_modules", {})
+    return float(compiler.compile_module(SOURCE, {"kernel": kernel}).answer(21.0))
+
+
+def test_what_was_written_is_read(folder: Path) -> None:
+    cache.write("some.code", b"content")
+    assert cache.read("some.code") == b"content"
+    assert cache.read("other.code") is None
+    assert [path.name for path in folder.iterdir()] == ["some.code"]
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_damaged_file_is_deleted(folder: Path, damage: Callable[[bytes], bytes]) -> None:
+    cache.write("some.code", b"content" * 100)
+    path = folder / "some.code"
+    path.write_bytes(damage(path.read_bytes()))
+    assert cache.read("some.code") is None
+    assert not path.exists()
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_damaged_program_is_compiled_anew(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, damage: Callable[[bytes], bytes]
+) -> None:
+    assert answer(monkeypatch) == 42.0
+    (kept,) = folder.glob("*.code")
+    kept.write_bytes(damage(kept.read_bytes()))
+    assert answer(monkeypatch) == 42.0
+    assert cache.read(kept.name) is not None
+
+
+def test_a_program_that_cannot_be_loaded_is_compiled_anew(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is whole, but of no use here: what it names is gone."""
+    answer(monkeypatch)
+    (kept,) = folder.glob("*.code")
+    cache.write(kept.name, b"cgone_module\nname\n.")
+    assert answer(monkeypatch) == 42.0
+
+
+def test_a_folder_in_the_place_of_a_file_is_done_without(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    answer(monkeypatch)
+    (kept,) = folder.glob("*.code")
+    kept.unlink()
+    kept.mkdir()
+    assert answer(monkeypatch) == 42.0
+
+
+OWN = """
+from numba import njit
+
+@njit(cache=True)
+def twice(x):
+    return 2.0 * x
+
+@njit(cache=True)
+def kernel(x):
+    return twice(x)
+"""
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_cache_that_numba_keeps_of_a_kernel_is_not_trusted(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, damage: Callable[[bytes], bytes]
+) -> None:
+    """A mod may have written `cache=True`."""
+    path = folder / "own_cache.py"
+    path.write_text(OWN)
+    names: dict[str, Any] = {"__name__": "own_cache", "__file__": str(path)}
+    exec(compile(OWN, path, "exec"), names)
+    assert names["kernel"](21.0) == 42.0
+    for kept in (folder / "__pycache__").iterdir():
+        kept.write_bytes(damage(kept.read_bytes()))
+    exec(compile(OWN, path, "exec"), names)
+    monkeypatch.setattr(compiler, "_modules", {})
+    assert compiler.compile_module(SOURCE, {"kernel": names["kernel"]}).answer(21.0) == 42.0
+
+
+FULL = """
+import resource
+import signal
+
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))  # every write to a file fails
+from numba import njit
+from systems.program.compiler import compile_module
+
+source = "from systems.kernels import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
+module = compile_module(source, {"kernel": njit(lambda x: 2 * x)})
+print(module.answer(21.0), module.answer(21))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="processes have no limits there")
+def test_a_full_disk_is_done_without_and_said_once(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", FULL],
+        env=os.environ | {"XDG_CACHE_HOME": str(tmp_path), "HOME": str(tmp_path), "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.stdout.split() == ["42.0", "42"]
+    assert done.stderr.count("cannot be kept") == 1
+    assert str(tmp_path) in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not [path for path in tmp_path.rglob("*") if path.is_file()]
