@@ -12,7 +12,6 @@ from components.field import FieldError, Role
 from components.snapshot import Snapshot
 from components.world import World
 
-
 _REMEDY = "it is not what a saved run holds; remove it, and the run goes on to within its accuracy."
 
 
