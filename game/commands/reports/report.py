@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from components.model import Model
+from components.settings import AUTOMATIC
 from game.commands.output import ResultError
 from game.commands.reports.results import Run, State, state
 from game.documents.open_documents import without_mods
@@ -19,6 +20,7 @@ from game.mods.mod import ModError
 from game.paths import ENERGIES
 from game.session import DEFAULT_LIMIT, Session
 from systems.base import StopReason
+from systems.physics.automatic import AFFORDABLE
 from systems.run.measured_error import IN_A_COMMAND
 from systems.run.simulation import Simulation
 
@@ -77,7 +79,9 @@ class Analysis:
         error = session.document.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
         return {
             **found,
-            "message": session.message,
+            "message": " ".join(
+                filter(None, [session.message, "" if error else _uncontrolled(session.simulation)])
+            ),
             "events": [*happened, *_records(session.model, session.remarks)],
             "error_estimate": asdict(error) if error is not None else None,
         }
@@ -86,6 +90,18 @@ class Analysis:
 def _failed(simulation: Simulation, name: str, error: ModError) -> Run:
     """The result of a run that stopped because a mod failed, with the state in which it did."""
     return {**_run(simulation, name, MOD_FAILED, [_state(simulation)]), "message": str(error)}
+
+
+def _uncontrolled(simulation: Simulation) -> str:
+    """What is to be said of a run whose error is neither controlled, though a person left that choice, nor measured."""
+    model = simulation.model
+    automatic = model.settings.integrator == AUTOMATIC and model.settings.time_step is None
+    if not automatic or model.rods.count <= AFFORDABLE or simulation.integrator.exact:
+        return ""
+    return (
+        f"With more than {AFFORDABLE} rods steps are as long as is stable, and how exact the run is was not measured:"
+        " --measure-error does so, the integrator dop853 controls the error."
+    )
 
 
 def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
