@@ -171,10 +171,14 @@ class Session(Context):
                 simulation.run_to(self.time + time)
             elif steps is not None:
                 simulation.advance(steps)
-        if simulation.reason is not StopReason.REST and steps is None:
-            self.timeline.clear()  # the last step was a short one, which stepping back does not take again
         ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
         return ended.get(simulation.reason, reached)
+
+    def go_to(self, steps: int, within: float | None = None) -> None:
+        """Let time pass to a moment of a recorded run: so many whole steps, and perhaps a time (s) within the next."""
+        if (steps, within) != self.simulation.moment:
+            with self._time_passing() as simulation:
+                simulation.go_to(steps, within)
 
     @contextmanager
     def _time_passing(self) -> Iterator[Simulation]:

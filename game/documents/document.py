@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from components.clock import Clock
 from components.commands import Assign
+from components.departure import Departure
 from components.environment import Environment
 from components.field import Column, Field, FieldError, Role, is_broken
 from components.grid import Grid
@@ -111,7 +112,15 @@ def _parsed(document: Any) -> Model:
             _read(model, _section(f"$.{name}", kind, document[name]))
     if FOREIGN in document:
         _read_added(model, document[FOREIGN])
+    _read_departure(model)
     return model
+
+
+def _read_departure(model: Model) -> None:
+    """Make what the clock holds of a step that is under way a departure; it needs all elements."""
+    saved = model.clock.departure
+    if saved is not None:
+        model.writable("clock.departure")[0] = Departure.of_file(saved, model, "$.state.departure")
 
 
 def _with_data_of_mods(document: Mapping[str, Any]) -> Mapping[str, Any]:

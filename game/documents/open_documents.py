@@ -98,8 +98,7 @@ class OpenDocument:
     @property
     def at_beginning(self) -> bool:
         """True if no time has passed, or restarting took it back."""
-        beginning = self.beginning
-        return beginning is None or self.model.clock.steps == beginning.columns["clock.steps"][0]
+        return self.beginning is None or not self.simulation.passed_since(self.beginning)
 
     def note_beginning(self) -> None:
         """Time is about to pass: if none has passed yet, it begins at the present state."""

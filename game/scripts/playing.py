@@ -117,6 +117,7 @@ _EXAMPLES: dict[str, Any] = {  # by key of a line: a value of the required shape
     "say": "Press Space.",
     "clipboard": "",
     "at": 128,
+    "within": 0.5,
 }
 _SIZES = ("resize", "window")
 
@@ -149,8 +150,8 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
         width, height = rest.pop("window")
         session.resize(int(width), int(height))
         session.view.fit(session.model)
-    if "at" in rest and (left := rest.pop("at") - session.model.clock.steps) > 0:
-        session.run(steps=left)
+    if "at" in rest or "within" in rest:
+        session.go_to(rest.pop("at", session.simulation.moment[0]), rest.pop("within", None))
     if "over" in rest:
         session.point(*rest.pop("over"))
     if "clipboard" in rest:
@@ -202,10 +203,16 @@ class Recorder:
         view = self._session.view
         window = view.camera.viewport
         size = [window.width, window.height, view.pixel_ratio]
-        self._write({"at": self._session.model.clock.steps, "resize": size})
+        self._write({**self._now, "resize": size})
+
+    @property
+    def _now(self) -> dict[str, Any]:
+        """When, as the keys of a line."""
+        steps, within = self._session.simulation.moment
+        return {"at": steps} if within is None else {"at": steps, "within": within}
 
     def _pressed(self, key: str, pixel: Vector | None) -> None:
-        entry: dict[str, Any] = {"at": self._session.model.clock.steps, "input": key}
+        entry: dict[str, Any] = {**self._now, "input": key}
         if pixel is not None:
             entry["pixel"] = list(pixel)
         if key == "ctrl+v":  # a text from another program will not be there when the script is played

@@ -12,7 +12,7 @@ further line does one thing:
     {"set": "particles.B.force=120,-160"}       as --set of the command line
     {"action": "undo"}                          a named action
     {"run": "rest"}   {"run": 0.5}              until at rest; or by seconds
-    {"steps": 128}                              by fixed steps
+    {"steps": 128}                              by steps
     {"expect": "rods.AB.axial_force ≈ -28.34 ± 0.01"}   also =, <, >, <=, >=; scene, time, count.rods, energy.…
     {"expect": "clock.collisions = 3"}          the number of impacts
     {"expect": "message ≈ not found"}           the message in the window; of a text, ≈ asks for a part
@@ -22,8 +22,8 @@ further line does one thing:
 
 "clipboard" gives the text on the clipboard at that moment.
 
-"at": N on a line first lets time pass to the N-th fixed step, as it had in a recording; "window":
-[width, height] sets the size of the view in pixels. Replaying gives the same bits.
+"at": N on a line first lets time pass to the N-th step, as it had in a recording, and "within": T to that time (s)
+within the next one; "window": [width, height] sets the size of the view in pixels. Replaying gives the same bits.
 """
 
 from __future__ import annotations

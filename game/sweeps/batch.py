@@ -26,6 +26,7 @@ from systems.program.program import COLUMNS_OBSERVED
 from systems.program.writer import REVIEW_INTERVAL
 from systems.run.energy import ENTRIES, Energy, energy_of, opened
 from systems.run.policy import (
+    ENDING,
     ERROR_CONTROL,
     GOING_ON,
     Limits,
@@ -257,8 +258,9 @@ class Batch:
         if self.integrator.controlled:
             while len(variants):
                 _, reason = self._advance(variants, REVIEW_INTERVAL, target, target)
-                going_on = np.isin(reason[variants], GOING_ON)
-                variants = variants[(self.clock("time")[variants] < target) & going_on]
+                failed = np.isin(reason[variants], ENDING)
+                self.alone[variants[failed]] = True
+                variants = variants[(self.clock("time")[variants] < target) & ~failed]
             return
         sizes = self.clock("step_size").copy()
         self._begin_steps(variants, target - self.clock("time"))

@@ -36,7 +36,20 @@ def natural_pace(model: Model) -> float:
 
 
 def _response_time(model: Model) -> float | None:
-    """Pace from the mode that the loads excite, by Rayleigh's method on their static displacement.
+    """Pace from the mode that the loads excite; None if they move the model as a mechanism, or without rods."""
+    response = loaded_mode(model)
+    if response is None:
+        return None
+    frequency, damping = response
+    ratio = damping / (2.0 * frequency)
+    if ratio < 1.0:
+        return 2.0 * math.pi / frequency / PERIOD_SHOWN
+    creep = frequency / (ratio + math.sqrt(ratio * ratio - 1.0))
+    return 1.0 / creep / CREEP_SHOWN
+
+
+def loaded_mode(model: Model) -> tuple[float, float] | None:
+    """ω (rad/s) and 2ζω (1/s) of the mode that the loads excite, by Rayleigh's method on their static displacement.
 
     ω² = uᵀKu / uᵀMu, 2ζω = uᵀCu / uᵀMu. None if the loads move the model as a mechanism, or without rods.
     """
@@ -53,13 +66,7 @@ def _response_time(model: Model) -> float | None:
         return None
     frequency = math.sqrt(float((rods.stiffness / rods.rest_length * elongation**2).sum()) / inertia)
     damping = float((rods.damping * elongation**2).sum()) / inertia + model.environment.drag
-    if frequency == 0.0:
-        return None
-    ratio = damping / (2.0 * frequency)
-    if ratio < 1.0:
-        return 2.0 * math.pi / frequency / PERIOD_SHOWN
-    creep = frequency / (ratio + math.sqrt(ratio * ratio - 1.0))
-    return 1.0 / creep / CREEP_SHOWN
+    return (frequency, damping) if frequency > 0.0 else None
 
 
 def _static_displacement(model: Model) -> Array | None:

@@ -135,11 +135,10 @@ class Flight:
 
     # --- running -----------------------------------------------------------------------------------
 
-    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
+    def advance(self, steps: int, until: float = math.inf) -> tuple[int, StopReason]:
         """Let the time of up to `steps` steps pass, none of which ends after `until` (s), as every stepper does.
 
-        No step is cut at `landing`: steps are only the times at which the state is observed, and the motion does not
-        depend on them unless a hand pulls.
+        Steps are only the times at which the state is observed: the motion does not depend on them unless a hand pulls.
         """
         return self._take(steps, until, math.inf)
 
