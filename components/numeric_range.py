@@ -38,7 +38,7 @@ def _too_far(model: Model) -> str:
     least = UNKNOWN_SHARE * float(model.particles.radius.max())
     for row in np.flatnonzero(np.spacing(far) > least)[:1].tolist():
         return (
-            f"{others.names[row]}: one of its ends is {far[row]:g} m away, where places are known to"
+            f"{others.names[row][:1].upper()}{others.names[row][1:]}: one of its ends is {far[row]:g} m away, where places are known to"
             f" {np.spacing(far[row]):.1g} m only, too coarse for the radii of the particles; place it nearer."
         )
     return ""
