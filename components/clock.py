@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from components.collision_state import CollisionState, check_collision_state
+from components.departure import Departure, check_departure
 from components.field import Field, FieldError, state
 from components.handle import Handle
 
@@ -23,7 +24,8 @@ class Clock(Handle):
     """Simulated time and the energy account of the run. There is exactly one.
 
     time = origin + (steps − origin_steps) × time step, so that no rounding accumulates in it. Step programs
-    take what they need in the order in which it is declared here.
+    take what they need in the order in which it is declared here. A moment within a step that is under way is an
+    excursion: the step counts among `steps`, and `departure` holds the state after the step before it.
     """
 
     __slots__ = ()
@@ -58,7 +60,7 @@ class Clock(Handle):
     largest_imbalance: Field[float] = state(
         "J", doc="Energy that the steps lost (positive) or created at most, in the run so far."
     )
-    steps: Field[int] = state(dtype=int, doc="Fixed steps taken.")
+    steps: Field[int] = state(dtype=int, doc="Steps taken, one that is under way included.")
     origin_steps: Field[int] = state(dtype=int, doc="Steps at the time origin.")
     collisions: Field[int] = state(dtype=int, doc="Impacts so far.")
     events: Field[Mapping[str, tuple[str, ...]] | None] = state(
@@ -73,3 +75,14 @@ class Clock(Handle):
         doc="Paths of free particles, or persistent contacts of driven ones, so that the run goes on bit for bit.",
         checker=check_collision_state,
     )
+    departure: Field[Departure | None] = state(
+        dtype=object,
+        nullable=True,
+        doc="All state after the last whole step, where the present moment lies within the next; edits end it.",
+        checker=check_departure,
+    )
+
+
+def is_error_controlled(clock: Clock) -> bool:
+    """True if the integrator chooses each step by its error, to which any stiffness is good."""
+    return clock.step_limit > 0.0 or clock.step_error > 0.0

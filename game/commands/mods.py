@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import sys
 import uuid
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -22,6 +21,7 @@ from game.mods.loading import MODS, load
 from game.mods.mod import INCLUDED, LOG, Mod, ModError
 from game.mods.skeleton import write_skeleton
 from game.mods.trial import mistakes_of
+from game.streams import tell
 from game.version import __version__
 
 LEFT_OUT = (
@@ -55,7 +55,7 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
         if mod.off and others[:1] != ["mods"]:
             if computes and mod.folder is not None and {mod.folder, mod.folder.parent} & named:
                 raise ModError(f"The mod '{mod.name}' cannot be used: {mod.problem}")
-            print(f"pinjoint: the mod '{mod.name}' was left out: {mod.problem}", file=sys.stderr)
+            tell(f"the mod '{mod.name}' was left out: {mod.problem}")
     return others
 
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:  # they import scipy
     from systems.statics.events import Event
     from systems.statics.verify import Comparison, Theories
 
+Moment = tuple[int, float]  # of a run: the revision of its last edit, and the time (s)
 LARGEST = 2000  # rods up to which theory is found without being asked for; more would take noticeable time
 
 
@@ -30,8 +31,8 @@ class Assessment:
         self._beginning: Snapshot | None = None
         self._disturbed_at = math.inf  # the first step with an edit or a pull
         self._theories: tuple[int, Theories] | None = None
-        self._remarks: tuple[tuple[int, int], tuple[Event, ...]] | None = None
-        self._error: tuple[tuple[int, int], MeasuredError | None] | None = None
+        self._remarks: tuple[Moment, tuple[Event, ...]] | None = None
+        self._error: tuple[Moment, MeasuredError | None] | None = None
 
     def begin(self, beginning: Snapshot) -> None:
         """A run begins in this state."""
@@ -65,8 +66,11 @@ class Assessment:
     def _begun(self) -> Snapshot | None:
         """The state in which the run began; None if it has not begun."""
         begun = self._beginning
-        passed = begun is not None and begun.columns["clock.steps"][0] != self._model.clock.steps
-        return begun if passed else None
+        return begun if begun is not None and self._simulation.passed_since(begun) else None
+
+    @property
+    def _moment(self) -> Moment:
+        return self._simulation.armed_revision, self._model.clock.time
 
     @property
     def is_small(self) -> bool:
@@ -85,7 +89,7 @@ class Assessment:
         at_rest = self._simulation.halted and self._simulation.reason is StopReason.REST
         if not at_rest or not self._is_comparable():
             return ()
-        key = (self._simulation.armed_revision, self._model.clock.steps)
+        key = self._moment
         if self._remarks is None or self._remarks[0] != key:
             from systems.statics.verify import remarks
 
@@ -100,7 +104,7 @@ class Assessment:
         """
         from systems.run.measured_error import IN_A_FRAME, measure_error, work
 
-        key = (self._simulation.armed_revision, self._model.clock.steps)
+        key = self._moment
         if self._error is not None and self._error[0] == key:
             return self._error[1]
         begun, most_work = self._begun, IN_A_FRAME if most_work is None else most_work

@@ -397,8 +397,9 @@ class Context:
     def settle(self, factors: Sequence[float] | float = (1.0,)) -> str:
         """Go to the static equilibrium at each load factor in turn, without letting time pass.
 
-        Can be undone. Returns "equilibrium", or "mechanism", "collapse" or "limit reached" with the last
-        good state; `message` says more. Time moves on to the end of the last load history. Raises ValueError.
+        Can be undone. Returns "equilibrium", "neutral equilibrium" or "unstable equilibrium"; or "mechanism",
+        "collapse" or "limit reached" with the last good state; `message` says more. Time moves on to the end of the
+        last load history. Raises ValueError.
         """
         status, self.notice = self.document.settle(factors)
         return status
@@ -410,12 +411,13 @@ class Context:
             self._go_on()
 
     def step(self, steps: int = 1) -> bool:
-        """Go by a number of fixed steps, back if negative; False if the run does not reach that far back or is at rest.
+        """Go by a number of steps, back if negative; False if the run does not reach that far back or is at rest.
 
         Going back stops where something was edited: undo takes that back.
         """
         steps = operator.index(steps)
-        target = self.model.clock.steps + steps
+        begun, (whole, _) = self.model.clock.steps, self.simulation.moment
+        target = (whole if steps > 0 else begun) + steps  # a step that is under way is the first
         self.act_in_scene()
         self.document.note_beginning()
         if not self.has_program(self.simulation):

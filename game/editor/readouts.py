@@ -39,7 +39,9 @@ def _energy(context: Context) -> Readout:
     ]
     error = None if context.busy else context.document.assessment.error()  # which takes a run of its own
     if error is not None:
-        rows.append(("displacement error", f"{error.relative:.1e} of the largest"))
+        shares = error.relative, error.relative_velocity, error.relative_axial_force
+        titles = "displacement error", "velocity error", "axial force error"
+        rows += [(title, f"{share:.1e} of the largest") for title, share in zip(titles, shares, strict=True)]
     return Readout("Energy account", tuple(rows))
 
 

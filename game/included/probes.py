@@ -243,11 +243,11 @@ def run(words: list[str]) -> int:
 
 
 def record(session: Context, probe: Probe, until: float, samples: int) -> None:
-    """Run to a time (s), reading after the last full step before evenly spaced times. Ends early at rest."""
+    """Run to a time (s), reading at evenly spaced times. Ends early at rest."""
     simulation = session.simulation
     simulation.advance(0)
     for number in range(samples):
-        simulation.run_to(until * number / (samples - 1), whole_steps=True)
+        simulation.run_to(until * number / (samples - 1))
         simulation.observe()
         probe.sample(session)
         if simulation.halted:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
-from components.wording import printable
+from components.wording import printable, quoted
 from game.editor.context import FAULTS
 from game.interrupts import is_persons
 from game.mods.declared import as_declared
@@ -167,6 +167,8 @@ def _entries(path: Path) -> dict[str, Any]:
     except (OSError, UnicodeDecodeError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
         raise ModError(f"{MANIFEST} cannot be read: {reason}.") from None
+    except RecursionError:
+        raise ModError(f"{MANIFEST} is nested too deeply.") from None
     except tomllib.TOMLDecodeError as error:
         raise ModError(f"{MANIFEST} is not TOML: {error}.") from None
 
@@ -178,7 +180,7 @@ def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
     for key in ("name", "version", "description"):
         value = entries.get(key, "")
         if not isinstance(value, str):
-            raise ModError(f'{MANIFEST}: {key} is {value!r}; it must be a text, such as {key} = "…".')
+            raise ModError(f'{MANIFEST}: {key} is {quoted(value)}; it must be a text, such as {key} = "…".')
         if value or key != "name":
             setattr(made, key, value)
     made.module = named or made.name
@@ -188,7 +190,9 @@ def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
         raise ModError(f"{MANIFEST}: the name is '{made.name}', but the entry point calls it '{named}'.")
     requires = entries.get("requires", [])
     if not isinstance(requires, list) or not all(isinstance(entry, str) for entry in requires):
-        raise ModError(f'{MANIFEST}: requires is {requires!r}; write a list like ["pinjoint>=0.1", "gusts"].')
+        raise ModError(
+            f'{MANIFEST}: requires is {quoted(requires)}; write a list like ["pinjoint>=0.1", "gusts"].'
+        )
     made.requires = tuple(requires)
     _check_versions(made)
 

@@ -180,16 +180,20 @@ class Performance:
         simulation = self._screen.session.simulation
         if self._running_since is None:
             self._running_since, self._natural = time.monotonic(), self._screen.session.pace
-        if self._skipping:
-            return REVIEW_INTERVAL
+        clock = simulation.model.clock
+        now, end = clock.time, clock.time + clock.step_size
         simulation.before_steps.remove(self._watch_time)  # the run stands still during the picture
-        self._frame()
+        while not self._skipping:
+            with simulation.at(now):
+                self._frame()
+            shown = time.monotonic() - self._running_since
+            between = 2.0 ** max(shown - PATIENCE * self._pace, 0.0) * self._natural / RATE
+            now += between
+            if now >= end:
+                break
         simulation.before_steps.append(self._watch_time)
-        shown = time.monotonic() - self._running_since
-        faster = 2.0 ** max(shown - PATIENCE * self._pace, 0.0)
-        step = simulation.model.clock.step_size
-        steps = faster * self._natural / (RATE * step) if step > 0.0 else 1.0
-        return math.ceil(min(steps, REVIEW_INTERVAL))
+        steps = between / clock.step_size if clock.step_size > 0.0 and not self._skipping else REVIEW_INTERVAL
+        return math.ceil(min(max(steps, 1.0), REVIEW_INTERVAL))
 
     def _frame(self) -> None:
         """One frame, and the keys that the person pressed meanwhile."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, TextIO
 
 from components.field import Vector
+from components.wording import cut, quoted
 from game.documents.document import ModelError
 from game.editor.context import FAULTS
 from game.mods.loading import MODS
@@ -116,6 +117,7 @@ _EXAMPLES: dict[str, Any] = {  # by key of a line: a value of the required shape
     "say": "Press Space.",
     "clipboard": "",
     "at": 128,
+    "within": 0.5,
 }
 _SIZES = ("resize", "window")
 
@@ -124,11 +126,11 @@ def _check_line(entry: Mapping[str, Any]) -> None:
     """Raise ValueError unless every key is known and every value has the shape of its example."""
     for key, value in entry.items():
         if key not in _EXAMPLES:
-            raise ValueError(f"there is no '{key}'; use one of {', '.join(_EXAMPLES)}.")
+            raise ValueError(f"there is no '{cut(key)}'; use one of {', '.join(_EXAMPLES)}.")
         example = _EXAMPLES[key]
         fits = _is_like(value, example) and not (key in _SIZES and min(value) <= 0)
         if not fits and (key, value) != ("run", "rest"):
-            raise ValueError(f"{key} is {json.dumps(value)}; write it like {json.dumps({key: example})}.")
+            raise ValueError(f"{key} is {quoted(value)}; write it like {json.dumps({key: example})}.")
 
 
 def _is_like(value: Any, example: Any) -> bool:
@@ -148,15 +150,15 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
         width, height = rest.pop("window")
         session.resize(int(width), int(height))
         session.view.fit(session.model)
-    if "at" in rest and (left := rest.pop("at") - session.model.clock.steps) > 0:
-        session.run(steps=left)
+    if "at" in rest or "within" in rest:
+        session.go_to(rest.pop("at", session.simulation.moment[0]), rest.pop("within", None))
     if "over" in rest:
         session.point(*rest.pop("over"))
     if "clipboard" in rest:
         session.clipboard = rest.pop("clipboard")
     button, pixel = rest.pop("button", "click"), rest.pop("pixel", None)
     if len(rest) > 1:
-        raise ValueError(f"a line does one thing, this one says {', '.join(rest)}; split it.")
+        raise ValueError(f"a line does one thing, this one says {', '.join(map(cut, rest))}; split it.")
     for verb, value in rest.items():
         if verb == "expect":
             yield from check(session, value)
@@ -201,10 +203,16 @@ class Recorder:
         view = self._session.view
         window = view.camera.viewport
         size = [window.width, window.height, view.pixel_ratio]
-        self._write({"at": self._session.model.clock.steps, "resize": size})
+        self._write({**self._now, "resize": size})
+
+    @property
+    def _now(self) -> dict[str, Any]:
+        """When, as the keys of a line."""
+        steps, within = self._session.simulation.moment
+        return {"at": steps} if within is None else {"at": steps, "within": within}
 
     def _pressed(self, key: str, pixel: Vector | None) -> None:
-        entry: dict[str, Any] = {"at": self._session.model.clock.steps, "input": key}
+        entry: dict[str, Any] = {**self._now, "input": key}
         if pixel is not None:
             entry["pixel"] = list(pixel)
         if key == "ctrl+v":  # a text from another program will not be there when the script is played

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from components.clock import is_error_controlled
 from components.field import Vector
 from components.model import Model
 from components.particle import Particle
@@ -113,7 +114,7 @@ def hand_on(model: Model, view: View, particle: Particle, pace: Callable[[], flo
     more than the usual force of the model when the pointer is COMFORTABLE points away, so that a stiff
     truss bends instead of being torn apart. The damper is critical for the particle by itself.
     """
-    step = model.clock.step_size  # 0 where no run could begin
+    step = 0.0 if is_error_controlled(model.clock) else model.clock.step_size  # 0 where no run could begin, too
     fastest = 1.0 / (STEPS_PER_RADIAN * step) if step > 0.0 else math.inf
     if (model.rods.between == particle.row).any():
         reach = COMFORTABLE * view.pixel_ratio / view.camera.scale / model.settings.displacement_scale

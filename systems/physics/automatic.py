@@ -9,30 +9,54 @@ import numpy as np
 from components.load import loads_end
 from components.model import Model
 from components.numeric_range import incomputable
+from systems.physics.pace import loaded_mode
 from systems.physics.spectrum import Array, RodOperator
 
-SMALL = 200  # rods up to which error control costs little
+SMALL = 200  # rods up to which the modes of a model are found in no time, and steps cost next to nothing
+AFFORDABLE = 5000  # rods up to which error control keeps up with a person's eye
 STIFF = 1e5  # slowest time scale × fastest rate above which implicit steps are cheaper
 _RIGID = 1e-10  # share of the highest eigenvalue below which a mode has no stiffness of its own
 
 
 def choose(model: Model) -> str:
-    """The name of the integrator: up to SMALL rods one with error control, else velocity Verlet.
+    """The name of the integrator: up to AFFORDABLE rods one with error control, else velocity Verlet.
 
     With error control, the explicit one of order 8, unless the model is too stiff: unless stability would force more
     than STIFF / 5 steps on it in the slowest time scale, which is a period, a creep time or the duration of the
     loading. Where a person fixes the step, no error can be controlled.
     """
-    if model.rods.count > SMALL or model.settings.time_step is not None:
+    if model.rods.count > AFFORDABLE or model.settings.time_step is not None:
         return "velocity_verlet"
     if incomputable(model):  # no run can begin, but undo and properties ask as well
         return suited_to(0.0)
+    if model.rods.count > SMALL:
+        return suited_to(_stiffness(model))
     return suited_to(float(stiffnesses(model, np.array([model.environment.drag]))[0]))
 
 
 def suited_to(stiffness: float) -> str:
-    """The integrator with error control for a small model of this stiffness."""
+    """The integrator with error control for a model of this stiffness."""
     return "esdirk4" if stiffness > STIFF else "dop853"
+
+
+def _stiffness(model: Model) -> float:
+    """As `stiffnesses`, of a model that is too large for all its modes; by the one that the loads excite."""
+    rods, particles = model.rods, model.particles
+    if not (particles.mobility > 0.0).any():
+        return 0.0
+    fastest = math.sqrt(RodOperator(model, rods.stiffness / rods.rest_length).gershgorin()[0])
+    fastest = max(fastest, RodOperator(model, rods.damping).gershgorin()[0] + model.environment.drag)
+    mode = loaded_mode(model)
+    if mode is None:  # a mechanism
+        pull = float(np.hypot(*(particles.constant_force * particles.mobility).T).max())
+        frequency = math.sqrt(pull / float(rods.rest_length.max()))
+    else:
+        frequency = mode[0]
+    end = loads_end(model)
+    times = [end if end < math.inf else 0.0, float((rods.damping * rods.rest_length / rods.stiffness).max())]
+    if frequency > 0.0:
+        times += [2.0 * math.pi / frequency, model.environment.drag / frequency**2]
+    return float(fastest * max(times))
 
 
 def stiffnesses(model: Model, drag: Array) -> Array:

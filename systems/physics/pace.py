@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from components.load import loads_end
 from components.model import Model
 from components.numeric_range import incomputable
+from components.round_numbers import round_near
 
 Array = NDArray[np.float64]
 
@@ -31,11 +32,24 @@ def natural_pace(model: Model) -> float:
     end = loads_end(model)
     if math.isfinite(end) and end > 0.0:
         pace = max(pace, end / LOADING_SHOWN)
-    return _rounded(pace)
+    return round_near(pace)
 
 
 def _response_time(model: Model) -> float | None:
-    """Pace from the mode that the loads excite, by Rayleigh's method on their static displacement.
+    """Pace from the mode that the loads excite; None if they move the model as a mechanism, or without rods."""
+    response = loaded_mode(model)
+    if response is None:
+        return None
+    frequency, damping = response
+    ratio = damping / (2.0 * frequency)
+    if ratio < 1.0:
+        return 2.0 * math.pi / frequency / PERIOD_SHOWN
+    creep = frequency / (ratio + math.sqrt(ratio * ratio - 1.0))
+    return 1.0 / creep / CREEP_SHOWN
+
+
+def loaded_mode(model: Model) -> tuple[float, float] | None:
+    """ω (rad/s) and 2ζω (1/s) of the mode that the loads excite, by Rayleigh's method on their static displacement.
 
     ω² = uᵀKu / uᵀMu, 2ζω = uᵀCu / uᵀMu. None if the loads move the model as a mechanism, or without rods.
     """
@@ -52,13 +66,7 @@ def _response_time(model: Model) -> float | None:
         return None
     frequency = math.sqrt(float((rods.stiffness / rods.rest_length * elongation**2).sum()) / inertia)
     damping = float((rods.damping * elongation**2).sum()) / inertia + model.environment.drag
-    if frequency == 0.0:
-        return None
-    ratio = damping / (2.0 * frequency)
-    if ratio < 1.0:
-        return 2.0 * math.pi / frequency / PERIOD_SHOWN
-    creep = frequency / (ratio + math.sqrt(ratio * ratio - 1.0))
-    return 1.0 / creep / CREEP_SHOWN
+    return (frequency, damping) if frequency > 0.0 else None
 
 
 def _static_displacement(model: Model) -> Array | None:
@@ -145,8 +153,3 @@ def _flight_pace(model: Model) -> float:
         times.append(math.sqrt(2.0 * size / pull))
     pace = min(times, default=FLIGHT_SHOWN) / FLIGHT_SHOWN
     return 1.0 if REAL_TIME[0] <= pace <= REAL_TIME[1] else pace
-
-
-def _rounded(pace: float) -> float:
-    power = 10.0 ** math.floor(math.log10(pace))
-    return float(min((1.0, 2.0, 5.0, 10.0), key=lambda step: abs(math.log(step * power / pace)))) * power

@@ -94,10 +94,9 @@ class KernelRows:
         pairs = pairs_within(self.model, bound.cutoff)[:, :: -1 if self._turned else 1]
         if parameter in _OF_PAIRS:
             values = np.sum([self.model.column(name) for name in _OF_PAIRS[parameter]], axis=0)
-            between = values[pairs[:, 1]] - values[pairs[:, 0]]
-            return between + np.hypot(*between.T)[:, None] * (
-                self._moved if parameter == "apart" else (0.0, 0.0)
-            )
+            between: NDArray[Any] = values[pairs[:, 1]] - values[pairs[:, 0]]
+            moved = self._moved if parameter == "apart" else (0.0, 0.0)
+            return np.asarray(between + np.hypot(*between.T)[:, None] * moved)
         if parameter in bound.arrays or parameter.startswith("particles_"):
             return self._column(bound, parameter, self.model.particles.count)[pairs]
         return self._column(bound, parameter, len(pairs))

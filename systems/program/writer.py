@@ -106,13 +106,12 @@ entered = entry(_nrt={may_allocate})
 def form_of(model: Model, integrator: Integrator, systems: Iterable[StepSystem] = ()) -> str:
     """The form of program that suits a model: rod by rod, in stages, or in blocks shared by cores.
 
-    Events look at all rods after each step, and laws of pairs at all particles, in the order of the model.
+    Rod by rod the programs of controlled steps are the quickest at any size, and take half as long to compile. Events
+    look at all rods after each step, and laws of pairs at all particles, in the order of the model.
     """
-    if model.rods.count <= SMALL:
+    if integrator.controlled or model.rods.count <= SMALL:
         return FEW
-    whole = integrator.controlled or any(
-        isinstance(system, Event) or getattr(system, "each", "") == "pairs" for system in systems
-    )
+    whole = any(isinstance(s, Event) or getattr(s, "each", "") == "pairs" for s in systems)
     return MANY if whole or model.rods.count < BLOCKS_FROM else VERY_MANY
 
 

@@ -20,7 +20,7 @@ class Checkpoint:
     """
 
     state: Snapshot
-    steps: int
+    time: float
     armed: bool
     before_edit: Column | None
     stable_step: float

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -15,20 +15,25 @@ from systems.run.simulation import Simulation
 
 FINER_TOLERANCE = 1e-2  # of the run's, by which it is taken again where the error is controlled
 FINEST_TOLERANCE = 1e-13
-PIECES = 64  # parts of a run at whose ends the displacements are compared
+PIECES = 64  # parts of a run at whose ends the quantities are compared
 # Evaluations of the forces of rods up to which the error is measured without being asked for:
 IN_A_FRAME, IN_A_COMMAND = 5_000_000, 60_000_000  # about 0.2 s and 3 s
 
 
 @dataclass(frozen=True)
 class MeasuredError:
-    """Of the displacements at the end of a run.
+    """Of the state that a run has reached.
 
-    displacement: the largest of any particle (m). relative: to the largest displacement that was seen.
+    displacement, velocity, axial_force: the largest of any particle or rod (m, m/s, kN). relative,
+    relative_velocity, relative_axial_force: the same to the largest that was seen of all in the run.
     """
 
     displacement: float
     relative: float
+    velocity: float
+    relative_velocity: float
+    axial_force: float
+    relative_axial_force: float
 
 
 def work(simulation: Simulation) -> int:
@@ -53,7 +58,7 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     if meaningless or not clock.time > then["clock.time"][0]:
         return None
     program = simulation.programs.compiled
-    reached, size, target = model.particles.displacement.copy(), clock.step_size, simulation.moved_until
+    reached, size, target = _Quantities.of(program), clock.step_size, simulation.moved_until
     yielded = clock.dissipated_plastic > then["clock.dissipated_plastic"][0]
     with simulation.aside(beginning):
         if program.tolerance > 0.0:
@@ -62,57 +67,81 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
             largest = _by_steps(simulation, program, target, size)
             order = 1 if yielded and not program.integrator.controlled else program.integrator.order
             factor = 2.0**order / (2.0**order - 1.0)
-        again = model.particles.displacement.copy()
-    largest = max(largest, _size(reached))
-    difference = factor * _size(reached - again)
-    if not math.isfinite(largest + difference):
+        again = _Quantities.of(program)
+    largest = np.maximum(largest, reached.sizes)
+    difference = factor * (reached - again).sizes
+    if not np.isfinite(largest + difference).all():
         return None
-    return MeasuredError(difference, difference / largest if largest > 0.0 else 0.0)
+    relative = np.divide(difference, largest, out=np.zeros(len(largest)), where=largest > 0.0)
+    return MeasuredError(*np.stack([difference, relative], axis=1).ravel().tolist())
 
 
-def _size(displacement: Column) -> float:
-    """The largest of any particle (m)."""
-    return float(np.hypot(*displacement.T).max(initial=0.0))
+@dataclass(frozen=True)
+class _Quantities:
+    """What is compared: of all particles (n, 2) in m and m/s, and of all rods (n,) in kN."""
+
+    displacement: Column
+    velocity: Column
+    axial_force: Column
+
+    @classmethod
+    def of(cls, program: Program) -> _Quantities:
+        """Those of the present state."""
+        program.observe()
+        particles, rods = program.model.particles, program.model.rods
+        return cls(particles.displacement.copy(), particles.velocity.copy(), rods.axial_force.copy())
+
+    def __sub__(self, other: _Quantities) -> _Quantities:
+        return _Quantities(*(getattr(self, f.name) - getattr(other, f.name) for f in fields(self)))
+
+    @property
+    def sizes(self) -> Column:
+        """The largest of any particle or rod, shape (3,)."""
+        lengths = (np.hypot(*self.displacement.T), np.hypot(*self.velocity.T), np.abs(self.axial_force))
+        return np.array([length.max(initial=0.0) for length in lengths])
 
 
-def _by_tolerance(program: Program, target: float) -> float:
+def _by_tolerance(program: Program, target: float) -> Column:
     """Run to a time with a hundredth of the tolerance and half the longest step; returns as _pieces does."""
     tolerance = program.tolerance
     program.tolerance = max(FINER_TOLERANCE * tolerance, FINEST_TOLERANCE)
     program.model.writable("clock.step_limit")[0] *= 0.5
     try:
-        return _pieces(program, target) if program.tolerance < 0.2 * tolerance else math.nan
+        return _pieces(program, target) if program.tolerance < 0.2 * tolerance else _UNKNOWN
     finally:
         program.tolerance = tolerance
 
 
-def _by_steps(simulation: Simulation, program: Program, target: float, size: float) -> float:
+def _by_steps(simulation: Simulation, program: Program, target: float, size: float) -> Column:
     """Run to a time by equal steps, at most half as long as `size`; returns as _pieces does."""
     clock = program.model.clock
     steps = math.ceil(2.0 * (target - clock.time) / size * (1.0 - 1e-9))
     simulation.step_size.begin((target - clock.time) / steps)
     if program.integrator.controlled:
         return _pieces(program, target)
-    largest, piece = 0.0, -(-steps // PIECES)
+    largest, piece = _Quantities.of(program).sizes, -(-steps // PIECES)
     while steps > 0:
         taken, _ = program.advance(min(piece, steps))
         if taken == 0:
-            return math.nan
+            return _UNKNOWN
         steps -= taken
-        largest = max(largest, _size(program.model.particles.displacement))
+        largest = np.maximum(largest, _Quantities.of(program).sizes)
     return largest
 
 
-def _pieces(program: Program, target: float) -> float:
+def _pieces(program: Program, target: float) -> Column:
     """Run to a time exactly, past all that would stop a run.
 
-    Returns the largest displacement at the ends of pieces (m); not a number if it did not get there.
+    Returns the largest quantities at the ends of pieces; not numbers if it did not get there.
     """
-    clock, largest = program.model.clock, 0.0
+    clock, largest = program.model.clock, _Quantities.of(program).sizes
     for end in np.linspace(clock.time, target, PIECES + 1)[1:].tolist():
         while (before := clock.time) < end:
             program.advance(REVIEW_INTERVAL, end, end)
             if clock.time == before:
-                return math.nan
-        largest = max(largest, _size(program.model.particles.displacement))
+                return _UNKNOWN
+        largest = np.maximum(largest, _Quantities.of(program).sizes)
     return largest
+
+
+_UNKNOWN = np.full(3, math.nan)

@@ -18,10 +18,12 @@ from systems.entries import Measure
 from systems.physics.automatic import SMALL
 
 GOING_ON = (StopReason.DONE, StopReason.REVIEW)  # stop reasons after which a run simply goes on
+ENDING = (StopReason.EVENT, StopReason.DIVERGED, StopReason.UNRESOLVED)  # reasons that end a step early
 
 SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
 ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square
 FIRST_SHARE = 0.1  # of 1/ω, the step at which error control begins
+CRAWLING = 1e-3  # of it: so much shorter ones under error control are told of
 FREE_STEP = 1e-3  # s, where nothing limits the step
 DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
 
@@ -61,13 +63,15 @@ class StepPolicy:
     """How the steps of a run are chosen.
 
     fixed: the step (s) that a person chose; None: automatic. rods: how many the model has.
-    shown: gives the longest step (s) that a person can follow; infinite where nobody watches.
+    observed: gives the longest step (s) of exact flight, which is only how often it is looked at, and of particles that
+    stay in contact. in_contact: some do.
     """
 
     integrator: Integrator
     fixed: float | None
     rods: int
-    shown: Callable[[], float] = lambda: math.inf
+    observed: Callable[[], float] = lambda: math.inf
+    in_contact: bool = False
 
     @property
     def controls_error(self) -> bool:
@@ -96,9 +100,16 @@ class StepPolicy:
         fits = 0.5 * wanted <= size <= min(1.5 * wanted, 0.95 * limits.stable_step)
         return None if fits else wanted
 
+    def crawls(self, limits: Limits, mean: float) -> bool:
+        """True if forces change so fast that error control takes tiny steps. mean: of many steps (s)."""
+        return self.controls_error and mean < CRAWLING * self.first(limits)[0]
+
     def limit(self, limits: Limits) -> float:
-        """The longest step (s) under error control: stability and the eye limit it; 0: nothing does."""
-        limit = min(SAFETY * limits.stable_step, self.shown())
+        """The longest step (s) under error control, by stability and contacts; 0: nothing limits it.
+
+        The forces of contacts are constant in a step, of which the estimates of errors know nothing.
+        """
+        limit = min(SAFETY * limits.stable_step, self.observed() if self.in_contact else math.inf)
         return rounded_down(limit) if limit < math.inf else 0.0
 
     def _automatic(self, limits: Limits) -> float:
@@ -107,8 +118,8 @@ class StepPolicy:
         if stable == 0.0:
             return rounded_down(min(DOUBTFUL_STEP / limits.frequency, FREE_STEP))
         share = ACCURATE if self.rods <= SMALL else SAFETY
-        shown = self.shown() if self.integrator.exact else math.inf
-        return rounded_down(min(share * stable, FREE_STEP, shown))
+        observed = self.observed() if self.integrator.exact else math.inf
+        return rounded_down(min(share * stable, FREE_STEP, observed))
 
 
 def rounded_down(size: float) -> float:

@@ -8,7 +8,7 @@ from components.model import Model
 from systems.base import StopReason
 from systems.program.program import Program
 from systems.program.writer import REVIEW_INTERVAL
-from systems.run.policy import GOING_ON
+from systems.run.policy import ENDING
 from systems.run.programs import Programs
 from systems.run.sleep import Sleep
 from systems.run.step_size import StepSize
@@ -36,18 +36,19 @@ class ProgramSteps:
     def rebound(self) -> Program:
         """The program that takes the next steps, now that an impact changed the plan or woke something."""
         self._programs.unbind()
+        self._step_size.limit_anew()
         return self.program
 
-    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
+    def advance(self, steps: int, until: float = math.inf) -> tuple[int, StopReason]:
         """Take up to `steps` steps, as every stepper does."""
-        return self.program.advance(steps, until, landing)
+        return self.program.advance(steps, until)
 
     def land(self, target: float) -> StopReason:
         """Take the last, short step, to exactly the time `target` (s)."""
         clock, reason = self._model.clock, StopReason.DONE
         if self._programs.integrator.controlled:
-            while clock.time < target and reason in GOING_ON:
-                _, reason = self.advance(REVIEW_INTERVAL, target, target)
+            while clock.time < target and reason not in ENDING:
+                _, reason = self.program.advance(REVIEW_INTERVAL, target, target)
             return reason
         size = clock.step_size
         self._step_size.begin(target - clock.time)

@@ -9,6 +9,7 @@ from components.model import Model
 from components.rod import is_warm
 from components.settings import AUTOMATIC
 from systems.base import Integrator, Phase, StepSystem
+from systems.collision.free.discs import Discs
 from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
 from systems.collision.system import FreeFlight
@@ -137,6 +138,11 @@ class Programs:
         program = self.dynamics
         assert isinstance(program, Program)
         return program
+
+    @property
+    def flying(self) -> Discs | None:
+        """The discs of exact flight in the midst of a step, if there are any; binds nothing."""
+        return self._bound.flying if isinstance(self._bound, Flight) else None
 
     def bind(self) -> Dynamics:
         """Bind what moves the model to its columns. A mod whose system cannot join the program is switched off."""

@@ -10,6 +10,7 @@ BUDGET = 0.012  # s of a frame that steps may take
 FIRST_STEPS = 1000  # that the first frame may take, when their cost is not known yet
 FASTEST, SLOWEST = 1e3, 1e-5  # simulated seconds per second shown, times the natural pace at 1
 MANY, SHARE = 2000, 0.1  # above MANY elements, a change of their number by a smaller share keeps the pace
+SHORT = 0.125  # share of a frame that is left to the next where steps are as short: whole steps are shown
 
 
 class TimeScale:
@@ -92,8 +93,13 @@ class RealTimeRunner:
             return
         start, before = simulation.model.clock.time, simulation.compute_seconds
         due = clock.due(elapsed)
-        taken = simulation.advance(clock.affordable, start + clock.ahead + due)
+        taken = simulation.run_to(start + clock.ahead + due, clock.affordable, whole=self._steps_are_short(due))
         clock.took(due, simulation.model.clock.time - start, taken, simulation.compute_seconds - before)
+
+    def _steps_are_short(self, due: float) -> bool:
+        """True if whole steps follow the time of frames closely enough; in large models, each moment between is dear."""
+        step: float = self.simulation.model.clock.step_size
+        return step < (1.0 if self._large else SHORT) * due
 
     @property
     def _size(self) -> int:

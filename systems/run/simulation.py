@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
+from components.departure import Departure
 from components.field import Column, Role
 from components.model import ADDED, Model
 from components.numeric_range import incomputable
@@ -24,7 +26,7 @@ from systems.program.program import OBSERVED
 from systems.program.writer import REVIEW_INTERVAL
 from systems.run.checkpoint import Checkpoint
 from systems.run.energy import Account, Energy
-from systems.run.policy import at_rest_since, energy_warning, is_before, is_sleep_review, residual
+from systems.run.policy import at_rest_since, begin_steps, energy_warning, is_sleep_review, residual
 from systems.run.program_steps import ProgramSteps
 from systems.run.programs import Dynamics, Programs
 from systems.run.recovery import Recovery
@@ -51,6 +53,15 @@ class EventRecord:
     time: float
     fallen: tuple[str, ...]
     risen: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a run is: everything has happened up to a time (s)."""
+
+    time: float
+    steps: int
+    impacts: int
 
 
 class Simulation:
@@ -148,6 +159,7 @@ class Simulation:
         if self.armed:
             self._account.begin_edit()
             self.armed = False
+        self.stay()
         if self.model.clock.collision_state is not None:
             self.model.writable("clock.collision_state")[0] = None
         self.programs.void()
@@ -172,7 +184,8 @@ class Simulation:
         elif self._recovery.safe is None:
             self.step_size.look_up()
         if self._recovery.safe is None:
-            self._recovery.safe = self.present()
+            departure = self.model.clock.departure
+            self._recovery.safe = self.present() if departure is None else departure.state
         self.programs.bind()
 
     def account_for_edits(self) -> None:
@@ -202,6 +215,7 @@ class Simulation:
         """Begin a new run with a state from before edits."""
         for name in CHOSEN:
             self.model.writable(f"clock.{name}")[0] = 0.0
+        self.stay()
         self.forget()
 
     def present(self) -> Snapshot:
@@ -215,7 +229,7 @@ class Simulation:
         """A checkpoint of the present, with the state of these tables (none given: of all tables)."""
         return Checkpoint(
             Snapshot.take(self.model, *tables) if tables else self.present(),
-            self.model.clock.steps,
+            self.model.clock.time,
             self.armed,
             self._account.before_edit,
             self.step_size.stable,
@@ -226,6 +240,8 @@ class Simulation:
     def resume(self, checkpoint: Checkpoint) -> None:
         """Return to a checkpoint; the document must be the one that it was taken with."""
         checkpoint.state.restore(self.model)
+        if not checkpoint.armed:
+            self.stay()
         if checkpoint.binding != self.programs.bindings:
             self.programs.unbind()
         self._forget_run()
@@ -247,33 +263,39 @@ class Simulation:
         """True if the run ended by itself, at rest or diverged, and nothing was edited since."""
         return self.armed and self.reason in ENDS
 
-    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> int:
-        """Take up to `steps` steps, none of which ends after `until` (s); returns how many.
+    def advance(self, steps: int, until: float = math.inf) -> int:
+        """Take up to `steps` whole steps, none of which ends after `until` (s); returns how many.
 
-        Stops at rest and before garbage. A step that would pass `landing` (s) may be cut to end there.
+        Stops at rest and before garbage. A step that is under way is taken anew, as a whole.
         """
+        if steps > 0 and not self.halted:
+            self.rejoin()
         self._arm()
         started, clock = time.perf_counter(), self.model.clock
         first, done = clock.steps, 0
         if self._events and steps > 0:
             self._events = self.events
         while done < steps and not self.halted:
-            ahead = min(steps - done, self._sleep.steps_to_review(self.program))
-            for call in self.before_steps:
-                ahead = min(ahead, call())
-                self._arm()  # in case it edited the model
-            if self.halted:
+            complete = self._take(steps - done, until)
+            done = clock.steps - first
+            if not complete:
                 break
-            taken, reason = self._stepper.advance(ahead, until, landing)
-            self._heed_and_announce(reason)
-            now = clock.steps
-            if is_sleep_review(now) and not self.halted:
-                self._review_sleep()
-            done = now - first
-            if taken < max(ahead, 1) and reason is StopReason.DONE:
-                break  # the next step would end later than allowed
         self.compute_seconds += time.perf_counter() - started
         return done
+
+    def _take(self, steps: int, until: float) -> bool:
+        """Take up to so many steps, up to the next that something waits for; False if the next would end too late."""
+        ahead = min(steps, self._sleep.steps_to_review(self.program))
+        for call in self.before_steps:
+            ahead = min(ahead, call())
+            self._arm()  # in case it edited the model
+        if self.halted:
+            return False
+        taken, reason = self._stepper.advance(ahead, until)
+        self._heed_and_announce(reason)
+        if is_sleep_review(self.model.clock.steps) and not self.halted:
+            self._review_sleep()
+        return taken >= max(ahead, 1) or reason is not StopReason.DONE
 
     def _heed(self, reason: StopReason) -> None:
         """React to the reason for which the stepper returned."""
@@ -306,7 +328,10 @@ class Simulation:
 
     def _review(self) -> None:
         """After a fixed number of steps: keep a safe state, see whether all stands still, adapt the step size."""
-        moves, clock = self._recovery.keep(self.present()), self.model.clock
+        clock, safe = self.model.clock, self._recovery.safe
+        assert safe is not None
+        since, before = float(safe.columns["clock.time"][0]), int(safe.columns["clock.steps"][0])
+        moves = self._recovery.keep(self.present())
         if not moves and self.program.changes_end <= clock.time:
             energy = self.energy
             lost, damped = energy.imbalance, energy.dissipated_damping
@@ -315,7 +340,7 @@ class Simulation:
                 return
             if not self.warning:
                 self.note = STUCK
-        self.step_size.review()
+        self.step_size.review((clock.time - since) / max(clock.steps - before, 1))
 
     def _recover(self, reason: StopReason) -> None:
         """Return to the last good state and go on without a mod or with shorter steps, or give up."""
@@ -337,30 +362,30 @@ class Simulation:
         if self._sleep.may_happen(self.program) and self._sleep.review(self.program):
             self.step_size.limit_anew()
 
-    def run_to(self, target: float, *, whole_steps: bool = False) -> None:
-        """Advance to exactly this time (s) by a last, short step; or only by whole steps that end by then."""
-        self._arm()
-        clock = self.model.clock
-        while not self.halted and is_before(clock.time, target):
-            landing = math.inf if whole_steps else target
-            if self.advance(REVIEW_INTERVAL, target, landing) == 0 and not self.halted:
-                if not whole_steps:
-                    self._heed_and_announce(self._stepper.land(target))
-                elif self._event_comes_before(target):
-                    self._heed_and_announce(
-                        self._stepper.advance(1)[1]
-                    )  # the event ends the step before the time
-                else:
-                    return
+    # --- moments within a step -----------------------------------------------------------------------
 
-    def _event_comes_before(self, target: float) -> bool:
-        """True if an event ends the next step by the time `target` (s)."""
-        if not (self.program.watches_events and self.integrator.controlled):
-            return False
-        before = self.present()
-        reason = self._stepper.land(target)
-        before.restore(self.model)
-        return reason is StopReason.EVENT
+    def run_to(self, target: float, most_steps: int = sys.maxsize, *, whole: bool = False) -> int:
+        """Let time pass up to exactly `target` (s), by at most so many steps; returns how many.
+
+        The run is its whole steps. The moment of `target` within one is reached from the last whole step, which the run
+        goes back to before it goes on; so what comes after does not depend on when anybody looked. whole: take whole
+        steps alone. At rest time passes without any.
+        """
+        self._arm()
+        clock, taken = self.model.clock, 0
+        if clock.time < target:
+            self.rejoin()
+        while not self.halted and taken < most_steps and clock.time < target:
+            if done := self.advance(min(most_steps - taken, REVIEW_INTERVAL), target):
+                taken += done
+            elif self.halted or whole or self._show(target):
+                break
+            else:  # an event ends the step before
+                self._take(1, math.inf)
+                taken += 1
+        if self.reason is StopReason.REST and self.armed and clock.time < target:
+            self._show_at_rest(target)
+        return taken
 
     def run_until_rest(self, limit: float) -> bool:
         """Advance until at rest, at most to the time `limit` (s); True if it came to rest."""
@@ -374,14 +399,67 @@ class Simulation:
             self.message = _why_not_at_rest(self.program, self.energy, limit)
         return self.reason is StopReason.REST
 
+    def _show(self, target: float) -> bool:
+        """Show the moment `target` (s) within the next step; False if the step ends before, at an event or by failing."""
+        started, before = time.perf_counter(), self.present()
+        reason = self._stepper.land(target)
+        happened = reason is StopReason.EVENT and (self.integrator.controlled or self.programs.collides)
+        if happened or self.model.clock.time != target:
+            before.restore(self.model)
+            return False
+        self._depart(before, begun=1)
+        self.compute_seconds += time.perf_counter() - started
+        return True
+
+    def _show_at_rest(self, target: float) -> None:
+        """Let time pass without steps."""
+        before, clock = self.present(), self.model.clock
+        self.model.writable("clock.time")[0] = target
+        begin_steps(lambda name: self.model.writable(f"clock.{name}"), 0, clock.step_size)
+        self._depart(before, begun=0)
+
+    def _depart(self, before: Snapshot, begun: int) -> None:
+        """Note that the present moment was reached from this whole step, in so many steps that are under way."""
+        steps = before.columns["clock.steps"][0] + begun
+        for name in ("steps", "origin_steps"):
+            self.model.writable(f"clock.{name}")[0] = steps
+        self.model.writable("clock.departure")[0] = Departure(before)
+
+    def rejoin(self) -> None:
+        """Go back to the whole step that the present moment was reached from, if it lies within the next."""
+        departure = self.model.clock.departure
+        if departure is not None:
+            departure.state.restore(self.model)
+
+    def stay(self) -> None:
+        """Let the run go on from the present moment, as something changes here: it ends the step that is under way."""
+        if self.model.clock.departure is not None:
+            self.model.writable("clock.departure")[0] = None
+
+    @property
+    def moment(self) -> tuple[int, float | None]:
+        """Whole steps taken, and the time (s) of a moment within the next, by which `go_to` finds it again."""
+        clock = self.model.clock
+        return (clock.steps, None) if clock.departure is None else (clock.departure.steps, clock.time)
+
+    def go_to(self, steps: int, within: float | None) -> None:
+        """Let time pass to such a moment."""
+        self.advance(max(steps - self.moment[0], 0))
+        if within is not None and self.moment == (steps, None):
+            self.run_to(within)
+
+    def passed_since(self, then: Snapshot) -> bool:
+        """True if the run has gone on since a state, by steps or within the one that is under way."""
+        clock = self.model.clock
+        within = clock.departure is not None and clock.time != then.columns["clock.time"][0]
+        return bool(within or clock.steps != then.columns["clock.steps"][0])
+
     @contextmanager
     def at(self, target: float) -> Iterator[None]:
         """The model as it is at a time (s) within the next step, inside the `with`; then as it was before."""
-        self._arm()
         before = self.present()
-        reason = StopReason.EVENT
-        while target > self.model.clock.time and reason is StopReason.EVENT:
-            reason = self._stepper.land(target)
+        if target > self.model.clock.time:
+            self._stepper.land(target)
         try:
             yield
         finally:
@@ -403,6 +481,14 @@ class Simulation:
             self.reason, self.message, self.note, self.armed_revision = said
 
     # --- reading -------------------------------------------------------------------------------------
+
+    @property
+    def progress(self) -> Progress:
+        """How far the run is, also in the midst of a step; changes nothing, so that it can be asked at any moment."""
+        clock, flying = self.model.clock, self.programs.flying
+        if flying is None:
+            return Progress(clock.time, clock.steps, clock.collisions)
+        return Progress(max(clock.time, flying.now), clock.steps, max(clock.collisions, flying.impacts))
 
     @property
     def warning(self) -> str:

@@ -15,7 +15,7 @@ from systems.run.policy import ERROR_CONTROL, Limits, StepPolicy, begin_steps
 from systems.run.programs import Programs
 from systems.run.sleep import Sleep
 
-SHOWN = 1.0 / 120.0  # s shown, at the natural pace, that one step may last
+OBSERVED = 1.0 / 120.0  # s shown, at the natural pace, between two looks at exact flight or at what touches
 DEFAULT_INTEGRATOR = "velocity_verlet"
 
 
@@ -23,8 +23,7 @@ class StepSize:
     """Applies the policy of step sizes to one model's clock.
 
     stable: the largest stable step (s) that was found last. warning: the sentence that the
-    chosen step is too long, or "". watched: a person watches, so that no step lasts longer than SHOWN on screen even
-    where accuracy would allow it: else the run could neither be followed nor interrupted.
+    chosen step is too long, or "".
     """
 
     def __init__(self, model: Model, programs: Programs, sleep: Sleep) -> None:
@@ -33,20 +32,17 @@ class StepSize:
         self._sleep = sleep
         self.stable = math.inf
         self.warning = ""
-        self.watched = True
 
     @property
     def _policy(self) -> StepPolicy:
         model = self._model
         return StepPolicy(
-            self._programs.integrator, model.settings.time_step, model.rods.count, self._longest_shown
+            self._programs.integrator,
+            model.settings.time_step,
+            model.rods.count,
+            lambda: OBSERVED * natural_pace(model),
+            model.clock.collision_state is not None,
         )
-
-    def _longest_shown(self) -> float:
-        """The longest step (s) that a person can follow."""
-        # Events happen at the same time whether anybody watches or not.
-        watched = self.watched or self._programs.dynamics.watches_events
-        return SHOWN * natural_pace(self._model) if watched else math.inf
 
     def begin(self, size: float) -> None:
         """From now on steps have this size (s); the guard against divergence compares with this moment."""
@@ -82,19 +78,29 @@ class StepSize:
         self._model.writable("clock.step_limit")[0] = limit
         return size
 
-    def review(self) -> None:
-        """Change automatic steps if what is stable changed much."""
-        if self._policy.controls_error:
-            self.limit_anew()
-        elif self._policy.fixed is None:
-            wanted = self._policy.reviewed(self.look_up(), self._model.clock.step_size)
+    def review(self, mean: float) -> None:
+        """Change automatic steps if what is stable changed much. mean: of the steps since the last review (s)."""
+        policy = self._policy
+        if policy.controls_error:
+            limits = self.look_up()
+            self._model.writable("clock.step_limit")[0] = policy.limit(limits)
+            if policy.crawls(limits, mean):
+                self.warning = (
+                    f"Forces change so fast that steps of {mean:.2g} s are needed, {1.0 / mean:.2g} for a second:"
+                    " look for a law that is singular, or much stiffer than the rods."
+                )
+        elif policy.fixed is None:
+            wanted = policy.reviewed(self.look_up(), self._model.clock.step_size)
             if wanted is not None:
                 self.begin(wanted)
 
     def limit_anew(self) -> None:
         """Under error control: find the limit of the step anew, as others are awake or stiffnesses changed."""
         if self._policy.controls_error:
-            self._model.writable("clock.step_limit")[0] = self._policy.limit(self.look_up())
+            limit = self._policy.limit(self.look_up())
+            self._model.writable("clock.step_limit")[0] = limit
+            if self._policy.in_contact:
+                self._model.writable("clock.step_size")[0] = min(self._model.clock.step_size, limit)
 
     def remedy(self, size: float | None) -> str:
         """The remedy for a run that is unstable with steps of this size (s), None: automatic."""

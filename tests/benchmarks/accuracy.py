@@ -96,7 +96,6 @@ def ours(problem: Problem, method: str) -> Run:
         choices = {"integrator": method, "collisions": False, knob: setting}
         session = Session.open(problem.document | {"settings": choices})
         simulation = session.simulation
-        simulation.step_size.watched = False  # nobody watches
         simulation.advance(0)
         beginning = simulation.checkpoint()
 

@@ -64,7 +64,6 @@ def drift(steps: int) -> list[Row]:
 def _drifting(title: str, model: Model, integrator: str, steps: int) -> list[Row]:
     settings = {"integrator": integrator, "collisions": False}
     session = Session.open(model | {"settings": settings})
-    session.simulation.step_size.watched = False
     session.simulation.advance(0)
     rows = []
     for power in range(3, len(str(steps))):

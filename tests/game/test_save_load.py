@@ -247,15 +247,15 @@ def test_an_example_is_not_overwritten(data: Path) -> None:
 
 
 def test_the_state_of_a_run_is_saved_and_continues_with_the_same_bits(session: Session) -> None:
-    session.run(steps=300)
+    session.run(steps=30)
     saved_as(session, "run")
-    session.run(steps=300)
+    session.run(steps=30)
     expected = session.particles.displacement.copy()
     session.press("d")
     session.type("run")
     session.press("return")
-    assert session.model.clock.steps == 300
-    session.run(steps=300)
+    assert session.model.clock.steps == 30
+    session.run(steps=30)
     assert same(session.particles.displacement, expected)
 
 

@@ -192,8 +192,7 @@ def test_ctrl_c_is_told_from_an_exception_of_a_mod() -> None:
     try:
         mark_interrupts()
         with pytest.raises(Interrupt) as caught:
-            os.kill(os.getpid(), signal.SIGINT)
-            time.sleep(1.0)
+            signal.raise_signal(signal.SIGINT)
         assert is_persons(caught.value)
         assert not is_persons(KeyboardInterrupt())
         assert not is_persons(SystemExit())

@@ -62,7 +62,6 @@ def follow(case: Case, integrator: str, most_steps: int = 100_000) -> Outcome:
     """Run a case by one integrator, for its time or as many steps as are allowed."""
     settings = {"integrator": integrator, "collisions": False, "time_step": case.fixed_step}
     session = Session.open(case.document | {"settings": settings})
-    session.simulation.step_size.watched = False  # nobody watches
     if session.simulation.advance(most_steps, case.time) < most_steps:
         status = session.run(time=max(case.time - session.time, 0.0))
     else:

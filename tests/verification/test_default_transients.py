@@ -1,5 +1,6 @@
 """What runs by default, `automatic` with its error controlled, against transients to nearly full precision."""
 
+import json
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from game import Session
+from game.commands.command_line import main
+from game.documents import document as documents
 from systems.physics.spectrum import spectrum
+from tests.benchmarks.models import lattice
 from tests.reference.elements import Document
 from tests.reference.transients import Motion, Untraceable, follow
 from tests.verification.test_against_reference import SHORTEST, decimals, trusses
@@ -120,3 +124,50 @@ def test_the_reference_ends_with_a_rod_that_yields_between_two_held_particles() 
     displacement = follow(document, 1e-4).displacement
     assert displacement[:2].tolist() == [[-0.01, 0.0], [0.0, 0.0]]
     assert displacement[2, 0] == pytest.approx(1e-4, rel=1e-2)
+
+
+@pytest.mark.parametrize("cables", [0, 5], ids=["rods", "some cables"])
+def test_a_lattice_of_several_hundred_rods_is_exact_in_forces_and_speeds_too(cables: int) -> None:
+    """Jittered, of rods of very different stiffness, under sudden forces, undamped."""
+    model = lattice(400, damping=0.0)
+    made, random = documents.document(model), np.random.default_rng(3)
+    for one in made["particles"]:
+        one["position"] = (np.array(one["position"]) + random.uniform(-0.2, 0.2, 2)).tolist()
+        if not any(one.get("fixed", [])):
+            one["force"] = random.uniform(-20.0, 20.0, 2).tolist()
+    for number, one in enumerate(made["rods"]):
+        one["stiffness"] = 10.0 ** random.uniform(3.0, 5.0)
+        one["tension_only"] = cables > 0 and number % cables == 0
+    runs = []
+    for tolerance in (1e-9, 1e-12):
+        chosen = {"collisions": False, "tolerance": tolerance}
+        session = Session.open(made | {"settings": made["settings"] | chosen})
+        session.run(time=0.02)
+        runs.append(session)
+    run, exact = runs
+    assert run.model.clock.steps < 1000
+    for table, name, within in [
+        ("particles", "displacement", 1e-6),
+        ("particles", "velocity", 1e-5),
+        ("rods", "axial_force", 1e-5),
+    ]:
+        true = exact.table(table).column(name)
+        assert np.abs(run.table(table).column(name) - true).max() <= within * np.abs(true).max()
+
+
+def test_a_run_too_large_for_error_control_says_so(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for module in ("systems.physics.automatic", "game.commands.reports.report"):
+        monkeypatch.setattr(f"{module}.AFFORDABLE", 2)
+    monkeypatch.setattr("game.commands.reports.report.IN_A_COMMAND", 0)
+    words = ["run", "isostatic", "--at", "0.001", "--format", "json"]
+    main(words)
+    found = json.loads(capsys.readouterr().out)
+    assert found["integrator"] == "velocity_verlet"
+    assert found["error_estimate"] is None
+    assert "--measure-error" in found["message"]
+    main([*words, "--measure-error"])
+    found = json.loads(capsys.readouterr().out)
+    assert found["error_estimate"]["relative"] > 0.0
+    assert "--measure-error" not in found["message"]

@@ -17,13 +17,14 @@ from tests.reference.models import model, particle, rod, square
 
 
 def yielding() -> Model:
-    """A square under a ramp and gravity, yielding, damped, with drag: everything that keeps history."""
+    """A square under ramps, an oscillating load and gravity, yielding, damped, with drag: all that keeps history."""
     document = square(force=(0, 0), tensile_strength=60, compressive_strength=60, damping=2)
     return document | {
         "environment": {"acceleration": [0, -9.81], "drag": 3.0},
         "loads": [
             {"on": "C", "force": [30, -150], "history": {"kind": "ramp", "start": 0.001, "duration": 0.05}},
             {"on": "B", "force": [10, 0], "history": {"kind": "ramp", "start": 0.03, "duration": 0.0}},
+            {"on": "B", "force": [0, 5], "history": {"kind": "sine", "frequency": 40, "phase": 0}},
         ],
     }
 
@@ -104,7 +105,7 @@ def test_dividing_the_steps_changes_nothing(document: Model, parts: list[int]) -
 
 @EACH
 def test_frame_rate_changes_nothing(document: Model) -> None:
-    """Frames of any length take whole steps; only how many differs."""
+    """Frames of any length show moments within steps; the steps are the same."""
     sessions = []
     for lengths in ([1 / 60], [0.003, 0.04, 0.0, 0.017], [0.1]):
         session = Session.open(document)
@@ -121,7 +122,7 @@ def test_frame_rate_changes_nothing(document: Model) -> None:
         sessions.append(session)
     last = max(session.model.clock.steps for session in sessions)
     for session in sessions:
-        session.run(steps=last - session.model.clock.steps)
+        session.go_to(last)
         assert_same(session, sessions[0])
 
 

@@ -20,7 +20,6 @@ COARSEST = {"dop853": 4, "esdirk4": 16, "rk4": 16}
 
 def run(document: Model, end: float, **settings: object) -> Session:
     session = Session.open(document | {"settings": settings})
-    session.simulation.step_size.watched = False
     assert session.run(time=end) == "time reached"
     return session
 

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from components.model import Model
+from components.settings import AUTOMATIC
 from game.commands.output import ResultError
+from game.commands.progress import Watch
 from game.commands.reports.results import Run, State, state
 from game.documents.open_documents import without_mods
 from game.mods.heeding import check_mods, heeding_mods
@@ -19,6 +22,7 @@ from game.mods.mod import ModError
 from game.paths import ENERGIES
 from game.session import DEFAULT_LIMIT, Session
 from systems.base import StopReason
+from systems.physics.automatic import AFFORDABLE
 from systems.run.measured_error import IN_A_COMMAND
 from systems.run.simulation import Simulation
 
@@ -26,6 +30,7 @@ if TYPE_CHECKING:  # they import scipy
     from systems.statics.events import Event
     from systems.statics.settle import StaticState
 
+INTERRUPTED = "interrupted"  # the status of a run that Ctrl+C ended
 MOD_FAILED = "mod failed"
 FOUND = ("equilibrium", "at rest", "time reached")  # statuses of a run that found what was asked for
 
@@ -69,18 +74,49 @@ class Analysis:
             if self.load_factors is not None:
                 return self.run(session.simulation, name)
             session.run(steps=0)  # records the beginning, for theory beside the run
-            with session.without_frames():
+            with session.without_frames(), Watch(session.simulation) as watch:
                 found = self.run(session.simulation, name)
+        except Interrupted as interrupted:
+            watch.take_back()
+            return _interrupted(session.simulation, name, interrupted.states)
         except ModError as failure:
             return _failed(session.simulation, name, failure)
         happened = [asdict(event) for event in session.simulation.events]
         error = session.document.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
         return {
             **found,
-            "message": session.message,
+            "message": " ".join(
+                filter(None, [session.message, "" if error else _uncontrolled(session.simulation)])
+            ),
             "events": [*happened, *_records(session.model, session.remarks)],
             "error_estimate": asdict(error) if error is not None else None,
         }
+
+
+class Interrupted(KeyboardInterrupt):
+    """A run that was interrupted, with the states that it had reported."""
+
+    def __init__(self, states: list[State]) -> None:
+        super().__init__()
+        self.states = states
+
+
+@contextmanager
+def _interruptible(states: list[State]) -> Iterator[None]:
+    """Let an interrupt inside bring along the states so far."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise Interrupted(states) from None
+
+
+def _interrupted(simulation: Simulation, name: str, states: list[State]) -> Run:
+    """The result of a run that was interrupted: what it had reported, and its last state between two steps."""
+    if not states or simulation.model.clock.time > states[-1]["time"]:
+        states = [*states, _state(simulation)]
+    found = _run(simulation, name, INTERRUPTED, states)
+    reached = f"Interrupted at t = {found['time']:.9g} s, after {found['steps']} steps."
+    return {**found, "message": f"{reached} {found['message']}".rstrip(), "error_estimate": None}
 
 
 def _failed(simulation: Simulation, name: str, error: ModError) -> Run:
@@ -88,10 +124,22 @@ def _failed(simulation: Simulation, name: str, error: ModError) -> Run:
     return {**_run(simulation, name, MOD_FAILED, [_state(simulation)]), "message": str(error)}
 
 
+def _uncontrolled(simulation: Simulation) -> str:
+    """What is to be said of a run whose error is neither controlled, though a person left that choice, nor measured."""
+    model = simulation.model
+    automatic = model.settings.integrator == AUTOMATIC and model.settings.time_step is None
+    if not automatic or model.rods.count <= AFFORDABLE or simulation.integrator.exact:
+        return ""
+    return (
+        f"With more than {AFFORDABLE} rods steps are as long as is stable, and how exact the run is was not measured:"
+        " --measure-error does so, the integrator dop853 controls the error."
+    )
+
+
 def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
     """Run until at rest, at most `limit` s of simulated time."""
-    simulation.step_size.watched = False  # nobody watches
-    simulation.run_until_rest(simulation.model.clock.time + limit)
+    with _interruptible([]):
+        simulation.run_until_rest(simulation.model.clock.time + limit)
     ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
     status = ended.get(simulation.reason, "limit reached")
     return _run(simulation, name, status, [_state(simulation)])
@@ -100,7 +148,6 @@ def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
 def run_at(simulation: Simulation, name: str, times: Sequence[float]) -> Run:
     """Run through the given times (s, ascending) and report the state at exactly each of them.
 
-    The short last step to a reported time is taken on a copy, so that a report never changes the run.
     Raises AnalysisError for times before that of the model.
     """
     if times[0] < (present := simulation.model.clock.time):
@@ -108,17 +155,13 @@ def run_at(simulation: Simulation, name: str, times: Sequence[float]) -> Run:
             f"The model is at t = {present:.9g} s already, after {times[0]:.9g} s; ask for later times."
         )
     states: list[State] = []
-    simulation.step_size.watched = False  # nobody watches
     for target in times:
-        simulation.run_to(target, whole_steps=True)
+        with _interruptible(states):
+            simulation.run_to(target)
+        states.append(_state(simulation))
         if simulation.reason is StopReason.DIVERGED:
-            return _run(simulation, name, "diverged", [*states, _state(simulation)])
-        if simulation.reason is StopReason.REST:  # time passes without steps
-            simulation.model.writable("clock.time")[0] = max(target, simulation.model.clock.time)
-        with simulation.at(target):
-            states.append(_state(simulation))
-            run = _run(simulation, name, "time reached", states)
-    return run
+            return _run(simulation, name, "diverged", states)
+    return _run(simulation, name, "time reached", states)
 
 
 def run_static(simulation: Simulation, name: str, factors: Sequence[float]) -> Run:

@@ -130,8 +130,9 @@ def run_lines(run: Run) -> Iterator[str]:
         taken = f"time {as_written(run['time'])} s, {run['steps']} steps{step}"
         yield f"{taken}, integrator {run['integrator']}"
     if error := run.get("error_estimate"):
-        relative = as_written(error["relative"])
-        yield f"error of the displacements, measured by finer steps: {relative} of the largest"
+        shares = (as_written(error[name]) for name in ("relative", "relative_velocity", "relative_axial_force"))
+        yield "error of displacements, velocities, axial forces, measured by finer steps:"
+        yield f"{', '.join(shares)} of the largest"
     yield f"computed in {as_written(run['wall_seconds'])} s, compiled in {as_written(run['compile_seconds'])} s"
     for made in run["states"]:
         yield ""

@@ -99,7 +99,7 @@ class History:
 
     def _add_run(self, run: Run) -> bool:
         """Enter a run in the log; False if no time passed in it."""
-        if self._model.clock.steps == run.before.steps:
+        if self._model.clock.time == run.before.time:
             return False
         last = self._done.last
         if run.single and isinstance(last, Run) and last.single:

@@ -9,6 +9,7 @@ from systems.edit.pull import Hand, Pull
 from systems.run.checkpoint import Checkpoint
 from systems.run.simulation import Simulation
 
+Moment = tuple[int, float | None]  # see Simulation.moment
 MEMORY = 256 * 2**20  # bytes that checkpoints may take; less: going back takes longer
 MOST_CHECKPOINTS = 512
 FIRST_INTERVAL = 128  # steps between checkpoints; doubled whenever there are too many
@@ -18,8 +19,8 @@ RUN_UP = 64  # steps before the one gone back to, where a checkpoint is kept for
 class Timeline:
     """Keeps checkpoints at fixed step counts, so that what is kept does not depend on the frames.
 
-    Between them a run is a function of the step only, but for the hand that pulls a particle; what it did
-    is noted, and done again when a stretch of time is run again.
+    Between them a run is a function of the step only, but for the hand that pulls a particle; what it did, and when, be
+    it within a step, is noted, and done again when a stretch of time is run again.
     """
 
     def __init__(self, simulation: Simulation, pull: Pull, memory: int = MEMORY) -> None:
@@ -31,7 +32,8 @@ class Timeline:
     def clear(self) -> None:
         """Forget all checkpoints, since after an edit earlier steps cannot be run again."""
         self._checkpoints: dict[int, Checkpoint] = {}
-        self._hands: list[tuple[int, Hand | None]] = []  # the step at which the hand changed, and to what
+        # Steps begun and the moment when the hand changed, and to what.
+        self._hands: list[tuple[int, Moment, Hand | None]] = []
         self._interval = FIRST_INTERVAL
         self._went_back = False
 
@@ -55,10 +57,10 @@ class Timeline:
         """Time is about to pass; after going back, later changes of the hand are forgotten."""
         if self._went_back:
             self._went_back = False
-            if any(at >= self._now for at, _ in self._hands):
-                self._hands = [(at, hand) for at, hand in self._hands if at < self._now]
+            if any(at >= self._now for at, *_ in self._hands):
+                self._hands = [entry for entry in self._hands if entry[0] < self._now]
                 self._checkpoints = {at: point for at, point in self._checkpoints.items() if at <= self._now}
-        if not self._checkpoints:
+        if not self._checkpoints and self._simulation.model.clock.departure is None:
             self._keep()
 
     @contextmanager
@@ -73,7 +75,7 @@ class Timeline:
 
     def _watch(self) -> int:
         beyond = self._now % self._interval
-        if beyond == 0 or self._now in self._checkpoints:
+        if beyond == 0 or self._now in self._checkpoints or not self._checkpoints:
             self._keep()
         return self._interval - beyond
 
@@ -94,14 +96,16 @@ class Timeline:
     def hold(self, hand: Hand | None) -> None:
         """Pull by a hand from now on, differently, or (None) let go."""
         self.begin()
+        moment = self._simulation.moment
         anew = self._change_hand(hand)
-        self._hands.append((self._now, hand))
+        self._hands.append((self._now, moment, hand))
         if anew or self._now in self._checkpoints:  # a checkpoint at this step must hold the new hand
             self._checkpoints[self._now] = self._simulation.checkpoint()
 
     def _change_hand(self, hand: Hand | None) -> bool:
         """Let the hand change; True if another step program takes over, which takes longer to bind than many steps."""
         held = self._pull.hand
+        self._simulation.stay()
         if held is not None and hand is not None and held.particle is hand.particle:
             self._pull.move(self._simulation.model, hand.anchor)
             self._simulation.wake()
@@ -118,9 +122,11 @@ class Timeline:
             return False
         start = max(at for at in self._checkpoints if at <= steps)
         self._resume(start)
-        for at, hand in self._hands:
+        for at, moment, hand in self._hands:
+            if start < at <= steps:
+                self._simulation.go_to(*moment)
+                self._simulation.stay()
             if start < at < steps:
-                self._run_to(at)
                 self._change_hand(hand)
         if self._now < steps - RUN_UP:
             self._run_to(steps - RUN_UP)
@@ -132,7 +138,7 @@ class Timeline:
         return self._now == steps
 
     def _resume(self, at: int) -> None:
-        hand = next((hand for when, hand in reversed(self._hands) if when <= at), None)
+        hand = next((hand for when, _, hand in reversed(self._hands) if when <= at), None)
         if hand is not self._pull.hand:
             self._simulation.before_change()  # it runs by another program now
             self._pull.take(hand)

@@ -37,8 +37,8 @@ class CrowdStepper:
         self._neighbours = neighbours
         self._impacts = impacts
 
-    def problem(self, until: float, landing: bool) -> ContactProblem | None:
-        """The contacts and impacts of the next step if the particles are a crowd.
+    def problem(self) -> ContactProblem | None:
+        """The contacts and impacts of the next whole step if the particles are a crowd.
 
         They are none where nodes of a structure are near, since a structure answers to forces in its own way.
         """
@@ -46,7 +46,7 @@ class CrowdStepper:
         if near.loose < CROWD_PARTICLES:
             return None
         pull = np.hypot(*(particles.mobility * particles.constant_force).T)
-        pulled, longest = pull > 0.0, until - clock.time if landing else clock.step_size
+        pulled, longest = pull > 0.0, clock.step_size
         if pulled.any():
             fall = np.sqrt(4.0 * particles.radius[pulled] / pull[pulled])
             longest = min(longest, STEP_SHARE * float(np.median(fall)))
@@ -63,10 +63,12 @@ class CrowdStepper:
         return problem if number >= CROWD_CONTACTS and not near.are_nodes(problem.pairs).any() else None
 
     def step(self, problem: ContactProblem, trial: TrialStep, landing: bool) -> StopReason:
-        """Take a step of the crowd; none where it would end after `trial.until`."""
+        """Take a step of the crowd; none where it would end after `trial.until`, or (landing) its part up to then."""
         clock, near = self.model.clock, self._neighbours
         whole = not landing and problem.h == clock.step_size
         end = None if whole else trial.start + problem.h
+        if end is not None and landing:
+            end = min(end, trial.until)
         if end is not None and end > trial.until:
             return StopReason.DONE
         origin = trial.before.columns["particles.displacement"]

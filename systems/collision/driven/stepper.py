@@ -62,8 +62,8 @@ class DrivenCollisions:
         self._impacts = ImpactResolver(model, impacts, self._neighbours)
         self._crowds = CrowdStepper(model, self._neighbours, self._impacts)
 
-    def advance(self, steps: int, until: float = math.inf, landing: float = math.inf) -> tuple[int, StopReason]:
-        """Take up to `steps` steps that end by `until` (s), as every stepper does; none is cut at `landing`."""
+    def advance(self, steps: int, until: float = math.inf) -> tuple[int, StopReason]:
+        """Take up to `steps` steps that end by `until` (s), as every stepper does."""
         program = self._steps.program
         self._neighbours.look_up()
         clock = self.model.clock
@@ -77,12 +77,12 @@ class DrivenCollisions:
         return clock.steps - first, StopReason.DONE
 
     def land(self, target: float) -> StopReason:
-        """Take the last, short step to a time (s): in parts if there are impacts, or if steps are shorter."""
+        """Take a part of the next step, to a time (s): EVENT where an impact ends that step before."""
         program = self._steps.program
         self._neighbours.look_up()
         self._neighbours.clear_time(0.0)
         clock, reason = self.model.clock, StopReason.DONE
-        while clock.time < target and reason in (StopReason.DONE, StopReason.REVIEW):
+        while clock.time < target and reason in (StopReason.DONE, StopReason.REVIEW, StopReason.REST):
             end = min(target, clock.time + clock.step_size)
             _, reason, program = self._examined_step(program, end, landing=True)
         return reason
@@ -117,7 +117,7 @@ class DrivenCollisions:
         """
         clock, steps = self.model.clock, self.model.clock.steps
         trial = TrialStep(self.model, program, until, self._steps.land)
-        problem = self._crowds.problem(until, landing)
+        problem = self._crowds.problem()
         if problem is not None:
             reason = self._crowd_step(problem, trial, landing)
             return clock.steps - steps, reason, trial.program
@@ -125,9 +125,12 @@ class DrivenCollisions:
         reason, impact = self._step_to_impact(trial, until if landing else None, held)
         if impact is None:
             return clock.steps - steps, reason, program
+        met = impact <= clock.time
         reason, persists = self._resolve(trial, held, reason, impact)
         if persists or (held is not None and persistent_contacts(self.model) is None):
             program = self._steps.rebound()
+        if landing and met and reason is not StopReason.DIVERGED:
+            reason = StopReason.EVENT
         return max(clock.steps - steps, 1), reason, program
 
     def _crowd_step(self, problem: ContactProblem, trial: TrialStep, landing: bool) -> StopReason:

@@ -22,9 +22,10 @@ def passed(dt, displacement, velocity, marks, first, *columns):
     first: this is the first look at the step, which chooses the rods whose least margins are watched.
     """
     low = math.inf
+    between = math.inf
     insert(rods)
     insert(particles)
-    return low
+    return low if low < math.inf else between
 
 
 def note():
@@ -39,9 +40,13 @@ def note():
 
 
 def look():
-    """As a step ends. A rod that has come back is found by the least margin that it had on the way."""
+    """As a step ends. A rod that has come back is found by the least margin that it had on the way.
+
+    One that stays where its branches meet, as a cable between held particles does, hides no other.
+    """
     branch = marks[r, insert(law) + Mark.BRANCH]
     insert(margin_and_slope)
+    still = abs(gap) <= EVENT_FLOOR and abs(marks[r, insert(law) + Mark.MARGIN]) <= EVENT_FLOOR
     before = marks[r, insert(law) + Mark.SLOPE]
     if first and gap > 0.0 and before * dt < -insert(steady) and slope > 0.0:
         start = marks[r, insert(law) + Mark.MARGIN]
@@ -50,7 +55,10 @@ def look():
             marks[r, insert(law) + Mark.WATCHED] = 1.0
     if marks[r, insert(law) + Mark.WATCHED] > 0.0:
         gap = min(gap, -slope * dt)
-    low = min(low, gap)
+    if still:
+        between = min(between, gap)
+    else:
+        low = min(low, gap)
 
 
 def of_rod():

@@ -176,7 +176,7 @@ def test_frames_do_not_change_the_bits_of_a_crowd(monkeypatch: pytest.MonkeyPatc
     sessions = [heap(40, 0.9) for _ in range(2)]
     for session, frames in zip(sessions, (60, 17), strict=True):
         for k in range(1, frames + 1):
-            session.simulation.run_to(0.25 * k / frames, whole_steps=True)
+            session.simulation.run_to(0.25 * k / frames)
     steps = [session.model.clock.steps for session in sessions]
     assert len(times) > 30
     assert steps[0] == steps[1]

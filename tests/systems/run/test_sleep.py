@@ -105,7 +105,8 @@ def test_what_is_awake_keeps_its_bits_and_everything_its_digits() -> None:
     )
 
 
-def test_errors_are_controlled_over_those_that_are_awake() -> None:
+def test_errors_are_controlled_over_those_that_are_awake(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(policy, "SLEEP_INTERVAL", 8)  # steps are long
     on, off = (
         Session.open(archipelago(integrator="dop853", time_step=None, sleeping=s)) for s in (True, False)
     )
@@ -131,7 +132,6 @@ def test_what_sleeps_does_not_limit_controlled_steps() -> None:
         chosen = {"integrator": "dop853", "sleeping": sleeping, "collisions": False}
         gravity = {"acceleration": [0, -9.81]}
         session = Session.open(together(stiff, swings, environment=gravity, settings=chosen))
-        session.simulation.step_size.watched = False
         session.run(time=0.5)
         runs.append(session)
     on, off = runs
@@ -145,7 +145,6 @@ def test_what_sleeps_does_not_limit_controlled_steps() -> None:
 
 def test_an_impact_limits_controlled_steps_at_once_by_what_it_wakes() -> None:
     session = struck(sleeping=True, integrator="dop853", time_step=None)
-    session.simulation.step_size.watched = False
     session.run(time=0.39)
     assert asleep(session) == {"struck", "beside"}
     assert session.model.clock.step_limit == 0.0  # a falling disc has none
