@@ -41,8 +41,14 @@ class NearPairs:
             self.begin()
             self._make_room(len(pairs_within(model, within)))
 
+    @property
+    def is_far(self) -> bool:
+        """True if the state is one that no step has led to, in which the order along x may be another."""
+        travelled = np.abs(self._model.particles.displacement - self.arrays["pair_listed"])
+        return bool(travelled.max(initial=0.0) > self.arrays["pair_reach"][1])
+
     def begin(self) -> None:
-        """Have the list made anew, in a state that no step has led to."""
+        """Have the list made anew, from the order of the particles along x in the present state."""
         x = self._model.particles.position[:, 0] + self._model.particles.displacement[:, 0]
         self.arrays["pair_order"][:] = np.argsort(x)
         self.arrays["pair_count"][0] = -1

@@ -292,7 +292,7 @@ class Program:
             place = self._writer.columns.index("pair_other")
             self._columns[place] = near.arrays["pair_other"]
             self._bind_arguments()
-        elif not self._is_fresh:
+        elif not self._is_fresh and near.is_far:
             near.begin()
 
     @property
