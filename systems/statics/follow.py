@@ -27,7 +27,9 @@ CONVERGED = 1e-11  # of the largest force: a smaller residual that falls no more
 EXACT_EVENTS = 500  # rods up to which every yield ends an increment; larger: slower, answers as exact
 HALF = 0.5  # share of an increment to try after it failed
 RESOLUTION = 1 / 8  # of the change of load, to which yields are told apart in larger structures
-MOST_SHARES = 20  # trials after which an increment is halved each time, where round-off hides the end of a piece
+MOST_SHARES = (
+    20  # trials after which an increment is halved each time, where round-off hides the end of a piece
+)
 LEAST_SHARE = 0.01  # of an increment to try next where a rod leaves its piece sooner
 REVERSAL = 1e-5  # increment to which the end of yielding is located; the error goes with its square
 SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
