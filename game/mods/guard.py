@@ -81,6 +81,8 @@ def guarded_system(mod: Mod, system: System) -> System:
     if isinstance(system, StepSystem):
         _guard_question(mod, system, "arrays", Mapping[str, NDArray[Any]], otherwise={})
         _guard_question(mod, system, "leaves_flight_exact", bool, otherwise=False)
+        if isinstance(system, Law):
+            _guard_question(mod, system, "cutoff", float, otherwise=math.inf)
     else:
         vars(system)["process"] = lambda frame: _change_whole(
             mod, system, what, frame.session.model, lambda: _in_frame(process, frame)

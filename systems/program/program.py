@@ -322,7 +322,8 @@ class Program:
     def conserved_energy(self) -> float:
         """The energy that the integrator conserves, less the work done so far (J), in the state last observed."""
         conserved = self.module.conserved.py_func  # by itself it would have to be compiled in every process
-        return float(conserved(self.measures, self._account, float(self._control[1]), self.module.SHADOW))
+        with np.errstate(over="ignore", invalid="ignore"):  # of a state that is about to be given up
+            return float(conserved(self.measures, self._account, float(self._control[1]), self.module.SHADOW))
 
 
 def _by_table_and_role(model: Model, written: Iterable[str]) -> list[tuple[str, list[str], Role]]:

@@ -306,7 +306,10 @@ class Simulation:
 
     def _review(self) -> None:
         """After a fixed number of steps: keep a safe state, see whether all stands still, adapt the step size."""
-        moves, clock = self._recovery.keep(self.present()), self.model.clock
+        clock, safe = self.model.clock, self._recovery.safe
+        assert safe is not None
+        since, before = float(safe.columns["clock.time"][0]), int(safe.columns["clock.steps"][0])
+        moves = self._recovery.keep(self.present())
         if not moves and self.program.changes_end <= clock.time:
             energy = self.energy
             lost, damped = energy.imbalance, energy.dissipated_damping
@@ -315,7 +318,7 @@ class Simulation:
                 return
             if not self.warning:
                 self.note = STUCK
-        self.step_size.review()
+        self.step_size.review((clock.time - since) / max(clock.steps - before, 1))
 
     def _recover(self, reason: StopReason) -> None:
         """Return to the last good state and go on without a mod or with shorter steps, or give up."""

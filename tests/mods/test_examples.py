@@ -8,7 +8,9 @@ from typing import Any
 import pytest
 
 from game import Session, check_system, mods
+from game.commands.reports.report import Analysis
 from game.scripts.playing import perform
+from game.sweeps import sweep
 from systems.render.picture import compose
 from systems.render.theme import load_theme
 from tests.mods.conftest import Write
@@ -213,3 +215,14 @@ def test_the_message_of_a_mods_scene_is_seen_and_clicks_are_its_own(write_mod: W
     texts = compose(session.model, session.view, load_theme("light")).texts
     assert "1 hits" in texts
     assert "Aim" in texts
+
+
+def test_sweeps_know_of_forces_between_pairs(unloaded: None) -> None:
+    mods.load([FOLDER / "magnets"])
+    poles, measure = [0.5, 1.0], "particles.A.velocity"
+    found = sweep(magnets(), {"particles.B.magnets_pole": poles}, [measure], Analysis(times=(0.05,)))
+    for row, pole in enumerate(poles):
+        session = Session.open(magnets())
+        session.particles["B"].magnets_pole = pole  # type: ignore[attr-defined]
+        session.run(time=0.05)
+        assert found[f"{measure}.x"][row] == session.particles["A"].velocity[0] != 0.0

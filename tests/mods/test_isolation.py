@@ -457,7 +457,7 @@ def plugin(app):
     ],
 )
 def test_a_law_of_pairs_that_fails_is_named(session: Any, force: str, cutoff: str, said: str) -> None:
-    made, before = session(PAIRS.format(force=force, cutoff=cutoff))
+    made, _ = session(PAIRS.format(force=force, cutoff=cutoff))
     made.press("space")
     made.frame(0.01)
     made.press("space")
