@@ -259,7 +259,7 @@ class Field(Generic[T]):
             raise FieldError(f"{where}: {self.title} is {value!r}; it must be a text.")
         if is_broken(value):
             raise FieldError(
-                f"{where}: {self.title} is {ascii(value)}; half of a character cannot be kept in a file."
+                f"{where}: {self.title} is {value!a}; half of a character cannot be kept in a file."
             )
         return str(value)  # numpy's texts are of another type
 

@@ -166,7 +166,7 @@ def _text(document: Mapping[str, Any], key: str) -> str:
     if not isinstance(text, str):
         _fail(f"$.{key}", f"it is {text!r}; it must be a text.")
     if is_broken(text):
-        _fail(f"$.{key}", f"it is {ascii(text)}; half of a character cannot be kept in a file.")
+        _fail(f"$.{key}", f"it is {text!a}; half of a character cannot be kept in a file.")
     return text
 
 
@@ -418,7 +418,7 @@ def _copied(value: Any, where: str) -> Any:
     if isinstance(value, list | tuple):
         return [_copied(item, where) for item in value]
     if isinstance(value, str) and is_broken(value):
-        _fail(where, f"{ascii(value)} holds half of a character, which cannot be kept in a file.")
+        _fail(where, f"{value!a} holds half of a character, which cannot be kept in a file.")
     if value is None or isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)):
         return value
     _fail(where, f"{value!r} cannot be kept in a model file.")

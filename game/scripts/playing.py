@@ -20,7 +20,6 @@ from game.scripts.expectation import check
 from game.scripts.script import HEADER, Script, ScriptError
 from game.session import Session
 
-
 LOG = logging.getLogger("pinjoint.recording")
 
 
