@@ -37,8 +37,9 @@ def _too_far(model: Model) -> str:
     far = np.maximum(np.abs(others.start), np.abs(others.start + others.span)).max(axis=1)
     least = UNKNOWN_SHARE * float(model.particles.radius.max())
     for row in np.flatnonzero(np.spacing(far) > least)[:1].tolist():
+        name = others.names[row]
         return (
-            f"{others.names[row][:1].upper()}{others.names[row][1:]}: one of its ends is {far[row]:g} m away, where places are known to"
+            f"{name[:1].upper()}{name[1:]}: one of its ends is {far[row]:g} m away, where places are known to"
             f" {np.spacing(far[row]):.1g} m only, too coarse for the radii of the particles; place it nearer."
         )
     return ""

@@ -285,11 +285,11 @@ class Session(Context):
         if key == "escape" and self.fault and self.scene not in FORMS:
             self.faults_seen = len(FAULTS)
         elif name is not None:
+            self.notice = ""
             if self.on_press is not None:
                 self.on_press(key, pixel)
             if self.time_passes:
                 self.get_ready()
-            self.notice = ""
             self.act(name, pixel)
 
     def _action_at(self, key: str, pixel: Vector) -> str | None:

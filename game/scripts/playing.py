@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import logging
 import math
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, TextIO
 
-from components.field import Vector
+from components.field import Vector, is_broken
 from components.wording import cut, quoted
 from game.documents.document import ModelError
 from game.editor.context import FAULTS
@@ -18,6 +20,8 @@ from game.paths import apply_override
 from game.scripts.expectation import check
 from game.scripts.script import HEADER, Script, ScriptError
 from game.session import Session
+
+LOG = logging.getLogger("pinjoint.recording")
 
 
 @dataclass(frozen=True)
@@ -189,15 +193,15 @@ _VERBS: dict[str, Callable[[Session, Any], Any]] = {
 
 
 class Recorder:
-    """Writes what a person does in a window as lines of a script."""
+    """Writes what a person does in a window as lines of a script; where that becomes impossible, it ends and says so."""
 
     def __init__(self, session: Session, file: TextIO, model: Any) -> None:
         self._file = file
         self._session = session
+        session.on_press, session.on_resize = self._pressed, self._resized
         self._write({**HEADER, "model": model, "mods": _loaded_mods()})
         self._resized()
         self._write({"action": "fit"})
-        session.on_press, session.on_resize = self._pressed, self._resized
 
     def _resized(self) -> None:
         view = self._session.view
@@ -220,5 +224,16 @@ class Recorder:
         self._write(entry)
 
     def _write(self, entry: Mapping[str, Any]) -> None:
-        self._file.write(json.dumps(entry, ensure_ascii=False) + "\n")
-        self._file.flush()
+        if self._file.closed:
+            return
+        line = json.dumps(entry, ensure_ascii=False)
+        try:
+            self._file.write((json.dumps(entry) if is_broken(line) else line) + "\n")
+            self._file.flush()
+        except OSError as error:
+            with suppress(OSError):
+                self._file.close()  # else its end would try again
+            self._session.on_press = self._session.on_resize = None
+            said = f"The recording ends here: {self._file.name} cannot be written: {error.strerror}."
+            self._session.notice = said
+            LOG.warning(said)

@@ -71,6 +71,7 @@ class Monkey:
         os.environ[library.DATA_VARIABLE] = str(folder / f"data-{seed}")
         os.environ[CONFIG_VARIABLE] = str(folder / f"config-{seed}")
         os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
+        os.environ["SDL_NO_SIGNAL_HANDLERS"] = "1"  # so that signals end it: nobody runs App.run here
         name = self.random.choice(models.bundled())
         self.app = App(models.load(name), ModelFile(None, name), Autosave(interval=0.5))
         self.app.window.minimum_size = (1, 1)

@@ -220,3 +220,14 @@ def _bits(session: Session) -> dict[str, bytes]:
         for table in session.model.tables.values()
         for field in table.fields_in(Role.DOCUMENT, Role.STATE)
     }
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
+def test_a_recording_that_cannot_be_written_ends_and_says_so() -> None:
+    """A full disk ended the window."""
+    session = Session.open("isostatic")
+    with open("/dev/full", "w", encoding="utf-8") as file:
+        Recorder(session, file, "isostatic")
+        assert "recording ends here: /dev/full cannot be written: No space left" in session.notice
+        session.press("p")
+        session.resize(300, 200)
