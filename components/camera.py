@@ -64,6 +64,7 @@ class Camera:
         """The pixel in the middle of the viewport."""
         return self.viewport.middle
 
+    @np.errstate(over="ignore", invalid="ignore")
     def to_pixels(self, points: ArrayLike) -> NDArray[np.float64]:
         """Model points (m), shape (..., 2), as pixels."""
         points = np.asarray(points, dtype=np.float64)

@@ -57,6 +57,9 @@ class Clock(Handle):
     guard_energy: Field[float] = state(
         "J", doc="What the integrator conserves, less the work, when the present step size began."
     )
+    largest_imbalance: Field[float] = state(
+        "J", doc="Energy that the steps lost (positive) or created at most, in the run so far."
+    )
     steps: Field[int] = state(dtype=int, doc="Steps taken, one that is under way included.")
     origin_steps: Field[int] = state(dtype=int, doc="Steps at the time origin.")
     collisions: Field[int] = state(dtype=int, doc="Impacts so far.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Collection, Mapping, Set
 from dataclasses import KW_ONLY, dataclass, field
 from enum import Enum
@@ -12,11 +13,14 @@ from typing import Any, Generic, Protocol, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from components.wording import quoted
+
 T = TypeVar("T")
 Vector = tuple[float, float]
 Column = NDArray[Any]
 
 CM = ("cm", 100.0)  # as lengths are shown
+LARGEST, SMALLEST = 1e30, 1e-30  # sizes of numbers to compute with, in inside units; SMALLEST of those above 0
 _FEW = 8  # rows up to which checking values one by one is faster than as an array
 _LARGEST_REFERENCE = 2**32 - 1
 # By a Field's dtype: the numpy type of its column, and its default.
@@ -28,6 +32,7 @@ _STORAGE: dict[Any, tuple[Any, Any]] = {
     object: (object, None),
     "reference": (np.uint32, 0),
 }
+_HALVES = re.compile("[\ud800-\udfff]")
 # What numbers and flags given for a whole column may be: numpy's kinds, or the types in a list.
 _PLAIN: dict[Any, tuple[str, set[type]]] = {
     float: ("fiu", {float, int, np.float64, np.int64}),
@@ -35,6 +40,11 @@ _PLAIN: dict[Any, tuple[str, set[type]]] = {
     bool: ("b", {bool, np.bool_}),
     "reference": ("iu", {int, np.int64, np.uint32}),
 }
+
+
+def is_broken(text: str) -> bool:
+    """True if a text holds half of a character, a surrogate, which no file and no clipboard can hold."""
+    return _HALVES.search(text) is not None
 
 
 class Role(Enum):
@@ -77,7 +87,8 @@ class Field(Generic[T]):
     dtype: float, bool, int, str, "reference" (row of another table, stored as uint32) or object.
     shape: () or (2,).
     default: what an element has that is given none; left out, 0, False, "" or None, as suits the dtype.
-    minimum, maximum: inclusive limits; `above`: exclusive lower limit.
+    minimum, maximum: inclusive limits; `above`: exclusive lower limit. Numbers that a person makes have limits
+        anyway, so that all can be computed with: LARGEST, and SMALLEST where they are above 0.
     nullable: None is allowed and stored as NaN; `absent` is what a person calls it.
     references: the table that a reference points into.
     overrides: the derived Field of the same handle that this one replaces when it is not None.
@@ -119,6 +130,8 @@ class Field(Generic[T]):
             )
         if self.dtype == "reference":
             self.minimum, self.maximum = 0, _LARGEST_REFERENCE
+        if self.dtype is float and self.role is Role.DOCUMENT:
+            self._limit()
         if not self.shown[1]:
             self.shown = self.unit, 1.0
         self.derived = self.role is Role.DERIVED  # asked so often that comparing roles would be felt
@@ -128,6 +141,13 @@ class Field(Generic[T]):
         self.storage: np.dtype[Any] = np.dtype(storage)
         self._has_objects = self.storage.hasobject
         self.plain = not (self.shape or self.nullable or self._has_objects)
+
+    def _limit(self) -> None:
+        """Give the limits that every number has to those that are not stated."""
+        if self.maximum is None:
+            self.maximum = LARGEST
+        if self.minimum is None:
+            self.minimum = SMALLEST if self.above == 0.0 else -LARGEST if self.above is None else None
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
@@ -211,7 +231,7 @@ class Field(Generic[T]):
     def _check_number(self, value: Any, where: str, title: str) -> Any:
         if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
             what = "the row of an element, as its .row tells" if self.dtype == "reference" else "a number"
-            raise FieldError(f"{where}: {title} is {value!r}; it must be {what}.")
+            raise FieldError(f"{where}: {title} is {quoted(value)}; it must be {what}.")
         try:
             number: Any = float(value)
         except OverflowError:  # 10**400
@@ -241,20 +261,28 @@ class Field(Generic[T]):
     def _check_flags(self, value: Any, where: str) -> Any:
         values = self._components(value, where, "true or false") if self.shape else [value]
         if not all(isinstance(v, bool | np.bool_) for v in values):
-            raise FieldError(f"{where}: {self.title} is {value!r}; it must be true or false.")
+            raise FieldError(f"{where}: {self.title} is {quoted(value)}; it must be true or false.")
         flags = tuple(bool(v) for v in values)
         return flags if self.shape else flags[0]
 
     def _check_text(self, value: Any, where: str) -> Any:
         if self.choices is not None and not (isinstance(value, str) and value in self.choices):
-            raise FieldError(f"{where}: {self.title} is {value!r}; choose one of {', '.join(self.choices)}.")
+            raise FieldError(
+                f"{where}: {self.title} is {quoted(value)}; choose one of {', '.join(self.choices)}."
+            )
         if not isinstance(value, str):
-            raise FieldError(f"{where}: {self.title} is {value!r}; it must be a text.")
+            raise FieldError(f"{where}: {self.title} is {quoted(value)}; it must be a text.")
+        if is_broken(value):
+            raise FieldError(
+                f"{where}: {self.title} is {value!a}; half of a character cannot be kept in a file."
+            )
         return str(value)  # numpy's texts are of another type
 
     def _components(self, value: Any, where: str, of_what: str) -> list[Any]:
         if isinstance(value, str | bytes | Mapping | Set) or not np.iterable(value):
-            raise FieldError(f"{where}: {self.title} is {value!r}; it must be a pair of {of_what}, [x, y].")
+            raise FieldError(
+                f"{where}: {self.title} is {quoted(value)}; it must be a pair of {of_what}, [x, y]."
+            )
         values = list(value)
         if len(values) != self.shape[0]:
             raise FieldError(f"{where}: {self.title} has {len(values)} entries; it must have two, [x, y].")
@@ -283,7 +311,7 @@ class Field(Generic[T]):
                 f"{self.title}: {len(items)} values for {rows} elements; give each one, or all the same."
             )
         any_text = self.dtype is str and self.choices is None and self.checker is None
-        if any_text and set(map(type, items)) == {str}:
+        if any_text and set(map(type, items)) == {str} and not is_broken("".join(items)):
             column[:] = items
             return column
         for row, item in enumerate(items):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -11,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from components.field import Field, FieldError, Vector
+from components.field import LARGEST, Field, FieldError, Vector
 from components.handle import Handle
 from components.particle import Particle
+from components.wording import cut, quoted
 from components.world import World
 
 History = Mapping[str, Any]
@@ -55,16 +55,18 @@ def register_history(kind: HistoryKind) -> None:
 def check_history(value: Any, where: str) -> History:
     """A history with all its parameters, or FieldError."""
     if not isinstance(value, Mapping) or not isinstance(value.get("kind"), str):
-        raise FieldError(f'{where}: history is {value!r}; it must be like {{"kind": "ramp", "duration": 0.5}}.')
+        raise FieldError(
+            f'{where}: history is {quoted(value)}; it must be like {{"kind": "ramp", "duration": 0.5}}.'
+        )
     kind = HISTORIES.get(value["kind"])
     if kind is None:
         raise FieldError(
-            f"{where}: history kind is '{value['kind']}'; choose one of {', '.join(sorted(HISTORIES))}."
+            f"{where}: history kind is '{cut(value['kind'])}'; choose one of {', '.join(sorted(HISTORIES))}."
         )
     unknown = sorted(map(str, set(value) - {"kind", *kind.parameters}))
     if unknown:
         allowed = ", ".join(kind.parameters) or "no parameters"
-        raise FieldError(f"{where}: a {kind.name} history has no '{unknown[0]}'; it takes {allowed}.")
+        raise FieldError(f"{where}: a {kind.name} history has no '{cut(unknown[0])}'; it takes {allowed}.")
     full = {"kind": kind.name} | {
         name: _check_parameter(value.get(name, default), default, name, where)
         for name, default in kind.parameters.items()
@@ -78,11 +80,13 @@ def _check_parameter(value: Any, default: Any, name: str, where: str) -> Any:
         if isinstance(value, np.ndarray):
             value = value.tolist()
         if not isinstance(value, list | tuple):
-            raise FieldError(f"{where}: history {name} is {value!r}; it must be a list of numbers.")
+            raise FieldError(f"{where}: history {name} is {quoted(value)}; it must be a list of numbers.")
         return tuple(_check_parameter(item, 0.0, name, where) for item in value)
     is_number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-    if not is_number or not abs(value) <= sys.float_info.max:
-        raise FieldError(f"{where}: history {name} is {value!r}; it must be a finite number.")
+    if not is_number or not abs(value) <= LARGEST:
+        raise FieldError(
+            f"{where}: history {name} is {quoted(value)}; it must be a number of at most {LARGEST:g} in size."
+        )
     return float(value)
 
 

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from components.field import Column, Field, Role
+from components.field import LARGEST, SMALLEST, Column, Field, Role
 from components.model import Model
+from components.obstacles import obstacles
 
-LARGEST, SMALLEST = 1e30, 1e-30  # in inside units; SMALLEST holds for Fields that must be above 0
+UNKNOWN_SHARE = 1e-3  # of a radius: how well places must be known for impacts
 
 _TABLES = ("particles", "rods", "loads", "environment", "settings")
 _FOLLOWING = ("rest_length", "mass")  # derived, from positions that may be too near or too far
@@ -25,6 +26,21 @@ def incomputable(model: Model) -> str:
                 column = table.column(field.name)
                 for row, *axis in np.argwhere(is_extreme(field, column))[:1].tolist():
                     return _sentence(model.describe(table[row]), field, float(column[(row, *axis)]))
+    return _too_far(model)
+
+
+def _too_far(model: Model) -> str:
+    """The sentence that names an obstacle so far away that no particle can be told to touch it; "" if there is none."""
+    others = obstacles(model)
+    if not (model.settings.collisions and len(others) and model.particles.count):
+        return ""
+    far = np.maximum(np.abs(others.start), np.abs(others.start + others.span)).max(axis=1)
+    least = UNKNOWN_SHARE * float(model.particles.radius.max())
+    for row in np.flatnonzero(np.spacing(far) > least)[:1].tolist():
+        return (
+            f"{others.names[row]}: one of its ends is {far[row]:g} m away, where places are known to"
+            f" {np.spacing(far[row]):.1g} m only, too coarse for the radii of the particles; place it nearer."
+        )
     return ""
 
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 import difflib
 from collections.abc import Collection
 
+from components.wording import LONGEST, cut
+
 _FEW = 30  # names; so few are listed
 
 
 def nearest(name: str, names: Collection[str], cutoff: float = 0.6) -> str | None:
     """The one of some names that comes nearest, whatever its capitals; None if none comes near."""
     folded = {known.casefold(): known for known in names}
-    found = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=cutoff)
+    found = difflib.get_close_matches(name[:LONGEST].casefold(), folded, n=1, cutoff=cutoff)
     return folded[found[0]] if found else None
 
 
@@ -19,12 +21,12 @@ def remedy(name: str, names: Collection[str]) -> str:
     """The end of a sentence about a name that is not among some: the nearest name, or all of them."""
     few = len(names) <= _FEW
     if near := nearest(name, names, cutoff=0.6 if few else 0.4):
-        return f"did you mean '{near}'?"
+        return f"did you mean '{cut(near)}'?"
     if not few:
         return f"there are {len(names)} others."
-    return f"choose one of {', '.join(names)}." if names else "there are none."
+    return f"choose one of {', '.join(map(cut, names))}." if names else "there are none."
 
 
 def missing(group: str, name: str, names: Collection[str]) -> str:
     """The sentence that says that a name is not in a group, and which one comes nearest."""
-    return f"There is no '{name}' among the {group}; {remedy(name, names)}"
+    return f"There is no '{cut(name)}' among the {group}; {remedy(name, names)}"

@@ -20,6 +20,7 @@ from components.handle import Handle, set_entity
 from components.suggestions import missing
 from components.table import Table, flags, grown
 from components.tags import Rare
+from components.wording import cut
 
 H = TypeVar("H", bound=Handle)
 Layout = tuple[tuple[str, tuple[str, ...]], ...]
@@ -215,7 +216,7 @@ class World:
             if not name.strip():
                 raise FieldError(f"The name of a {noun} is empty; type at least one character.")
             if name in given or (name in table and name not in free):
-                raise FieldError(f"There is a {noun} '{name}' already; choose another name.")
+                raise FieldError(f"There is a {noun} '{cut(name)}' already; choose another name.")
             given.add(name)
 
     def describe(self, handle: Handle) -> str:
@@ -575,7 +576,8 @@ class World:
 
 
 def _called(noun: str, name: Any) -> str:
-    return str(name) if str(name).startswith(noun + " ") else f"{noun} {name}"
+    name = cut(str(name))
+    return name if name.startswith(noun + " ") else f"{noun} {name}"
 
 
 def _delete_context(context: str) -> None:

@@ -1,13 +1,23 @@
 """The program: `pinjoint`, or `python -m game`."""
 
+import sys
+import warnings
+
 from game.interrupts import ended_with, quietly_interrupted
 
 
 def main() -> int:
     """Run the command line; returns the exit status."""
+    if not sys.warnoptions:  # they are for those who write programs; -W shows them
+        warnings.simplefilter("ignore")
     with quietly_interrupted():
         from game.commands import command_line
-    return ended_with(command_line.main())
+        from game.commands.progress import told
+        from game.streams import prepare_streams
+    prepare_streams()
+    with told():
+        status = command_line.main()
+    return ended_with(status)
 
 
 if __name__ == "__main__":

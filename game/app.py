@@ -326,12 +326,6 @@ def render_png(session: Session, path: str, size: tuple[int, int], theme: str = 
     _save(surface, Path(path))
 
 
-def draw_unseen(session: Session, size: tuple[int, int]) -> None:
-    """Draw all that a session shows, as in a window of that size in pixels, to find what cannot be drawn."""
-    session.update_view()
-    PygameRender(pygame.Surface(size, depth=32), load_raster).process(Frame(session, 0.0))
-
-
 def picture(
     session: Session, size: tuple[int, int], theme: str, around: Points, placed: Placed | None = None
 ) -> Colours:

@@ -29,6 +29,7 @@ from systems.schedule import Schedule, ScheduleError
 STEPS = 40  # that step systems are run for
 FRAMES = 3  # that frame systems are run for
 FRAME = 1.0 / 60.0  # s
+NEARBY = 1e-5  # of a distance, over which the slope of a potential is taken
 
 # Supports, springs that yield, dampers, drag, a load that varies, and a free body.
 EVERYTHING: Mapping[str, Any] = {
@@ -188,8 +189,37 @@ def _check_steps(system: Callable[[], System], source: Source) -> float:
     _check_alike(made.name, after, again, "run twice, it gives different")
     turned = columns_of(_run(system(), source, backwards=True))
     _check_alike(made.name, after, turned, "registered in another order, it gives different")
+    if isinstance(made, Law) and made.each == "pairs":
+        _check_pairs(made, first)
     has_kernel = isinstance(made, Law | Commit)
     return 1e9 * KernelRows(first).seconds_per_call(bind(made, first)) if has_kernel else 0.0
+
+
+def _check_pairs(law: Law, model: Model) -> None:
+    """Check that a law of pairs gives opposite forces, and those of its potential."""
+    bound = bind(law, model)
+    force = KernelRows(model).of(bound)
+    if not np.allclose(force, -KernelRows(model, turned=True).of(bound), rtol=1e-9, atol=0.0):
+        raise SystemCheckError(
+            f"{law.name}: the forces on two particles are not opposite if the other one comes first; which of them does"
+            " must not matter."
+        )
+    if not law.potential:
+        return
+    energy, apart = bind(law, model, "potential"), np.hypot(*KernelRows(model).apart(bound).T)
+    for axis in range(2):
+        ahead, behind = (
+            KernelRows(model, moved=(side * NEARBY * (1 - axis), side * NEARBY * axis)).of(energy)[:, 0]
+            for side in (1.0, -1.0)
+        )
+        slope = (ahead - behind) / (2.0 * NEARBY * apart)
+        wrong = np.abs(slope - force[:, axis]) > 1e-4 * (np.hypot(*force.T) + np.abs(ahead) / apart)
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            raise SystemCheckError(
+                f"{law.name}: at a distance of {apart[row]:g} m its potential has the slope {slope[row]:g} kN, but the"
+                f" force on the first particle is {force[row, axis]:g} kN along the same axis."
+            )
 
 
 def _run(system: System, source: Source, *, backwards: bool) -> Model:

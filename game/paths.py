@@ -20,6 +20,7 @@ from components.handle import Handle
 from components.model import Model
 from components.suggestions import missing, remedy
 from components.table import Table
+from components.wording import cut
 from systems.run.energy import Energy
 
 EVERY = "*"  # in place of a name: all elements of the table
@@ -100,7 +101,7 @@ def locate(model: Model, text: str, keys: Keys) -> tuple[Target, str]:
     field = known[_known(key, known, "key")]
     if axis and (not field.shape or axis not in ("x", "y")):
         parts = f"{key}.x or {key}.y" if field.shape else f"{key} only"
-        raise PathError(f"{field.title} has no part '{axis}'; write {parts}.")
+        raise PathError(f"{field.title} has no part '{cut(axis)}'; write {parts}.")
     return Target(table, handles, element, field, key, axis), rest[len(path) :]
 
 
@@ -109,7 +110,7 @@ def locate_one(model: Model, path: str, keys: Keys = readable) -> Target:
     with _quoted(path):
         target, rest = locate(model, path, keys)
         if rest:
-            raise PathError(f"'{rest}' follows the path; leave it out.")
+            raise PathError(f"'{cut(rest)}' follows the path; leave it out.")
         if target.element == EVERY:
             raise PathError(f"it names every {target.table.kind.noun}; write a name in place of {EVERY}.")
     return target
@@ -126,12 +127,12 @@ def _quoted(text: str) -> Iterator[None]:
     try:
         yield
     except (PathError, FieldError) as error:
-        raise PathError(f"{text}: {error}") from None
+        raise PathError(f"{cut(text)}: {error}") from None
 
 
 def _known(name: str, names: Collection[str], what: str) -> str:
     if name not in names:
-        raise PathError(f"there is no {what} '{name}'; {remedy(name, names)}")
+        raise PathError(f"there is no {what} '{cut(name)}'; {remedy(name, names)}")
     return name
 
 
@@ -185,6 +186,8 @@ def apply_override(model: Model, override: str) -> None:
         target, rest = locate(model, override, settable)
         if not rest.startswith("="):
             raise PathError(f"it has no value; {OVERRIDE_FORM}.")
+        if not target.handles:
+            raise PathError(f"the model has no {target.table.name}; add some, or leave this out.")
         model.assign(target.handles, target.field.name, _values(target, rest[1:].strip()))
 
 
@@ -219,7 +222,7 @@ def _scalar(field: Field[Any], text: str) -> Any:
         return _FLAGS.get(text.lower(), text)
     try:
         return msgspec.json.decode(text) if field.dtype is object else field.dtype(text)
-    except (ValueError, UnicodeEncodeError):
+    except (ValueError, RecursionError):
         return text
 
 
@@ -265,7 +268,7 @@ def quantity(model: Model, path: str) -> Quantity:
             name = energy_named(rest)
         return Quantity(path, name.replace("_", " "), "J", lambda session: session.energy.as_dict()[name])
     if table not in model.tables or not rest:
-        raise PathError(f"There is no quantity '{path}'; {QUANTITY_FORM}.")
+        raise PathError(f"There is no quantity '{cut(path)}'; {QUANTITY_FORM}.")
     target = locate_one(model, path, _numbers)
     if target.field.shape and not target.axis:
         raise PathError(f"{path}: write {target.key}.x or {target.key}.y.")

@@ -20,6 +20,7 @@ from components.rod import Rod
 from components.suggestions import missing
 from components.table import Table
 from components.view import View
+from components.wording import quoted
 from game.documents import models
 from game.documents.open_documents import ModelFile, Source, file_of
 from game.editor.actions import ACTIONS, WHILE_DRAWING
@@ -29,7 +30,7 @@ from game.editor.scenes import all_scenes, scene_systems
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
 from game.mods import load_all
-from game.mods.heeding import heeding_mods
+from game.mods.heeding import blamed_on_mod, heeding_mods
 from game.scripts.expectation import expect
 from systems.base import EVENT_INTERVAL, Phase, StopReason, System
 from systems.catalogue import SYSTEMS, step_systems
@@ -46,6 +47,8 @@ if TYPE_CHECKING:  # they import scipy
 
 CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
 ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
+FARTHEST = 1e9  # pixels from the corner of the window to which a click may be
+LARGEST_SIDE, LARGEST_RATIO = 65_536, 64.0  # of a window, in pixels, and in pixels per point
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
 
 
@@ -137,15 +140,7 @@ class Session(Context):
         The fault of a mod, the question or refusal of the scene, why the run stopped, a warning or a notice, then the
         remarks on a run at rest.
         """
-        simulation = self.simulation
-        said = (
-            self.fault
-            or self.scenes.active.message
-            or (simulation.message if simulation.armed else "")  # else it is about what was before an edit
-            or simulation.step_size.warning
-            or simulation.note
-            or self.notice
-        )
+        said = self.fault or self.scenes.active.message or self.simulation.said or self.notice
         return " ".join([*filter(None, [said]), *(remark.message for remark in self.remarks)])
 
     # --- time --------------------------------------------------------------------------------------
@@ -285,7 +280,7 @@ class Session(Context):
         if key.startswith(TEXT):
             self.type(key.removeprefix(TEXT))
             return
-        pixel = pixel if pixel is not None else self.pointer
+        pixel = self.pointer if pixel is None else _near(pixel)
         name = self._action_at(key, pixel)
         if key == "escape" and self.fault and self.scene not in FORMS:
             self.faults_seen = len(FAULTS)
@@ -311,7 +306,14 @@ class Session(Context):
         return next((tool.action for tool in hit if tool.enabled and key in CLICKS), None)
 
     def resize(self, width: int, height: int, pixel_ratio: float = 1.0) -> None:
-        """Adapt to a new size of the window, in pixels, with `pixel_ratio` pixels per point."""
+        """Adapt to a new size of the window, in pixels, with `pixel_ratio` pixels per point. Raises ValueError."""
+        if not (
+            1 <= width <= LARGEST_SIDE and 1 <= height <= LARGEST_SIDE and 0.0 < pixel_ratio <= LARGEST_RATIO
+        ):
+            raise ValueError(
+                f"The size is {width:g} × {height:g} pixels, {pixel_ratio:g} to a point; give sides from 1 to"
+                f" {LARGEST_SIDE}, and at most {LARGEST_RATIO:g} to a point."
+            )
         self.view.camera.viewport, self.view.pixel_ratio = Viewport(0, 0, width, height), pixel_ratio
         if self.view.fitted:
             self.view.fit(self.model)
@@ -347,7 +349,7 @@ class Session(Context):
         if not (math.isfinite(x) and math.isfinite(y)):
             raise ValueError(f"The point is ({x}, {y}); give finite coordinates, in m.")
         self.scenes.active.finish()
-        x, y = self.focus[1].camera.to_pixels((x, y)).tolist()
+        x, y = _near(self.focus[1].camera.to_pixels((x, y)).tolist())
         self.focus[1].pointer = x, y
         return x, y
 
@@ -378,8 +380,12 @@ class Session(Context):
     def frame(self, elapsed: float) -> Frame:
         """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
         frame = Frame(self, _forward("elapsed", elapsed))
-        for phase in Phase:
-            self.schedule.run(phase, frame)
+        try:
+            for phase in Phase:
+                self.schedule.run(phase, frame)
+        except Exception as error:
+            if not blamed_on_mod(error):
+                raise
         return frame
 
     @property
@@ -398,12 +404,20 @@ class Session(Context):
         self.offer_tools()
 
 
+def _near(pixel: Sequence[float]) -> Vector:
+    """A pixel at a distance from the window that computes. Raises ValueError."""
+    x, y = pixel
+    if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):
+        raise ValueError(f"The pixel ({x:g}, {y:g}) is too far from what is shown; take a nearer place.")
+    return x, y
+
+
 def _forward(name: str, value: float, *, whole: bool = False) -> float:
     """A time or a number of steps given by a script, checked. Raises ValueError."""
     number = isinstance(value, int | np.integer | (np.integer if whole else float | np.floating))
     if not number or isinstance(value, bool) or not math.isfinite(value):
         kind = "whole" if whole else "finite"
-        raise ValueError(f"{name} is {value!r}; it must be a {kind} number.")
+        raise ValueError(f"{name} is {quoted(value)}; it must be a {kind} number.")
     if value >= 2**63:
         raise ValueError(f"{name} is {value}; it must be below 2^63.")
     if value < 0:

@@ -22,6 +22,7 @@ class Account(IntEnum):
     FORCE_SCALE = 6  # the largest force ever
     ENERGY_SCALE = 7  # the most energy ever supplied
     GUARD_ENERGY = 8  # the conserved energy that the check for divergence compares with
+    LARGEST_IMBALANCE = 9  # what the steps lost (positive) or created at most
 
 
 ACCOUNT = tuple(entry.name.lower() for entry in Account)  # columns of the clock

@@ -8,6 +8,8 @@ import re
 from collections.abc import Callable
 from typing import Any, NoReturn
 
+from game.streams import put
+
 BAD_INPUT = 2
 
 
@@ -25,6 +27,11 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
         self._negative_number_matcher = re.compile(r"-\.?\d")
+
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
+        """End the program once what was printed is written. Raises OSError if it cannot be."""
+        put("")
+        super().exit(status, message)
 
     def error(self, message: str) -> NoReturn:
         raise UsageError(f"{message[:1].upper()}{message[1:]}. See: {self.prog} --help")

@@ -23,7 +23,7 @@ from game.commands import (
     window,
 )
 from game.commands.arguments import BAD_INPUT, UsageError
-from game.commands.options import ANSWERED, NOT_ANSWERED, use_cores_as_asked
+from game.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, use_cores_as_asked
 from game.commands.output import ResultError, write
 from game.commands.reports.report import AnalysisError
 from game.documents.document import ModelError
@@ -32,6 +32,7 @@ from game.mods.heeding import switched_off
 from game.mods.mod import ModError
 from game.paths import PathError
 from game.scripts.script import ScriptError
+from game.streams import discard_output, tell
 from game.sweeps import SweepError
 
 
@@ -59,24 +60,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
         AnalysisError,
         ResultError,
     ) as error:
-        print(f"pinjoint: {error}", file=sys.stderr)
+        tell(str(error))
         return getattr(error, "status", BAD_INPUT)
     except KeyboardInterrupt:
-        return 130
+        tell("Interrupted.")
+        return STOPPED
     except BrokenPipeError:  # the reader has seen enough, such as `head`
-        _drop_output()
+        discard_output()
         return NOT_ANSWERED
     except OSError as error:
-        if error.filename is None:  # of standard output, which Python would flush again on leaving
-            _drop_output()
+        if error.filename is None:
+            discard_output()
         place = error.filename or "Standard output"
-        print(f"pinjoint: {place} cannot be used: {error.strerror or error}.", file=sys.stderr)
+        tell(f"{place} cannot be used: {error.strerror or error}.")
         return BAD_INPUT
-
-
-def _drop_output() -> None:
-    """Discard the buffered rest of standard output, which cannot be written."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 COMMANDS |= {

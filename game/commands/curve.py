@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +11,7 @@ from components.model import Model
 from game.commands.arguments import Parser, UsageError, count, finite
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
 from game.commands.output import Row, add_output, write_result
+from game.streams import tell
 
 if TYPE_CHECKING:  # it imports scipy
     from systems.statics.path import Curve
@@ -41,10 +41,9 @@ def command(words: Sequence[str]) -> int:
         raise UsageError(str(error)) from None
     write_result(options, _data(session.model, found), _rows)
     if not found.complete:
-        print(
-            f"pinjoint: The curve ends at the load factor {found.load_factor[-1]:.6g}."
-            f"{_why_nothing_follows(session.model) if len(found.load_factor) == 1 else ''}",
-            file=sys.stderr,
+        tell(
+            f"The curve ends at the load factor {found.load_factor[-1]:.6g}."
+            f"{_why_nothing_follows(session.model) if len(found.load_factor) == 1 else ''}"
         )
     return ANSWERED if found.complete else NOT_ANSWERED
 

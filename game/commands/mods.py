@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import sys
 import uuid
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -22,6 +21,7 @@ from game.mods.loading import MODS, load
 from game.mods.mod import INCLUDED, LOG, Mod, ModError
 from game.mods.skeleton import write_skeleton
 from game.mods.trial import mistakes_of
+from game.streams import tell
 from game.version import __version__
 
 LEFT_OUT = (
@@ -34,7 +34,8 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
     """Load the mods that the options --mods DIR and --no-mods ask for; returns the other words.
 
     Mods that are left out are named on standard error. After a crash with mods, a window opens without those that
-    --mods did not name. Raises ModError.
+    --mods did not name. Raises ModError; also for a mod that --mods names and that cannot be used, where a command
+    would compute without it.
     """
     parser = Parser(prog="pinjoint", add_help=False, allow_abbrev=False)
     parser.add_argument("--mods", action="append", default=[], metavar="DIR")
@@ -46,9 +47,15 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
     unsafe = not options.no_mods and others[:1] not in [[name] for name in COMMANDS] and crashed()
     if unsafe:
         FAULTS.append(LEFT_OUT)
+    named, computes = (
+        {Path(folder).resolve() for folder in options.mods},
+        set(others[:1]) & set(COMMANDS) - {"open"},
+    )
     for mod in load(options.mods, installed=not (options.no_mods or unsafe)):
         if mod.off and others[:1] != ["mods"]:
-            print(f"pinjoint: the mod '{mod.name}' was left out: {mod.problem}", file=sys.stderr)
+            if computes and mod.folder is not None and {mod.folder, mod.folder.parent} & named:
+                raise ModError(f"The mod '{mod.name}' cannot be used: {mod.problem}")
+            tell(f"the mod '{mod.name}' was left out: {mod.problem}")
     return others
 
 

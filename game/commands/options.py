@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 from collections.abc import Iterable, Sequence
 from functools import partial
 
 from components.settings import INTEGRATORS
 from game.commands.arguments import Parser, UsageError, count, numbers, positive, times
+from game.commands.progress import follow
 from game.commands.reports.report import Analysis
 from game.paths import apply_override
 from game.session import DEFAULT_LIMIT, Session
+from game.streams import tell
 from systems.base import System
 from systems.program.parallel import VARIABLE
 
-ANSWERED, NOT_ANSWERED, NO_DISPLAY = 0, 1, 3  # exit statuses; BAD_INPUT is 2
+ANSWERED, NOT_ANSWERED, NO_DISPLAY, STOPPED = 0, 1, 3, 130  # exit statuses; BAD_INPUT is 2
 
 
 def use_cores_as_asked(words: Sequence[str]) -> list[str]:
@@ -54,9 +55,8 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 
 def session_of(options: argparse.Namespace, systems: Iterable[System] = ()) -> Session:
     """A session with the model of `add_model`, and further systems. Raises ModelError, PathError, FieldError."""
-    session = Session.open(options.model, systems)
-    if session.notice:  # about data of mods that are not loaded, which would change the result
-        print(f"pinjoint: {session.notice}", file=sys.stderr)
+    session = follow(Session.open(options.model, systems))
+    tell(session.notice)  # about data of mods that are not loaded, which would change the result
     for override in options.set:
         apply_override(session.model, override)
     return session

@@ -7,7 +7,6 @@ import csv
 import io
 import math
 import os
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,8 +14,10 @@ from typing import Any, Literal
 
 import numpy as np
 
+from components.wording import printable
 from game.commands.arguments import UsageError
 from game.documents.models import laid_out, replace
+from game.streams import encodable_json, put
 
 Format = Literal["table", "json", "csv"]
 FORMATS: tuple[Format, ...] = ("table", "json", "csv")
@@ -71,7 +72,9 @@ def write_result(
     data: the result, written as JSON. rows: makes rows of values of plain data, headings first, for CSV. lines: makes
     lines of a text of plain data, for a table; None: the rows in columns.
     """
-    write(formatted(options.format, data, rows, lines), options.output)
+    text = formatted(options.format, data, rows, lines)
+    in_json = options.format == "json" and options.output is None
+    write(encodable_json(text) if in_json else text, options.output)
 
 
 def formatted(
@@ -91,8 +94,7 @@ def write(text: str, path: str | None) -> None:
     """Write a text to a file, whole or not at all, or to standard output if None. Raises UsageError."""
     with writing(path or "Standard output"):
         if path is None:
-            sys.stdout.write(text)
-            sys.stdout.flush()
+            put(text)
         else:
             replace(path, text.encode())
 
@@ -123,6 +125,7 @@ def _as_csv(rows: Iterable[Row]) -> str:
 
 def aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
     """Rows of texts in columns, the first to the left and the others to the right."""
+    rows = [[printable(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for name, *numbers in rows:
         cells = [name.ljust(widths[0]), *(n.rjust(w) for n, w in zip(numbers, widths[1:], strict=True))]

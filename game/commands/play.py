@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -11,10 +10,12 @@ from typing import Any
 from game.commands.arguments import Parser
 from game.commands.options import ANSWERED, NOT_ANSWERED
 from game.commands.output import Row, add_output, write_result
+from game.commands.progress import follow
 from game.commands.window import in_window
 from game.documents import library, models
 from game.documents.open_documents import file_of
 from game.scripts import playing, script
+from game.streams import tell
 
 
 def command(words: Sequence[str]) -> int:
@@ -42,11 +43,11 @@ def command(words: Sequence[str]) -> int:
             kept.enter_context(library.data_in(options.data))
             loaded.has_data = True
         if options.window:
-            _tell(playing.check_mods(loaded))
+            tell(playing.check_mods(loaded))
             failures = in_window(models.load(loaded.source), file_of(loaded.source), lesson=loaded)
         else:
-            session = playing.session_of(loaded)
-            _tell(session.notice)
+            session = follow(playing.session_of(loaded))
+            tell(session.notice)
             if not loaded.has_data:  # so that it ends alike however often it is played
                 kept.enter_context(library.data_apart())
             failures = playing.play(loaded, session)
@@ -56,14 +57,9 @@ def command(words: Sequence[str]) -> int:
         "failures": [{**vars(failure), "got": str(failure.got)} for failure in failures],
     }
     for failure in failures:
-        print(f"{options.script} {failure}", file=sys.stderr)
+        tell(f"{options.script} {failure}")
     write_result(options, found, _rows, _lines)
     return NOT_ANSWERED if failures else ANSWERED
-
-
-def _tell(difference: str) -> None:
-    if difference:
-        print(f"pinjoint: {difference}", file=sys.stderr)
 
 
 def _rows(found: Mapping[str, Any]) -> Iterator[Row]:

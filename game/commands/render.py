@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -79,7 +80,8 @@ def _animate(session: Session, options: argparse.Namespace, size: tuple[int, int
 
 
 def _size(text: str) -> tuple[int, int]:
-    width, _, height = text.partition("x")
-    if not (width.isdigit() and height.isdigit() and 16 <= int(width) <= 16384 and 16 <= int(height) <= 16384):
+    found = re.fullmatch("([0-9]{2,5})x([0-9]{2,5})", text)
+    width, height = map(int, found.groups()) if found else (0, 0)
+    if not (16 <= width <= 16384 and 16 <= height <= 16384):
         raise UsageError(f"--size {text}: write it like 1280x800, each from 16 to 16384 pixels.")
-    return int(width), int(height)
+    return width, height

@@ -6,9 +6,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from game.commands.arguments import Parser
-from game.commands.options import ANSWERED, NOT_ANSWERED, add_analysis, add_model, analysis_of, session_of
+from game.commands.options import (
+    ANSWERED,
+    NOT_ANSWERED,
+    STOPPED,
+    add_analysis,
+    add_model,
+    analysis_of,
+    session_of,
+)
 from game.commands.output import add_output, writable, write, write_result
-from game.commands.reports.report import FOUND
+from game.commands.reports.report import FOUND, INTERRUPTED
 from game.commands.reports.results import run_lines, run_rows
 
 
@@ -32,4 +40,6 @@ def command(words: Sequence[str]) -> int:
     write_result(options, run, run_rows, run_lines)
     if options.events is not None:
         write(session.impacts.as_csv(), options.events)
+    if run["status"] == INTERRUPTED:
+        return STOPPED
     return ANSWERED if run["status"] in FOUND else NOT_ANSWERED

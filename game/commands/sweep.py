@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from game.commands.arguments import Parser, UsageError
-from game.commands.options import ANSWERED, NOT_ANSWERED, add_analysis, add_model, analysis_of
+from game.commands.options import ANSWERED, NOT_ANSWERED, STOPPED, add_analysis, add_model, analysis_of
 from game.commands.reports.report import FOUND
+from game.streams import tell
 from game.sweeps import sweep
 from game.sweeps.variation import FORMS
 
@@ -38,8 +39,8 @@ def command(words: Sequence[str]) -> int:
         if options.plot is not None:
             results.plot(options.plot)
     except KeyboardInterrupt:
-        print("\nInterrupted; the same command goes on with what is finished.", file=sys.stderr)
-        raise
+        tell("Interrupted; the same command goes on with what is finished.")
+        return STOPPED
     except OSError as error:
         raise UsageError(
             f"{error.filename or options.output} cannot be written: {error.strerror}. Choose another file."

@@ -129,7 +129,9 @@ class Autosave(System):
 
     def _put(self, path: Path, still: _Still) -> None:
         began = time.monotonic()
-        with contextlib.suppress(models.ModelError):  # numbers that no file can hold; saving says which
+        with contextlib.suppress(
+            models.ModelError, ValueError
+        ):  # what no file can hold; saving says what it is
             content = msgspec.json.encode(gathered(cast(Model, still)))
             try:
                 models.replace(path, content)

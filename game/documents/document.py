@@ -17,7 +17,7 @@ from components.clock import Clock
 from components.commands import Assign
 from components.departure import Departure
 from components.environment import Environment
-from components.field import Column, Field, FieldError, Role
+from components.field import Column, Field, FieldError, Role, is_broken
 from components.grid import Grid
 from components.handle import Handle
 from components.load import Load
@@ -27,6 +27,7 @@ from components.rod import Rod
 from components.settings import Settings
 from components.suggestions import missing, remedy
 from components.table import Table, fields_of
+from components.wording import cut, quoted
 from game.documents.mod_data import DATA as FOREIGN
 from game.documents.mod_data import MODS, known_versions, upgraded, versions_in
 
@@ -95,7 +96,7 @@ class _Section:
         element = self.elements[row]
         path = self.path if self.kind.single else f"{self.path}[{row}]"
         name = element.get("name")
-        of = f" ({self.kind.noun} {name})" if isinstance(name, str) else ""
+        of = f" ({self.kind.noun} {cut(name)})" if isinstance(name, str) else ""
         return f"{path}{'.' if key else ''}{key}{of}"
 
 
@@ -137,7 +138,7 @@ def _read_added(model: Model, kinds: Any) -> None:
         _fail(path, f"it must be an object, not {_kind_of(kinds)}.")
     for name, elements in kinds.items():
         if not isinstance(name, str) or "." not in name or not isinstance(elements, list | tuple):
-            _fail(path, f'{name!r} must be like "mod.Kind": […].')
+            _fail(path, f'{quoted(name)} must be like "mod.Kind": […].')
         if name not in ADDED:
             _refuse_misspelt(name, ADDED, path)
             model.foreign_kinds[name] = _copied(elements, f"{path}.{name}")
@@ -152,10 +153,10 @@ def _migrated(document: Any) -> Mapping[str, Any]:
         _fail("$", f"it must be an object with the key 'format', not {_kind_of(document)}.")
     stated = document.get("format")
     if not isinstance(stated, str) or stated != FORMAT:
-        _fail("$.format", f'it is {stated!r}; a model file has "format": "{FORMAT}".')
+        _fail("$.format", f'it is {quoted(stated)}; a model file has "format": "{FORMAT}".')
     version = document.get("version")
     if isinstance(version, bool) or not isinstance(version, int):
-        _fail("$.version", f'it is {version!r}; it must be a whole number, now "version": {VERSION}.')
+        _fail("$.version", f'it is {quoted(version)}; it must be a whole number, now "version": {VERSION}.')
     if version > VERSION:
         _fail("$.version", f"it is {version}, but this program reads up to {VERSION}; update Pinjoint.")
     migrated = dict(document)
@@ -173,7 +174,9 @@ def _migrated(document: Any) -> Mapping[str, Any]:
 def _text(document: Mapping[str, Any], key: str) -> str:
     text = document.get(key, "")
     if not isinstance(text, str):
-        _fail(f"$.{key}", f"it is {text!r}; it must be a text.")
+        _fail(f"$.{key}", f"it is {quoted(text)}; it must be a text.")
+    if is_broken(text):
+        _fail(f"$.{key}", f"it is {text!a}; half of a character cannot be kept in a file.")
     return text
 
 
@@ -227,12 +230,12 @@ def _refuse_unknown(
             _fail(where, f"'{key}' is computed from the rest and is no part of a model file; remove it.")
         if added := [name for name, of in ADDED.items() if kind is None and str(key) in (name, of.table)]:
             _fail(where, f'there is no key \'{key}\' here; write "{FOREIGN}": {{"{added[0]}": […]}}.')
-        _fail(where, f"there is no key '{key}' here; {remedy(str(key), keys)}")
+        _fail(where, f"there is no key '{cut(str(key))}' here; {remedy(str(key), keys)}")
 
 
 def _kind_of(value: Any) -> str:
     names = {dict: "an object", list: "a list", str: "a text", bool: "true or false", NoneType: "null"}
-    return names.get(type(value), "a number" if isinstance(value, int | float) else repr(value))
+    return names.get(type(value), "a number" if isinstance(value, int | float) else quoted(value))
 
 
 def _read(model: Model, section: _Section) -> None:
@@ -292,7 +295,7 @@ def _names(section: _Section, field: Field[Any]) -> Column:
     for row, element in enumerate(section.elements):
         name = element["name"] if "name" in element else next(free)
         if not isinstance(name, str) or not name.strip():
-            _fail(section.where(row, "name"), f"it is {name!r}; it must be a text that is not empty.")
+            _fail(section.where(row, "name"), f"it is {quoted(name)}; it must be a text that is not empty.")
         if name in row_of:
             first = section.where(row_of[name])
             _fail(section.where(row, "name"), f"{first} has this name already; choose another.")
@@ -313,7 +316,7 @@ def _rows_by_name(model: Model, section: _Section, field: Field[Any]) -> Column:
         count = field.shape[0] if field.shape else 1
         if not isinstance(names, list | tuple) or [isinstance(n, str) for n in names] != [True] * count:
             form = 'the names of two particles, ["A", "B"]' if field.shape else "the name of a particle"
-            _fail(section.where(row, field.key), f"it is {value!r}; it must be {form}.")
+            _fail(section.where(row, field.key), f"it is {quoted(value)}; it must be {form}.")
         for name in names:
             if name not in row_of:
                 _fail(section.where(row, field.key), missing(target.name, name, row_of))
@@ -346,12 +349,11 @@ def _check_rods(model: Model, section: _Section, columns: Columns) -> None:
 
 def _check_lengths(model: Model, section: _Section, columns: Columns) -> None:
     position = model.particles.position[columns["between"]]
-    with np.errstate(over="ignore"):
-        lengths = np.hypot(*(position[:, 1] - position[:, 0]).T)
-    usable = ((lengths > 0.0) | ~np.isnan(columns["prescribed_rest_length"])) & (lengths < math.inf)
+    lengths = np.hypot(*(position[:, 1] - position[:, 0]).T)
+    usable = (lengths > 0.0) | ~np.isnan(columns["prescribed_rest_length"])
     for row in np.flatnonzero(~usable)[:1].tolist():
-        remedy = "give it a 'rest_length' or place them apart" if lengths[row] == 0.0 else "place them nearer"
-        _fail(section.where(row), f"the distance between its ends is {lengths[row]:g} m; {remedy}.")
+        remedy = "give it a 'rest_length' or place them apart"
+        _fail(section.where(row), f"the distance between its ends is 0 m; {remedy}.")
 
 
 def _check_grids(model: Model, section: _Section, columns: Columns) -> None:
@@ -380,7 +382,7 @@ def _check_components(section: _Section) -> None:
             _fail(where, f"it must be an object, not {_kind_of(components)}.")
         for name, values in components.items():
             if not isinstance(name, str) or "." not in name or not isinstance(values, Mapping):
-                _fail(where, f'{name!r} must be like "mod.Component": {{…}}.')
+                _fail(where, f'{quoted(name)} must be like "mod.Component": {{…}}.')
             if name not in known:
                 _refuse_misspelt(name, known, where)
             if name in known:
@@ -392,7 +394,7 @@ def _refuse_misspelt(name: str, known: Collection[str], where: str) -> None:
     components = itertools.chain.from_iterable(map(_components, (*SECTIONS.values(), *ADDED.values())))
     mod = name.partition(".")[0]
     if mod in {loaded.partition(".")[0] for loaded in (*ADDED, *components)}:
-        _fail(where, f"the mod '{mod}' has no '{name}' here; {remedy(name, known)}")
+        _fail(where, f"the mod '{mod}' has no '{cut(name)}' here; {remedy(name, known)}")
 
 
 def _component_section(section: _Section, component: str) -> _Section:
@@ -420,13 +422,15 @@ def missing_mods(model: Model) -> list[str]:
 
 def _copied(value: Any, where: str) -> Any:
     """A copy of a value that JSON can hold."""
-    if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):
+    if isinstance(value, Mapping) and all(isinstance(key, str) and not is_broken(key) for key in value):
         return {key: _copied(item, where) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [_copied(item, where) for item in value]
+    if isinstance(value, str) and is_broken(value):
+        _fail(where, f"{value!a} holds half of a character, which cannot be kept in a file.")
     if value is None or isinstance(value, str | int) or (isinstance(value, float) and math.isfinite(value)):
         return value
-    _fail(where, f"{value!r} cannot be kept in a model file.")
+    _fail(where, f"{quoted(value)} cannot be kept in a model file.")
 
 
 # --- from a model to a document ------------------------------------------------------------------------

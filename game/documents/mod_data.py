@@ -6,6 +6,8 @@ import copy
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+from components.wording import quoted
+
 DATA = "components"  # the key of the data of mods, at elements and in the document
 MODS = "mods"  # the key of the versions of the mods whose data a document holds
 
@@ -64,7 +66,7 @@ def _check(stated: Any) -> None:
         raise ValueError('it must be an object like {"wind": "1.0"}.')
     for name, version in stated.items():
         if not isinstance(version, str) or not _is_version(version):
-            raise ValueError(f'the version of {name} is {version!r}; it must be like "1.0".')
+            raise ValueError(f'the version of {name} is {quoted(version)}; it must be like "1.0".')
 
 
 def _is_version(text: str) -> bool:

@@ -22,6 +22,7 @@ import msgspec
 
 from components.model import Model
 from components.suggestions import nearest
+from components.wording import quoted
 from game.documents.document import ModelError, document, parse
 
 _ENCODER = msgspec.json.Encoder()
@@ -69,7 +70,7 @@ def header_of(name: str) -> ModelHeader:
     """Title and description of a bundled model, without reading the rest of its file; empty if it cannot be read."""
     try:
         return msgspec.json.decode(_found(name).read_bytes(), type=ModelHeader)
-    except (OSError, msgspec.DecodeError):  # `load` explains it
+    except (OSError, ValueError, RecursionError):  # `load` explains it
         return ModelHeader()
 
 
@@ -78,7 +79,7 @@ def load(source: str | Path | Mapping[str, Any]) -> Model:
     if isinstance(source, Mapping):
         return parse(source)
     if not isinstance(source, str | os.PathLike):
-        raise ModelError(f"{source!r} is no model; give a file, a bundled model's name or a document.")
+        raise ModelError(f"{quoted(source)} is no model; give a file, a bundled model's name or a document.")
     try:
         raw = _found(source).read_bytes()
     except IsADirectoryError:

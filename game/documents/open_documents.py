@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 
 from components.collision_state import PersistentContacts
 from components.field import Role
-from components.load import loads_end
+from components.load import load_ends
 from components.model import Model
 from components.snapshot import Snapshot
 from game.documents import models
@@ -130,7 +131,7 @@ class OpenDocument:
             model.give("particles.displacement", found.final.displacement)
             model.give("particles.velocity", np.zeros_like(found.final.displacement))
             model.give("rods.plastic_strain", found.final.plastic_strain)
-            time = max(clock.time, loads_end(model))
+            time = max([clock.time, *(end for end in load_ends(model) if end < math.inf)])
             model.give("clock.time", np.array([time]))
             model.give("clock.origin", np.array([time]))
             model.give("clock.origin_steps", np.array([clock.steps]))

@@ -16,6 +16,7 @@ from systems.render.theme import theme_names
 
 CONFIG_VARIABLE = "PINJOINT_CONFIG"  # names another folder than the system's own
 DEFAULT_THEME = "light"
+PUT_ASIDE = "settings-unreadable.json"
 
 
 def settings_path() -> Path:
@@ -52,17 +53,22 @@ def preferred_magnification() -> float:
 
 
 def remember(entry: str, choice: str | float) -> None:
-    """Keep a choice, the "theme" or the "magnification"; where nothing can be written, it is not kept."""
-    path = settings_path()
+    """Keep a choice, the "theme" or the "magnification"; where nothing can be written, it is not kept.
+
+    A file that cannot be read, such as one with a slip in keys written by hand, is put aside.
+    """
+    path, entries = settings_path(), _read()
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        models.replace(path, json.dumps({**_read(), entry: choice}, indent=1).encode() + b"\n")
+        if not entries and path.is_file() and path.stat().st_size > 0:
+            models.replace(path.with_name(PUT_ASIDE), path.read_bytes())
+        models.replace(path, json.dumps({**entries, entry: choice}, indent=1).encode() + b"\n")
 
 
 def _read() -> dict[str, Any]:
     """What the file says; nothing if it is damaged."""
     try:
         entries = json.loads(settings_path().read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return {}
     return entries if isinstance(entries, dict) else {}

@@ -73,7 +73,7 @@ def part_in(text: str) -> Part:
     """The part that the text of a document describes. Raises Refusal if it describes none."""
     try:
         source = parse(msgspec.json.decode(text))
-    except (ModelError, msgspec.DecodeError):
+    except (ModelError, ValueError, RecursionError):
         source = Model()
     kinds: list[Kind] = [Particle, Rod, Load, *_added()]
     rows = {kind: np.arange(source.tables[kind.table].count) for kind in kinds}

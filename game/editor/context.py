@@ -397,8 +397,9 @@ class Context:
     def settle(self, factors: Sequence[float] | float = (1.0,)) -> str:
         """Go to the static equilibrium at each load factor in turn, without letting time pass.
 
-        Can be undone. Returns "equilibrium", or "mechanism", "collapse" or "limit reached" with the last
-        good state; `message` says more. Time moves on to the end of the last load history. Raises ValueError.
+        Can be undone. Returns "equilibrium", "neutral equilibrium" or "unstable equilibrium"; or "mechanism",
+        "collapse" or "limit reached" with the last good state; `message` says more. Time moves on to the end of the
+        last load history. Raises ValueError.
         """
         status, self.notice = self.document.settle(factors)
         return status

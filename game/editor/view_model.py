@@ -110,4 +110,4 @@ def _problem(context: Context) -> str:
         return f"{context.fault} Esc takes this away."
     if simulation.reason is StopReason.DIVERGED and simulation.halted:
         return simulation.message
-    return simulation.step_size.warning or simulation.note
+    return simulation.warning

@@ -15,6 +15,7 @@ from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
+from components.round_numbers import round_down
 from components.table import Table
 from components.tags import Selected
 from components.view import View
@@ -65,8 +66,8 @@ class Set:
         """Choose drawing scales for the displacements and forces of a final state."""
         moved, pulled = largest(state.displacement), largest(state.axial_force)
         share = DRAWN_SHARE * extent(self.model)
-        self.model.settings.displacement_scale = _round(share / moved) if moved > 0.0 else 1.0
-        self.model.settings.diagram_scale = _round(DIAGRAM_HEIGHT / pulled) if pulled > 0.0 else 1.0
+        self.model.settings.displacement_scale = round_down(share / moved) if moved > 0.0 else 1.0
+        self.model.settings.diagram_scale = round_down(DIAGRAM_HEIGHT / pulled) if pulled > 0.0 else 1.0
 
     def settle(self) -> None:
         """Skip the rest of the motion: go to its equilibrium, if there is one."""
@@ -317,8 +318,3 @@ def _release(model: Model, unknown: Unknown) -> None:
     particle = model.particles[unknown.element.name]
     x, y = particle.fixed
     particle.fixed = (x and unknown.axis != 0, y and unknown.axis != 1)
-
-
-def _round(number: float) -> float:
-    power = 10.0 ** math.floor(math.log10(number))
-    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= number * (1 + 1e-9))

@@ -8,14 +8,17 @@ from __future__ import annotations
 import csv
 import itertools
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
 from components import FieldError, HistoryKind, Load, Model, Vector
 from components.load import History
+from components.wording import quoted
 from game.mods import App
 
 STANDARD_GRAVITY = 9.80665  # m/s²
@@ -82,13 +85,13 @@ def read_record(path: Path, unit: float = 1.0) -> dict[str, list[float] | str]:
     times: list[float] = []
     values: list[float] = []
     with path.open(newline="", encoding="utf-8-sig") as file:
-        for number, row in enumerate(csv.reader(file), start=1):
+        for number, row in enumerate(_lines(file, path), start=1):
             try:
                 time, value = float(row[0]), float(row[1])
             except (ValueError, IndexError):
                 if times and "".join(row).strip():
                     raise ValueError(
-                        f"{path}, line {number}: {row} is not a time and an acceleration."
+                        f"{path}, line {number}: {quoted(row)} is not a time and an acceleration."
                     ) from None
                 continue
             times.append(time)
@@ -96,6 +99,17 @@ def read_record(path: Path, unit: float = 1.0) -> dict[str, list[float] | str]:
     if not times:
         raise ValueError(f"{path}: there is no line with a time and an acceleration.")
     return {"kind": "record", "times": times, "accelerations": values}
+
+
+def _lines(file: TextIO, path: Path) -> Iterator[list[str]]:
+    """The lines of a CSV file in fields. Raises ValueError, naming the file."""
+    reader = csv.reader(file)
+    try:
+        yield from reader
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise ValueError(
+            f"{path}, after line {reader.line_num}: this is no CSV file in UTF-8 ({error})."
+        ) from None
 
 
 def shake(model: Model, record: History | dict[str, list[float] | str], direction: Vector = (1.0, 0.0)) -> None:

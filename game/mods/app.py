@@ -14,6 +14,7 @@ from components.kind import add_kind
 from components.load import HISTORIES, HistoryKind, register_history
 from components.model import ADDED
 from components.obstacles import SHAPES, Shape
+from components.table import fields_of
 from game.commands import COMMANDS, Command
 from game.documents import models
 from game.documents.mod_data import UPGRADES, VERSIONS, Upgrade
@@ -22,7 +23,7 @@ from game.editor.context import PANELS
 from game.editor.gestures.drawing import TOOL_HINTS, TOOLS, drawing_of
 from game.editor.scenes import SCENES, Scene, all_scenes
 from game.mods.declared import checks_arguments
-from game.mods.guard import guarded_history, guarded_integrator, guarded_maker, guarded_shape
+from game.mods.guard import guard_checkers, guarded_history, guarded_integrator, guarded_maker, guarded_shape
 from game.mods.interface import (
     Panel,
     guarded_action,
@@ -74,6 +75,7 @@ class App:
 
     def component(self, component: type[Component]) -> None:
         """Add the Fields of a component to all elements of its kind; see components.Component."""
+        guard_checkers(self._mod, fields_of(component))
         try:
             names = add_component(self.name, component)
         except ValueError as error:
@@ -87,6 +89,7 @@ class App:
         Files keep them under "components": {"<mod>.<Kind>": […]}. Those with `points` can be picked, dragged,
         copied and selected in a box like others; a layer of the mod draws them.
         """
+        guard_checkers(self._mod, fields_of(kind))
         try:
             name = add_kind(self.name, kind)
         except ValueError as error:

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, get_args, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from components.field import Column, FieldError, Role
+from components.field import Column, Field, FieldError, Role
 from components.handle import Handle
 from components.load import HistoryKind
 from components.model import Model
@@ -81,10 +81,14 @@ def guarded_system(mod: Mod, system: System) -> System:
     if isinstance(system, StepSystem):
         _guard_question(mod, system, "arrays", Mapping[str, NDArray[Any]], otherwise={})
         _guard_question(mod, system, "leaves_flight_exact", bool, otherwise=False)
+        if isinstance(system, Law):
+            _guard_question(mod, system, "cutoff", float, otherwise=math.inf)
     else:
         vars(system)["process"] = lambda frame: _change_whole(
             mod, system, what, frame.session.model, lambda: _in_frame(process, frame)
         )
+    if isinstance(system, Law):
+        _guard_question(mod, system, "cutoff", float, otherwise=math.inf)
     if isinstance(system, Event):
         happen = system.happen
         vars(system)["happen"] = lambda model, *elements: _change_whole(
@@ -226,3 +230,23 @@ def guarded_shape(mod: Mod, kind: type[Handle], shape: Shape) -> Shape:
         return found
 
     return called
+
+
+def guard_checkers(mod: Mod, fields: Iterable[Field[Any]]) -> None:
+    """Let the checkers of a mod's Fields refuse values only by FieldError; without the mod, every value is kept."""
+    for field in fields:
+        if field.checker is not None:
+            field.checker = _guarded_checker(mod, field, field.checker)
+
+
+def _guarded_checker(mod: Mod, field: Field[Any], own: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
+    def checker(value: Any, where: str) -> Any:
+        was_off = mod.off
+        made = mod.call(
+            f"the checker of {field.name}", own, value, where, otherwise=value, mistakes=(FieldError,)
+        )
+        if mod.off and not was_off:
+            raise FieldError(f"{where}: {field.title} cannot be checked; {mod.problem}")
+        return made
+
+    return checker

@@ -1,4 +1,4 @@
-"""Heeding: a run that goes on without the laws of a mod which failed is not the one that a script asked for."""
+"""Heeding: what follows where a mod fails: a run without its laws is not the one that a script asked for."""
 
 from __future__ import annotations
 
@@ -22,6 +22,15 @@ def check_mods(known: list[Mod] | None = None, time: float | None = None) -> Non
         if mod not in (known or []):
             stopped = "" if time is None else f" The run stopped at t = {time:.6g} s."
             raise ModError(f"The mod '{mod.name}' was switched off: {mod.problem}{stopped}")
+
+
+def blamed_on_mod(error: BaseException) -> bool:
+    """Switch off the mod from whose code an error came past all guards; False if it came from no mod's."""
+    for mod in MODS:
+        if mod.loaded and not mod.off and mod.place_of(error):
+            mod.fail("code that the program called", error)
+            return True
+    return False
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
-from components.wording import printable
+from components.wording import printable, quoted
 from game.editor.context import FAULTS
 from game.interrupts import is_persons
 from game.mods.declared import as_declared
@@ -81,11 +81,12 @@ class Mod:
 
     def describe(self, error: BaseException) -> str:
         """An error with the file and the line of this mod in which it happened."""
-        place, message = self._place(error), _message(error)
+        place, message = self.place_of(error), _message(error)
         said = message if isinstance(error, ModError) else f"{type(error).__name__}: {message}"
         return f"{said.rstrip('.: ')}{f' ({place})' if place else ''}."
 
-    def _place(self, error: BaseException) -> str:
+    def place_of(self, error: BaseException) -> str:
+        """The file and the line of this mod in which an error happened; "" if in none."""
         if isinstance(error, SyntaxError) and error.filename:
             return f"{_short(error.filename)}, line {error.lineno}"
         frames = traceback.extract_tb(error.__traceback__)
@@ -125,7 +126,7 @@ class Mod:
             return otherwise
 
     def within(self, patience: float, function: Callable[[], T]) -> T:
-        """The result of a function; after `patience` TooLong is raised in the mod's code, or in a library's that it calls."""
+        """The result of a function; after `patience` TooLong is raised in the mod's code, or in a library that it calls."""
         if not math.isfinite(patience) or self.folder is None:
             return function()
         return within(patience, is_running(f"{self.folder}{os.sep}", others=OURS), function)
@@ -166,6 +167,8 @@ def _entries(path: Path) -> dict[str, Any]:
     except (OSError, UnicodeDecodeError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
         raise ModError(f"{MANIFEST} cannot be read: {reason}.") from None
+    except RecursionError:
+        raise ModError(f"{MANIFEST} is nested too deeply.") from None
     except tomllib.TOMLDecodeError as error:
         raise ModError(f"{MANIFEST} is not TOML: {error}.") from None
 
@@ -177,7 +180,7 @@ def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
     for key in ("name", "version", "description"):
         value = entries.get(key, "")
         if not isinstance(value, str):
-            raise ModError(f'{MANIFEST}: {key} is {value!r}; it must be a text, such as {key} = "…".')
+            raise ModError(f'{MANIFEST}: {key} is {quoted(value)}; it must be a text, such as {key} = "…".')
         if value or key != "name":
             setattr(made, key, value)
     made.module = named or made.name
@@ -187,7 +190,9 @@ def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
         raise ModError(f"{MANIFEST}: the name is '{made.name}', but the entry point calls it '{named}'.")
     requires = entries.get("requires", [])
     if not isinstance(requires, list) or not all(isinstance(entry, str) for entry in requires):
-        raise ModError(f'{MANIFEST}: requires is {requires!r}; write a list like ["pinjoint>=0.1", "gusts"].')
+        raise ModError(
+            f'{MANIFEST}: requires is {quoted(requires)}; write a list like ["pinjoint>=0.1", "gusts"].'
+        )
     made.requires = tuple(requires)
     _check_versions(made)
 

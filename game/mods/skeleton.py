@@ -18,9 +18,8 @@ requires = ["pinjoint>={version}"]
 _CODE = '''\
 """A steady wind on all particles: a law, the fact that it needs, and what a person sees of it."""
 
-from components import Component, Environment, Field, Readout
+from game.api import Component, Environment, Field, Law, Readout
 from numba import njit
-from systems.base import Law
 
 
 class Air(Component):
@@ -55,7 +54,7 @@ _TEST = '''\
 
 from pathlib import Path
 
-from game import Session
+from game.api import Session
 
 HERE = Path(__file__).parent
 

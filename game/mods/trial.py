@@ -24,7 +24,7 @@ from systems.base import Commit, Event, Integrator, Law, StepSystem, System
 from systems.catalogue import all_systems
 from systems.input.bindings import BINDINGS, PAUSE, SIMULATION
 from systems.physics.integrators import INTEGRATORS
-from systems.program.binding import ProgramError, bind, problem_of
+from systems.program.binding import KERNELS, ProgramError, bind, problem_of
 from systems.program.writer import read_sources
 
 STEPS = 40  # that runs take
@@ -118,12 +118,14 @@ class _Trial:
             if column and (table not in model.tables or column not in model.tables[table].fields):
                 known = [f"{t.name}.{f}" for t in model.tables.values() for f in t.fields]
                 self._note(f"{system.name}: {missing('columns', name, known)}")
+        if isinstance(system, StepSystem):
+            system.leaves_flight_exact(model)
         if isinstance(system, Integrator):
             read_sources([system])
         elif isinstance(system, Law | Commit | Event):
-            problem = problem_of(bind(system, model), model)
-            if problem:
-                self._note(problem)
+            for kernel in KERNELS:
+                if getattr(system, kernel, "") and (problem := problem_of(bind(system, model, kernel), model)):
+                    self._note(problem)
 
     def _check_keys(self) -> None:
         scenes = {scene.name for scene in all_scenes()}
@@ -245,6 +247,7 @@ def _fill(field: Field[Any], element: Any) -> None:
 
 
 def _draw(session: Session, size: tuple[int, int, float]) -> None:
-    from game.app import draw_unseen  # imports pygame
+    from systems.render.pygame_render import draw_unseen  # imports pygame
 
-    draw_unseen(session, size[:2])
+    session.update_view()
+    draw_unseen(Frame(session, FRAME), size[:2])

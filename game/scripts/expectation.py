@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Protocol
 
 from components.suggestions import missing
+from components.wording import quoted
 from game.paths import Readable, locate_one
 
 _OF_SESSION = ("scene", "time", "message")
@@ -61,7 +62,7 @@ def _holds(got: Any, relation: str, value: str, slack: str | None) -> bool:
     if isinstance(got, bool | str) or got is None:
         if relation in _ORDERS:
             raise ValueError(
-                f"it is {got!r}, which is neither more nor less; write = or, for a part of a text, ≈."
+                f"it is {quoted(got)}, which is neither more nor less; write = or, for a part of a text, ≈."
             )
         said, wanted_text = str(got).lower(), value.strip("\"'").lower()
         if got is None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, TextIO
 
 from components.field import Vector
+from components.wording import cut, quoted
 from game.documents.document import ModelError
 from game.editor.context import FAULTS
 from game.mods.loading import MODS
@@ -125,11 +126,11 @@ def _check_line(entry: Mapping[str, Any]) -> None:
     """Raise ValueError unless every key is known and every value has the shape of its example."""
     for key, value in entry.items():
         if key not in _EXAMPLES:
-            raise ValueError(f"there is no '{key}'; use one of {', '.join(_EXAMPLES)}.")
+            raise ValueError(f"there is no '{cut(key)}'; use one of {', '.join(_EXAMPLES)}.")
         example = _EXAMPLES[key]
         fits = _is_like(value, example) and not (key in _SIZES and min(value) <= 0)
         if not fits and (key, value) != ("run", "rest"):
-            raise ValueError(f"{key} is {json.dumps(value)}; write it like {json.dumps({key: example})}.")
+            raise ValueError(f"{key} is {quoted(value)}; write it like {json.dumps({key: example})}.")
 
 
 def _is_like(value: Any, example: Any) -> bool:
@@ -157,7 +158,7 @@ def perform(session: Session, entry: Mapping[str, Any]) -> Iterator[tuple[str, A
         session.clipboard = rest.pop("clipboard")
     button, pixel = rest.pop("button", "click"), rest.pop("pixel", None)
     if len(rest) > 1:
-        raise ValueError(f"a line does one thing, this one says {', '.join(rest)}; split it.")
+        raise ValueError(f"a line does one thing, this one says {', '.join(map(cut, rest))}; split it.")
     for verb, value in rest.items():
         if verb == "expect":
             yield from check(session, value)

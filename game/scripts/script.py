@@ -36,6 +36,7 @@ from pathlib import Path
 from typing import Any
 
 from components.suggestions import remedy
+from components.wording import cut, quoted
 
 HEADER = {"format": "pinjoint session", "version": 1}
 _HEADER_KEYS = (*HEADER, "model", "title", "description", "mods")
@@ -81,18 +82,21 @@ class Script:
             form = json.dumps({**HEADER, "model": "isostatic"})
             raise ScriptError(f"{source}: its first line must be like {form}.")
         if header.get("version") != HEADER["version"]:
-            raise ScriptError(f"{source}: version {header.get('version')} is not known; update Pinjoint.")
+            raise ScriptError(
+                f"{source}: version {quoted(header.get('version'))} is not known; update Pinjoint."
+            )
         for key in header:
             if key not in _HEADER_KEYS:
                 raise ScriptError(
-                    f"{source} line 1: there is no '{key}'; use one of {', '.join(_HEADER_KEYS)}."
+                    f"{source} line 1: there is no '{cut(key)}'; use one of {', '.join(_HEADER_KEYS)}."
                 )
         if not isinstance(model := header.get("model", EMPTY), str | dict):
-            raise ScriptError(f"{source} line 1: model is {json.dumps(model)}; write a name or a document.")
+            raise ScriptError(f"{source} line 1: model is {quoted(model)}; write a name or a document.")
         self.mods: dict[str, str] | None = header.get("mods")
         if self.mods is not None and not _are_mods(self.mods):
-            said = json.dumps(self.mods)
-            raise ScriptError(f'{source} line 1: mods is {said}; write names and versions, {{"wind": "1.0"}}.')
+            raise ScriptError(
+                f'{source} line 1: mods is {quoted(self.mods)}; write names and versions, {{"wind": "1.0"}}.'
+            )
         self.title, self.description = (str(header.get(key, "")) for key in ("title", "description"))
 
     def _read(self) -> Iterator[tuple[int, dict[str, Any]]]:
@@ -110,8 +114,11 @@ class Script:
                 continue
             try:
                 entry = json.loads(line)
-            except json.JSONDecodeError as error:
-                raise ScriptError(f"{self.path} line {number}: this is not JSON ({error.msg}).") from None
+            except RecursionError:
+                raise ScriptError(f"{self.path} line {number}: this is nested too deeply.") from None
+            except ValueError as error:  # also numbers of thousands of digits
+                reason = getattr(error, "msg", str(error))
+                raise ScriptError(f"{self.path} line {number}: this is not JSON ({reason}).") from None
             if not isinstance(entry, dict):
                 raise ScriptError(f'{self.path} line {number}: write an object, such as {{"press": "space"}}.')
             yield number, entry

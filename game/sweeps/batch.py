@@ -95,6 +95,7 @@ class Batch:
             if not self.alone[variant]:
                 sizes[variant], self.clock("step_limit")[variant] = policy.first(limits)
         self._begin_steps(np.flatnonzero(~self.alone), sizes)
+        self._reviewed = np.array([self.clock("time"), self.clock("steps")])
 
     def _leave_sleepers(self, variants: Rows) -> None:
         """Leave to runs of their own the variants in which an island at rest would sleep now while others move."""
@@ -164,8 +165,8 @@ class Batch:
         first = total - self.clock("origin_steps")
         wanted = np.full(self.model.variants, steps, dtype=np.int64)
         if until < math.inf and not self.integrator.controlled:  # of the others, steps may have no size
-            left = ((until - time[variants]) / size[variants] * (1.0 + 1e-12)).astype(np.int64)
-            wanted[variants] = np.clip(left, 0, wanted[variants])
+            left = np.clip((until - time[variants]) / size[variants] * (1.0 + 1e-12), 0.0, 2.0**62)
+            wanted[variants] = np.minimum(left.astype(np.int64), wanted[variants])
         account, control = self._clocks(ACCOUNT), self._clocks(CONTROL)
         limit = self.clock("step_limit")
         taken, reason = self._call(
@@ -237,8 +238,12 @@ class Batch:
             return
         self.observe()
         limits, sizes = self._limits(), self.clock("step_size").copy()
+        time, steps = self.clock("time"), self.clock("steps")
+        mean = (time - self._reviewed[0]) / np.maximum(steps - self._reviewed[1], 1)
+        self._reviewed[:, variants] = time[variants], steps[variants]
         for variant in variants.tolist():
             policy = self._policies[variant]
+            self.alone[variant] |= policy.crawls(limits[variant], mean[variant])  # to be warned of
             if policy.controls_error:
                 self.clock("step_limit")[variant] = policy.limit(limits[variant])
             else:

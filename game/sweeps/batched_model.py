@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,6 +68,10 @@ class BatchedModel:
         table, _, field = name.partition(".")
         return self._model.tables[table].fields[field]
 
+    def fields(self, table: str) -> Mapping[str, Field[Any]]:
+        """The Fields of a table by name."""
+        return self._model.tables[table].fields
+
     def writable(self, name: str) -> Column:
         """A column with the rows of all variants, for a derivation to fill."""
         column = self._columns[name]
@@ -121,6 +125,11 @@ class _Table:
         if field.startswith("_"):
             raise AttributeError(field)
         return self.column(field)
+
+    @property
+    def fields(self) -> Mapping[str, Field[Any]]:
+        """Its Fields by name."""
+        return self._model.fields(self._name)
 
     def column(self, field: str) -> Column:
         """The column of a Field."""

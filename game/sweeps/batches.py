@@ -23,7 +23,7 @@ from game.sweeps.variant_runner import VariantRunner
 from game.sweeps.variation import Random, Value
 from systems.physics.automatic import SMALL, stiffnesses, suited_to
 from systems.program.binding import ProgramError
-from systems.run.policy import at_rest_since
+from systems.run.policy import at_rest_since, energy_is_off
 
 MOST_NUMBERS = 2_000_000  # in the largest array of a batch: of stiffness, rods × directions of particles
 # What makes another model of it, or lets its parts rest by themselves.
@@ -170,6 +170,8 @@ class Batches:
         batch.observe()
         energy, residual = batch.energy.as_dict(), batch.residual
         batch.alone |= ~_finite(batch, energy, residual)
+        warned = energy_is_off(batch.clock("largest_imbalance"), batch.clock("energy_scale"))
+        batch.alone |= warned  # runs of their own say so
         measured = (self._column(measure, batch, energy, residual) for measure in self._plan.measures)
         return list(zip(batch.clock("time").tolist(), [None] * batch.model.variants, *measured, strict=True))
 

@@ -137,6 +137,18 @@ class Plan:
         """The record of a variant that could not be computed."""
         return number, [(FAILED, reason, *[None] * (len(RECORDED) - 2 + len(self.measures)))]
 
+    def allows(self, outcome: Outcome) -> bool:
+        """True if an outcome that was read from a file has the form of one of this plan's."""
+        number, records = outcome
+        return 0 <= number < self.size and len(records) > 0 and all(map(self._is_record, records))
+
+    def _is_record(self, record: Record) -> bool:
+        if len(record) != len(RECORDED) + len(self.measures):
+            return False
+        return all(map(isinstance, record[:2], (str, str))) and all(
+            value is None or type(value) in (bool, int, float) for value in record[2:]
+        )
+
     def fingerprint(self) -> str:
         """Tells plans apart: model, variations, seed, what is asked and measured, versions."""
         everything = msgspec.json.encode([msgspec.to_builtins(self), np.__version__], order="deterministic")

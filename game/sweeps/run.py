@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import time
 from collections import Counter
@@ -82,7 +83,8 @@ def _is_failure(records: Sequence[Sequence[Any]]) -> bool:
 class Journal:
     """A file beside the output: one line says which sweep it is of, each other line what some variants came to.
 
-    Lines are only ever added, each in one write; what a kill left of a line is dropped when it is read.
+    Lines are only ever added, each in one write; what a kill left of a line is dropped when it is read, and a
+    line that is damaged counts for nothing.
     Without an output it is kept in memory only.
     """
 
@@ -98,31 +100,48 @@ class Journal:
         title = msgspec.json.encode({"pinjoint sweep": self._plan.fingerprint()})
         with open(self.path, "a+b") as file:
             file.seek(0)
-            lines = file.read().split(b"\n")[:-1]  # what follows the last line end is part of a line
-            if len(lines) <= 1:
-                file.truncate(0)
-                _append(file, title)
-                return
-            if lines[0] != title:
+            kept = file.read()
+            lines = kept.split(b"\n")[:-1]  # what follows the last line end is part of a line
+            if lines[:1] != [title] and not title.startswith(kept):
                 raise SweepError(
-                    f"{self.path} keeps an unfinished sweep of another model, variation, seed or version."
-                    " Repeat its command to finish it, or delete that file, or choose another --output."
+                    f"{self.path} keeps an unfinished sweep of another model, variation, seed or version, or it is"
+                    " something else. Repeat its command to finish it, or delete that file, or choose another"
+                    " --output."
                 )
             file.truncate(sum(len(line) + 1 for line in lines))
+            if not lines:
+                _append(file, title)
         for line in lines[1:]:
-            self.finished.update((number, records) for number, records in msgspec.json.decode(line))
+            self.finished.update(self._outcomes(line))
+
+    def _outcomes(self, line: bytes) -> list[Outcome]:
+        """What a line says; nothing if it is damaged, so that its variants are computed anew."""
+        seal, _, content = line.partition(b" ")
+        if seal != _seal(content):
+            return []
+        try:
+            found = msgspec.json.decode(content, type=list[Outcome])
+        except (ValueError, RecursionError):
+            return []
+        return found if all(map(self._plan.allows, found)) else []
 
     def add(self, outcomes: Sequence[Outcome]) -> None:
         """Keep what some variants came to; it survives a kill from now on."""
         if self.path is not None:
             with open(self.path, "ab") as file:
-                _append(file, msgspec.json.encode(outcomes))
+                content = msgspec.json.encode(outcomes)
+                _append(file, _seal(content) + b" " + content)
         self.finished.update(outcomes)
 
     def remove(self) -> None:
         """The results are written; nothing is left to keep."""
         if self.path is not None:
             self.path.unlink(missing_ok=True)
+
+
+def _seal(content: bytes) -> bytes:
+    """Tells whether a line is as it was written: in a damaged one another digit would go unnoticed."""
+    return hashlib.sha256(content).hexdigest()[:16].encode()
 
 
 def _append(file: BinaryIO, line: bytes) -> None:

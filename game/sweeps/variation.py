@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from components.model import Model
+from components.wording import cut
 from game.paths import EVERY, PathError, Target, locate, read_value, settable
 
 Value = float | bool | str | None
@@ -135,7 +136,7 @@ def _read(model: Model, text: str) -> Variation:
             return _random(target, rest[1:])
         raise PathError(f"it has no values; {FORMS}.")
     except PathError as error:
-        raise SweepError(f"--vary {text}: {error}") from None
+        raise SweepError(f"--vary {cut(text)}: {error}") from None
 
 
 def _label(target: Target, element: str) -> str:
@@ -151,7 +152,7 @@ def _values(target: Target, text: str) -> tuple[Value, ...]:
     values = tuple(read_value(target, part) for part in text.split(","))
     for value in values:
         if isinstance(value, str) and (target.field.dtype is not str or not value):
-            raise PathError(f"'{value}' is no value of {target.field.title}; {FORMS}.")
+            raise PathError(f"'{cut(str(value))}' is no value of {target.field.title}; {FORMS}.")
     return values
 
 
@@ -160,8 +161,8 @@ def _range(parts: Sequence[str]) -> tuple[float, ...]:
     if len(parts) not in (3, 4) or (len(parts) == 4 and parts[3] != "log"):
         raise PathError(f"a range has a start, a stop and a count; {FORMS}.")
     start, stop = _finite(parts[0]), _finite(parts[1])
-    if not (parts[2].isdecimal() and 1 <= int(parts[2]) <= MOST_VARIANTS):
-        raise PathError(f"'{parts[2]}' is no count; write a whole number from 1 on.")
+    if not (re.fullmatch("[0-9]{1,9}", parts[2]) and 1 <= int(parts[2]) <= MOST_VARIANTS):
+        raise PathError(f"'{cut(parts[2])}' is no count; write a whole number from 1 on.")
     if spaced is np.geomspace and not start * stop > 0.0:
         raise PathError("equal ratios do not reach or cross 0; leave :log out, or change the limits.")
     return tuple(spaced(start, stop, int(parts[2])).tolist())

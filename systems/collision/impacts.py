@@ -32,15 +32,21 @@ class Impacts:
         self._table = np.zeros((0, len(_COLUMNS)))
         self._first = self._count = model.clock.collisions  # of the run, in the table and after it
 
-    def record(self, rows: NDArray[np.float64]) -> None:
-        """Add impacts, shape (k, 7), to the impacts that the clock has counted."""
+    def record(self, rows: NDArray[np.float64], forgotten: int = 0) -> None:
+        """Add impacts, shape (k, 7), to the impacts that the clock has counted.
+
+        forgotten: how many more came before them, which are counted, but not kept.
+        """
         self._take_back()
+        excess = max(len(rows) - MOST_KEPT, 0)
+        rows, forgotten = rows[excess:], forgotten + excess
+        if forgotten:
+            self._first = self._count = self._count + forgotten
         kept = self._count - self._first
         if kept + len(rows) > MOST_KEPT:
             kept = max(MOST_KEPT // 2 - len(rows), 0)
             self._table = self._table[self._count - self._first - kept : self._count - self._first]
             self._first = self._count - kept
-            rows = rows[-MOST_KEPT:]
         if kept + len(rows) > len(self._table):
             larger = np.zeros((max(2 * len(self._table), kept + len(rows), 256), len(_COLUMNS)))
             larger[:kept] = self._table[:kept]

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from components.field import Vector
 from components.model import Model
+from components.round_numbers import round_down
 from components.view import View
 from systems.edit.placing import SNAP_REACH
 
@@ -40,7 +39,7 @@ def arrow_value(view: View, start: Vector, pixel: Vector, usual: float) -> Vecto
     An arrow of COMFORTABLE length is about `usual`, to a scale of 1, 2 or 5 times a power of ten for each
     point. Whole points count; a component within reach of zero is zero.
     """
-    scale = _rounded_down(usual / COMFORTABLE)
+    scale = round_down(usual / COMFORTABLE)
     origin = view.camera.to_pixels(start)
     across = (pixel[0] - origin[0]) / view.pixel_ratio
     up = (origin[1] - pixel[1]) / view.pixel_ratio
@@ -52,12 +51,5 @@ def arrow_value(view: View, start: Vector, pixel: Vector, usual: float) -> Vecto
 
 def arrow_end(view: View, start: Vector, value: Vector, usual: float) -> Vector:
     """The point (m) of the picture where the arrow for a value ends."""
-    metres = view.pixel_ratio / _rounded_down(usual / COMFORTABLE) / view.camera.scale
+    metres = view.pixel_ratio / round_down(usual / COMFORTABLE) / view.camera.scale
     return start[0] + metres * value[0], start[1] + metres * value[1]
-
-
-def _rounded_down(value: float) -> float:
-    """The largest of …, 1, 2, 5, 10, 20, … that is at most `value`."""
-    power = 10.0 ** math.floor(math.log10(value))
-    step = next(step for step in (5.0, 2.0, 1.0, 0.5) if step * power <= value * (1.0 + 1e-9))
-    return float(f"{step * power:.12g}")

@@ -12,6 +12,9 @@ DIVERGENCE_SHARE = 0.2  # of all energy ever supplied; smaller: may stop good ru
 YIELDING_SHARE = 0.5  # of what yielding dissipated, which is of first order where a step passes the strength
 WOBBLE_SHARE = 10.0  # of all energy supplied; at stable steps of the thesis' scheme at most 8 is possible
 INSTABILITY_SHARE = 2.0  # of all energy ever supplied; at stable steps at most 1 is possible
+AMPLIFIED = 50.0  # times all energy ever supplied; Verlet amplifies one mode as much at 0.99 of its stable step
+LARGEST_ENERGY = 1e90  # J, of the largest mass at the largest speed that can be computed with
+LOST_UNSEEN = 1e-9  # of all energy ever supplied; larger: motion that the method took passes for rest
 AT_TAUT = 1e-9  # elastic strain within which a cable's motion tells whether it is slack
 SMALLEST_ENERGY = 1e-24  # J, below which nothing is told from round-off
 
@@ -93,7 +96,8 @@ def conserved(measures, account, dt, shadow):
 def judge(measures, account, dt, shadow, ahead, loads_are_over):
     """The StopReason that follows from the measures of a state: DONE (go on), REST or DIVERGED.
 
-    measures, account: see Measure and Account in systems/entries.py; the scales in `account` are kept up to date.
+    measures, account: see Measure and Account in systems/entries.py; the scales and the largest imbalance in
+        `account` are kept up to date.
     shadow: 1 if the integrator conserves kinetic − (h²/8) fᵀM⁻¹f + elastic, 2 if it does with velocities
         half a step earlier, -1 if it is as exact as its tolerance, else 0.
     ahead: energy that varying loads will supply in the next step (J); after a jump they have moved the mass but
@@ -101,33 +105,41 @@ def judge(measures, account, dt, shadow, ahead, loads_are_over):
 
     Diverged: energy came from nowhere, more than a share of all that was supplied (or, where nothing is
     conserved, of what one step can move) and of what yielding took. Beyond the stable step Verlet conserves
-    its energy too, while the second term grows past the elastic energy, and both past all that was supplied.
+    its energy too, while the second term grows past the elastic energy, and both past all that was supplied;
+    at the stable step the two are equal, and there is many times more energy than was supplied.
     Rest: the largest residual and the kinetic energy are small relative to the present forces or, in a model that
-    swings out to nothing, to a small part of the largest ever.
+    swings out to nothing, to a small part of the largest ever; and it was not the method that took the motion.
     """
     kinetic, elastic = measures[Measure.KINETIC], measures[Measure.ELASTIC]
     power_norm, largest = measures[Measure.POWER_NORM], measures[Measure.LARGEST_FORCE]
     work, begun = account[Account.WORK], account[Account.INITIAL_ENERGY]
+    damped = account[Account.DISSIPATED_DAMPING]
     supplied = work + measures[Measure.POTENTIAL] - account[Account.POTENTIAL_REFERENCE]
+    lost = account[Account.DISSIPATED_PLASTIC] + account[Account.DISSIPATED_IMPACT]
     deficit = min(max(shadow, 0.0), 1.0) * dt * dt / 8.0 * power_norm
     swinging = kinetic + 0.5 * dt * measures[Measure.POWER] + deficit if shadow == 2.0 else kinetic
+    present = swinging + elastic + lost - supplied - begun
     created = conserved(measures, account, dt, shadow) - account[Account.GUARD_ENERGY]
     if shadow < 0.0:
-        created = min(created, kinetic + elastic - supplied - begun)
+        created = min(created, present)
     account[Account.FORCE_SCALE] = max(account[Account.FORCE_SCALE], largest)
     supply = max(abs(begun), abs(work), abs(supplied), ahead)
     wobble = min(dt * dt * power_norm, WOBBLE_SHARE * supply) if shadow == 0.0 else 0.0
     account[Account.ENERGY_SCALE] = max(account[Account.ENERGY_SCALE], supply, wobble)
     scale = account[Account.ENERGY_SCALE]
+    if abs(present + damped) > abs(account[Account.LARGEST_IMBALANCE]):
+        account[Account.LARGEST_IMBALANCE] = -present - damped
     bound = DIVERGENCE_SHARE * scale + YIELDING_SHARE * account[Account.DISSIPATED_PLASTIC] + SMALLEST_ENERGY
-    if not created <= bound:
+    amplified = AMPLIFIED * scale + SMALLEST_ENERGY
+    if not (created <= bound and present <= amplified and kinetic <= LARGEST_ENERGY):
         return StopReason.DIVERGED
     if min(max(swinging, elastic), deficit - elastic) > INSTABILITY_SHARE * scale + SMALLEST_ENERGY:
         return StopReason.DIVERGED
     still_force = REST_RESIDUAL * max(largest, SMALL_SHARE * account[Account.FORCE_SCALE])
     still_energy = REST_RESIDUAL**2 * max(elastic, SMALL_SHARE**2 * scale)
     is_still = measures[Measure.RESIDUAL] <= max(still_force, 8.0 * measures[Measure.ROUND_OFF])
-    if loads_are_over and is_still and kinetic <= still_energy:
+    is_its_own = -present - damped <= damped + LOST_UNSEEN * scale + SMALLEST_ENERGY
+    if loads_are_over and is_still and kinetic <= still_energy and is_its_own:
         return StopReason.REST
     return StopReason.DONE
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from components.load import loads_end
 from components.model import Model
 from components.numeric_range import incomputable
+from components.round_numbers import round_near
 
 Array = NDArray[np.float64]
 
@@ -31,7 +32,7 @@ def natural_pace(model: Model) -> float:
     end = loads_end(model)
     if math.isfinite(end) and end > 0.0:
         pace = max(pace, end / LOADING_SHOWN)
-    return _rounded(pace)
+    return round_near(pace)
 
 
 def _response_time(model: Model) -> float | None:
@@ -152,8 +153,3 @@ def _flight_pace(model: Model) -> float:
         times.append(math.sqrt(2.0 * size / pull))
     pace = min(times, default=FLIGHT_SHOWN) / FLIGHT_SHOWN
     return 1.0 if REAL_TIME[0] <= pace <= REAL_TIME[1] else pace
-
-
-def _rounded(pace: float) -> float:
-    power = 10.0 ** math.floor(math.log10(pace))
-    return float(min((1.0, 2.0, 5.0, 10.0), key=lambda step: abs(math.log(step * power / pace)))) * power

@@ -14,6 +14,8 @@ from systems.islands import Rows
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+UNSEEN = 1e-6  # residual of a motion that is lost in rounding, of the largest force; larger: it is not at rest
+
 _BEYOND = np.errstate(over="ignore", invalid="ignore")  # a number that is not finite is not at rest
 
 
@@ -84,6 +86,18 @@ class RestMeasure:
         )
         measures[Measure.ROUND_OFF] = self.round_off[rods].max(initial=0.0)
         return measures[MEASURED]
+
+
+def rests_unseen(measures: Array, lost: float, damped: float, energy_scale: float) -> bool:
+    """True if a state whose steps no longer change anything is at rest but for rounding, within some more digits.
+
+    measures: as of Program. lost: by the steps (J). damped: taken by dampers and drag (J).
+    """
+    from systems.physics.kernels import LOST_UNSEEN
+
+    residual, largest = measures[Measure.RESIDUAL], measures[Measure.LARGEST_FORCE]
+    is_still = residual <= UNSEEN * largest and measures[Measure.KINETIC] <= UNSEEN**2 * energy_scale
+    return bool(is_still and lost <= damped + LOST_UNSEEN * energy_scale)
 
 
 def _largest(count: int, *values: tuple[Rows, Array]) -> Array:

@@ -85,7 +85,7 @@ def largest_eigenvalues(operator: Callable[[Array], Array], rows: int, bounds: A
         basis.append(vector)
         product = operator(vector.reshape(-1, 2)).reshape(blocks, -1)
         diagonal.append((product * vector).sum(axis=1))
-        for known in basis:
+        for known in basis * 2:  # once leaves some of them where little else is left; twice is enough
             product -= (product * known).sum(axis=1)[:, None] * known
         norm = np.sqrt((product * product).sum(axis=1))
         off_diagonal.append(norm)

@@ -33,6 +33,8 @@ PROVIDED_TO: Mapping[str, tuple[str, ...]] = {  # by what the kernel is called f
 PROVIDED = {name for names in PROVIDED_TO.values() for name in names}
 TRIAL = {"particles_displacement": "displacement", "particles_velocity": "velocity"}
 
+KERNELS = ("kernel", "branch", "margin", "potential")  # of a system, as its attributes
+
 WIDEST_ROW = 64  # numbers of an array that a kernel gets, as a tuple; more would take long to compile
 
 _KINDS = ("rods", "particles", "pairs", "loads")
@@ -41,6 +43,8 @@ _RESULTS = {
     "particles": "a pair, the force (fx, fy) in kN",
     "pairs": "a pair, the force (fx, fy) on the first particle in kN",
     "potential": "one number, the energy of two particles (kN·m)",
+    "branch": "one number, the branch that the rod is on",
+    "margin": "one number, positive while the rod stays on its branch",
     "loads": "one number, the factor of the load",
     "commit": "a pair, the new value of the column and the energy dissipated (kN·m)",
     "event of rods": "one number, whose sign counts",
@@ -243,9 +247,8 @@ def shape_given(b: Bound, parameter: str, model: Model) -> tuple[int, ...]:
     """The shape of what a kernel gets for a parameter: of a number (), of a vector, such as `apart`, (2,)."""
     if parameter in PROVIDED:
         return (2,) if parameter in ("apart", "drift") else ()
-    single, shape = False, ()
     if parameter in b.arrays:
-        shape = b.arrays[parameter].shape[1:]
+        single, shape = False, b.arrays[parameter].shape[1:]
     else:
         table, _, column = parameter.partition("_")
         single, shape = model.tables[table].kind.single, model.tables[table].fields[column].shape
@@ -313,7 +316,8 @@ def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
     """Raise ProgramError unless the parameter is provided, an array of the system or a column that it declares."""
     rows, name = b.rows, b.system.name
     provided = PROVIDED_TO[b.purpose]
-    if parameter in ("time", "dt", "drift", "particles_velocity") and getattr(b.system, "potential", ""):
+    conservative = isinstance(b.system, Law) and b.system.potential
+    if parameter in ("time", "dt", "drift", "particles_velocity") and conservative:
         raise ProgramError(
             f"{name} has a potential, so that its force depends on places alone, but takes '{parameter}'; drop one."
         )

@@ -8,7 +8,7 @@ from typing import Any
 from components.model import Model
 from systems.base import Integrator, StepSystem
 from systems.entries import Mark
-from systems.program.binding import StepRole, bind
+from systems.program.binding import Bound, StepRole, bind
 from systems.program.loops import RodLoop
 from systems.program.pasting import fragment, pasted
 from systems.program.templates import events, forces, implicit, rods
@@ -31,6 +31,11 @@ class ControlledWriter(Writer):
         self.branches = [(bind(s, model, "branch"), bind(s, model, "margin")) for s in self.branching]
         self.names |= {b.call: b.function for pair in self.branches for b in pair} | {"lowest": lowest}
         self._add_columns(b for pair in self.branches for b in pair)
+
+    @property
+    def kernels(self) -> list[Bound]:
+        """All kernels of the systems, which are tried one by one if the program does not compile."""
+        return [*super().kernels, *(b for pair in self.branches for b in pair)]
 
     @property
     def scratch(self) -> tuple[str, ...]:

@@ -64,5 +64,7 @@ class NearPairs:
 
 def pairs_within(model: Model, distance: float) -> Rows:
     """Rows i < j of the particles at most so far from each other (m) now, in ascending order, shape (k, 2)."""
+    if distance == math.inf:
+        return np.column_stack(np.triu_indices(model.particles.count, 1))
     place = model.particles.position + model.particles.displacement
     return near_pairs(place, np.full(len(place), 0.5 * distance))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -36,7 +37,7 @@ def cores() -> int:
         return 1
     there = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     asked = os.environ.get(VARIABLE, "")
-    return min(max(int(asked), 1), there) if asked.isdigit() else there
+    return min(max(int(asked), 1), there) if re.fullmatch("[0-9]{1,9}", asked) else there
 
 
 def make_program(

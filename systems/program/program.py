@@ -87,7 +87,7 @@ class Program:
                 state = [self._arrays[name][:0] for name in STATE]
                 self.module.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
         except Exception as error:  # numba raises many kinds
-            raise explain(self._writer.bound, self.integrator, self.model, error) from error
+            raise explain(self._writer.kernels, self.integrator, self.model, error) from error
         note_compiled(self.module)
 
     def _of_no_rods(self) -> list[Column]:
@@ -322,7 +322,8 @@ class Program:
     def conserved_energy(self) -> float:
         """The energy that the integrator conserves, less the work done so far (J), in the state last observed."""
         conserved = self.module.conserved.py_func  # by itself it would have to be compiled in every process
-        return float(conserved(self.measures, self._account, float(self._control[1]), self.module.SHADOW))
+        with np.errstate(over="ignore", invalid="ignore"):  # of a state that is about to be given up
+            return float(conserved(self.measures, self._account, float(self._control[1]), self.module.SHADOW))
 
 
 def _by_table_and_role(model: Model, written: Iterable[str]) -> list[tuple[str, list[str], Role]]:

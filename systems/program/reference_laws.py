@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from components.field import Vector
 from components.model import Model
 from systems.base import StepSystem
-from systems.broad_phase import Rows
 from systems.program.binding import Bound, StepRole, bind, by_role, written_row
 from systems.program.loops import RodLoop
 from systems.program.near_pairs import pairs_within
@@ -35,10 +35,14 @@ CALLS, TRIALS = 100_000, 5  # the fastest trial counts
 
 
 class KernelRows:
-    """Calls kernels one row at a time, in the present state of a model."""
+    """Calls kernels one row at a time, in the present state of a model.
 
-    def __init__(self, model: Model) -> None:
+    Of pairs, turned: the second particle of each comes first; moved: `apart` is longer by this share (x, y) of its length.
+    """
+
+    def __init__(self, model: Model, *, turned: bool = False, moved: Vector = (0.0, 0.0)) -> None:
         self.model = model
+        self._turned, self._moved = turned, moved
         self.provided: dict[str, Any] = {"time": model.clock.time, "dt": model.clock.step_size}
         self.provided |= _geometry(model)
         self.provided["axial_force"] = np.zeros(model.rods.count)
@@ -67,7 +71,7 @@ class KernelRows:
 
     def _count(self, bound: Bound) -> int:
         if bound.each == "pairs":
-            return len(self._pairs(bound))
+            return len(pairs_within(self.model, bound.cutoff))
         if bound.each == "loads":
             return len(bound.arrays[f"{bound.prefix}_first"])
         return self.model.tables[bound.each or "rods"].count
@@ -77,22 +81,28 @@ class KernelRows:
         count = self._count(bound)
         if bound.each == "loads":
             return [np.full(count, self.provided["time"]), bound.arrays[f"{bound.prefix}_first"]]
+        if bound.each == "pairs":
+            return [self._of_pairs(bound, parameter) for parameter in bound.parameters]
         return [self._column(bound, parameter, count) for parameter in bound.parameters]
 
-    def _pairs(self, bound: Bound) -> Rows:
-        """The rows of the particles that a law of pairs acts on."""
-        return pairs_within(self.model, bound.cutoff)
+    def apart(self, bound: Bound) -> Numbers:
+        """The vectors between the particles of each pair that a law of pairs acts on (m)."""
+        return self._of_pairs(bound, "apart")
+
+    def _of_pairs(self, bound: Bound, parameter: str) -> NDArray[Any]:
+        """One entry for each pair of particles that a law of pairs acts on."""
+        pairs = pairs_within(self.model, bound.cutoff)[:, :: -1 if self._turned else 1]
+        if parameter in _OF_PAIRS:
+            values = np.sum([self.model.column(name) for name in _OF_PAIRS[parameter]], axis=0)
+            between = values[pairs[:, 1]] - values[pairs[:, 0]]
+            return between + np.hypot(*between.T)[:, None] * (
+                self._moved if parameter == "apart" else (0.0, 0.0)
+            )
+        if parameter in bound.arrays or parameter.startswith("particles_"):
+            return self._column(bound, parameter, self.model.particles.count)[pairs]
+        return self._column(bound, parameter, len(pairs))
 
     def _column(self, bound: Bound, parameter: str, count: int) -> NDArray[Any]:
-        if parameter in _OF_PAIRS:
-            first, second = self._pairs(bound).T
-            values = sum(self.model.column(name) for name in _OF_PAIRS[parameter])
-            return np.asarray(values[second] - values[first])
-        if bound.each == "pairs" and (parameter in bound.arrays or parameter.startswith("particles_")):
-            own = bound.arrays.get(parameter)
-            return (self.model.column(parameter.replace("_", ".", 1)) if own is None else own)[
-                self._pairs(bound)
-            ]
         if parameter in bound.arrays:
             return bound.arrays[parameter]
         if parameter in self.provided:

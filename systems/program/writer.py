@@ -158,6 +158,11 @@ class Writer:
         if self.pairs:
             self.columns = list(dict.fromkeys([*self.columns, "particles_position", *ARRAYS]))
 
+    @property
+    def kernels(self) -> list[Bound]:
+        """All kernels of the systems, which are tried one by one if the program does not compile."""
+        return [*self.bound, *self.potentials.values()]
+
     def _add_columns(self, bound: Iterable[Bound]) -> None:
         names = dict.fromkeys(self.columns)
         for b in bound:

@@ -30,6 +30,7 @@ from systems.render.typography import WEIGHTS
 
 _MARGIN = 4.0  # pixels around the viewport within which cuts are not seen
 _FAR = 1e7  # pixels; what is larger looks the same
+_FARTHEST = 1e9  # pixels; places beyond it are moved there
 _SHAPES: dict[type, dict[str, tuple[int | None, ...]]] = {  # of a mark's arrays; None: any number
     Strokes: {"start": (None, 2), "end": (None, 2)},
     Fills: {"corners": (None, None, 2)},
@@ -53,11 +54,13 @@ def framed(mark: Mark, viewport: Viewport, unit: float) -> Iterator[Mark]:
     match mark:
         case Strokes():
             width = min(mark.width, 4.0 * float(np.hypot(*(high - low))))
-            start, end, _ = clip_segments(mark.start, mark.end, low - width - _MARGIN, high + width + _MARGIN)
+            reach = width + _MARGIN
+            start, end, _ = clip_segments(_within(mark.start), _within(mark.end), low - reach, high + reach)
             yield replace(mark, start=start, end=end, width=width)
         case Fills():
-            yield from _fills(mark.corners, mark.colour, viewport)
+            yield from _fills(_within(mark.corners), mark.colour, viewport)
         case Bars():
+            mark = replace(mark, start=_within(mark.start), end=_within(mark.end), rise=_within(mark.rise))
             yield from _fills(mark.corners, mark.colour, viewport)
         case Stamps():
             yield from _stamps(mark, viewport)
@@ -145,6 +148,11 @@ def _cut(polygon: Points, low: Points, high: Points) -> Points:
     return polygon
 
 
+def _within(places: Points) -> Points:
+    """Places at distances with which one can compute."""
+    return np.clip(places, -_FARTHEST, _FARTHEST)
+
+
 def _near(at: Points, reach: float, viewport: Viewport) -> Any:
     """Which of some places (n, 2) lie within a reach of the viewport."""
     low, high = bounds(viewport)
@@ -153,7 +161,7 @@ def _near(at: Points, reach: float, viewport: Viewport) -> Any:
 
 def _stamps(mark: Stamps, viewport: Viewport) -> Iterator[Mark]:
     """Stamps near the viewport; large ones as polygons."""
-    mark = replace(mark, at=mark.at.reshape(-1, 2), size=min(mark.size, _FAR), unit=min(mark.unit, _FAR))
+    mark = replace(mark, at=_within(mark.at), size=min(mark.size, _FAR), unit=min(mark.unit, _FAR))
     largest = mark.size if mark.symbol in SYMBOLS else 20.0 * mark.size  # of an icon: of a unit of its square
     reach = largest + 2.0 * SUPPORT_DEPTH * mark.unit
     mark = replace(mark, at=mark.at[_near(mark.at, reach, viewport)])
@@ -171,7 +179,7 @@ def _stamps(mark: Stamps, viewport: Viewport) -> Iterator[Mark]:
 
 def _discs(mark: Discs, viewport: Viewport, unit: float) -> Iterator[Mark]:
     """Discs near the viewport; large ones as polygons."""
-    at, radius = mark.at.reshape(-1, 2), np.minimum(mark.radius, _FAR)
+    at, radius = _within(mark.at), np.minimum(mark.radius, _FAR)
     large = radius > LARGEST_STAMP * unit
     small = ~large & _near(at, LARGEST_STAMP * unit, viewport)
     yield replace(mark, at=at[small], radius=radius[small], rim=min(mark.rim, LARGEST_STAMP * unit))
@@ -194,8 +202,8 @@ def _panel(mark: Panel, low: Points, high: Points) -> Iterator[Panel]:
     """A panel, cut where its round corners are not seen."""
     radius = min(mark.radius, mark.width / 2, mark.height / 2, float((high - low).max()))
     reach = 2.0 * radius + _MARGIN
-    left, top = max(mark.left, low[0] - reach), max(mark.top, low[1] - reach)
-    right, bottom = min(mark.left + mark.width, high[0] + reach), min(mark.top + mark.height, high[1] + reach)
+    first, size = _within(np.array(mark[:2])), np.minimum(mark[2:4], 4.0 * _FARTHEST)
+    (left, top), (right, bottom) = np.maximum(first, low - reach), np.minimum(first + size, high + reach)
     if right - left >= 1.0 and bottom - top >= 1.0:
         yield Panel(float(left), float(top), float(right - left), float(bottom - top), radius, *mark[5:])
 

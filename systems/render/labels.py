@@ -17,6 +17,7 @@ from systems.render.typography import line_height, text_width
 
 FAINT, STRONG = 1, 2  # lines that names never cover; lines that values cover only in need
 _COVERED = {"cover": (STRONG,), "spare": (FAINT, STRONG), "avoid": (0,)}  # by each attempt, at most
+_FAR = 1e6  # pixels
 _MANY_LINES = 4000
 _CELL = 3.0  # points: how finely the picture is divided into free and taken
 
@@ -48,8 +49,11 @@ class Occupancy:
     def line(self, start: Points, end: Points, strength: int) -> None:
         """Note lines, FAINT or STRONG, from `start` to `end`, each (n, 2), inside or near the viewport.
 
-        Of very many lines only a sample is noted: they leave no room between them in any case.
+        Of very many lines only a sample is noted: they leave no room between them in any case. Those that begin or end
+        very far away are left out.
         """
+        near = ((np.abs(start) < _FAR) & (np.abs(end) < _FAR)).all(axis=1)
+        start, end = start[near], end[near]
         some = slice(None, None, len(start) // _MANY_LINES + 1)
         start, end = start[some], end[some]
         left, top = self.viewport.left, self.viewport.top
@@ -91,8 +95,9 @@ class Occupancy:
         """First column and row, and those after the last, that boxes touch, shape (n, 4), within the picture."""
         height, width = self.taken.shape
         corners = corners - [self.viewport.left, self.viewport.top]
-        low = np.clip((corners / self.cell).astype(np.intp), 0, [width, height])
-        high = np.clip(((corners + sizes) / self.cell).astype(np.intp) + 1, low, [width, height])
+        most = [width, height]
+        low = np.clip(corners / self.cell, 0, most).astype(np.intp)
+        high = np.clip(np.clip((corners + sizes) / self.cell, -1, most).astype(np.intp) + 1, low, most)
         return np.concatenate([low, high], axis=1)
 
     def _cells(self, left: float, top: float, width: float, height: float) -> tuple[slice, slice]:

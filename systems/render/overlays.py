@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from components.camera import Viewport
+from components.round_numbers import round_down
 from components.view import BETWEEN
 from systems.render.marks import Mark, Panel, Stamps, Strokes, Text, boxes
 from systems.render.sheet import Sheet
@@ -309,8 +310,7 @@ def draw_scale(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     """
     v, u, size = sheet.viewport, sheet.unit, sheet.font(11.0)
     longest = min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale
-    decade = 10.0 ** math.floor(math.log10(longest))
-    metres = next(decade * step for step in (5.0, 2.0, 1.0) if decade * step <= longest * (1 + 1e-9))
+    metres = round_down(longest)
     notes = _displacements(sheet) + sheet.notes
     for length, said in ((metres * sheet.view.camera.scale, [written_length(metres), *notes]), (0.0, notes)):
         ruler = length + 8.0 * u if length else 0.0

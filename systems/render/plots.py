@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Vector
+from components.round_numbers import round_up
 from components.view import Plot
 from systems.render.marks import Mark, Panel, Points, Stamps, Strokes, Text
 from systems.render.theme import Colour, Theme
@@ -155,9 +156,7 @@ def _range(columns: list[NDArray[np.float64]]) -> Range:
 
 def round_ticks(values: Range, count: int = _TICKS) -> list[tuple[float, str]]:
     """Round values within a range, 1, 2 or 5 times a power of ten apart, and how they are written."""
-    raw = (values[1] - values[0]) / count
-    decade = 10.0 ** math.floor(math.log10(raw))
-    step = next(decade * factor for factor in (1.0, 2.0, 5.0, 10.0) if decade * factor >= raw)
+    step = round_up(values[1] / count - values[0] / count)
     first, last = math.ceil(values[0] / step), math.floor(values[1] / step)
     return [(n * step, written(n * step)) for n in range(first, last + 1)]
 

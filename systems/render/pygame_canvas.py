@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import unicodedata
 from collections.abc import Callable
 from functools import partial
 from importlib.resources import files
@@ -25,6 +26,8 @@ _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
 _SKETCHED = 1_500  # elements of a kind
+_UNDRAWN = "Cc", "Cs"  # controls and halves of characters, by their categories
+_LONGEST = 4000  # characters that are drawn of a text: more than any window is wide
 _MANY = 300  # bars, discs; and 50 pixels of strokes for each: from there on the compiled kernels pay
 
 
@@ -152,7 +155,7 @@ class Canvas:
     def _text(self, surface: pygame.Surface, mark: Text) -> None:
         key = (mark.text, mark.size, mark.colour, mark.weight)
         font = self._font(mark.size, mark.weight)
-        image = self._kept(key, lambda: font.render(mark.text, True, mark.colour[:3]))
+        image = self._kept(key, lambda: _written(font, mark))
         shift = {"left": 0.0, "centre": 0.5, "right": 1.0}[mark.anchor] * image.get_width()
         baseline = round(mark.y + capital_height(mark.size) / 2)
         surface.blit(image, (round(mark.x - shift), baseline - font.get_ascent()))
@@ -162,6 +165,17 @@ class Canvas:
             ("font", size, weight), lambda: pygame.font.Font(io.BytesIO(self._files[weight]), size)
         )
         return font
+
+
+def _written(font: pygame.font.Font, mark: Text) -> pygame.Surface:
+    """A text as an image: what no font can draw as "�", and nothing where there is nothing to see."""
+    text = mark.text[:_LONGEST]
+    if not text.isprintable():
+        text = "".join("�" if unicodedata.category(character) in _UNDRAWN else character for character in text)
+    try:
+        return font.render(text, True, mark.colour[:3])
+    except pygame.error:  # of no width, such as a mark that turns the direction of writing
+        return pygame.Surface((0, 0))
 
 
 def _fill(surface: pygame.Surface, corners: NDArray[np.float64], colour: Colour) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any
 
 import pygame
@@ -36,6 +37,11 @@ class PygameRender(System):
         self._placed: dict[str, Placed] = {}
         self._sketch = False  # the last picture was a sketch, before the drawing of large ones was compiled
 
+    def draw_on(self, surface: pygame.Surface, frame: Any) -> None:
+        """Draw on another surface, on which nothing is yet."""
+        self.surface, self._shown = surface, None
+        self.process(frame)
+
     def process(self, frame: Any) -> None:
         """Draw every stage of the scene, unless the picture would be the same as the last."""
         stages = frame.session.stages
@@ -51,6 +57,16 @@ class PygameRender(System):
                 self._canvas.draw(self.surface, compose(model, view, theme, placed))
                 self._sketch |= self._canvas.sketch
             self._shown = (id(self.surface), looks, _revisions(stages))
+
+
+def draw_unseen(frame: Any, size: tuple[int, int]) -> None:
+    """Draw a frame as in a window of that size in pixels, to find what cannot be drawn."""
+    _unseen().draw_on(pygame.Surface(size, depth=32), frame)
+
+
+@cache
+def _unseen() -> PygameRender:
+    return PygameRender(pygame.Surface((1, 1), depth=32))
 
 
 def _looked_at(shown: Model | Form | Toolbar, view: View) -> str:

@@ -7,12 +7,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from components.round_numbers import round_up
 from components.tags import Hovered, Selected
 from systems.render.clip import bounds, clip_segments
 from systems.render.labels import FAINT, STRONG, Label, half_size
 from systems.render.marks import Discs, Fills, Points, Rectangles, Strokes
 from systems.render.sheet import FEW, MANY, Rows, Sheet, typical_length
-from systems.render.symbols import LARGEST_STAMP, RIM, circle, dashed
+from systems.render.symbols import LARGEST_STAMP, RIM, arcs, circle, dashed
 from systems.render.theme import Colour, faded
 
 _CLOSEST_LINES = 8.0  # points between grid lines
@@ -43,17 +44,9 @@ def draw_grid(sheet: Sheet) -> None:
 
 def _grid_lines(low: float, high: float, spacing: float, sheet: Sheet) -> NDArray[np.float64]:
     pixels = spacing * sheet.view.camera.scale
-    step = spacing * _coarsening(_CLOSEST_LINES * sheet.unit / pixels)
+    step = spacing * max(round_up(_CLOSEST_LINES * sheet.unit / pixels), 1.0)
     first, last = math.ceil(low / step), math.floor(high / step)
-    return step * np.arange(first, last + 1, dtype=np.float64)
-
-
-def _coarsening(least: float) -> float:
-    """The smallest of 1, 2, 5, 10, 20, … that is at least `least`."""
-    if least <= 1.0:
-        return 1.0
-    decade = 10.0 ** math.floor(math.log10(least))
-    return next(decade * step for step in (1.0, 2.0, 5.0, 10.0) if decade * step >= least)
+    return step * (first + np.arange(last - first + 1, dtype=np.float64))
 
 
 def _lines(sheet: Sheet, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -162,13 +155,16 @@ def _draw_circles(sheet: Sheet, rows: Rows, ink: Colour, hollow: Colour, rim: fl
 def _draw_large_circles(
     sheet: Sheet, at: Points, radius: float, ink: Colour, hollow: Colour, rim: float
 ) -> None:
-    """Circles as polygons; filled up to the size at which the whole viewport may lie inside."""
-    corners = at[:, None] + circle(radius - rim / 2)
+    """Circles as polygons; of those so large that the whole viewport may lie inside, the arcs that may be seen."""
+    low, high = bounds(sheet.viewport)
     if radius < _LARGEST_FILLED:
+        corners = at[:, None] + circle(radius - rim / 2)
         sheet.marks.append(Fills(corners, hollow if rim else ink))
-    if rim:
         first, last = corners.reshape(-1, 2), np.roll(corners, -1, axis=1).reshape(-1, 2)
-        low, high = bounds(sheet.viewport)
+    else:
+        points = arcs(at, radius - rim / 2, (low + high) / 2, float(np.hypot(*(high - low))))
+        first, last = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2)
+    if rim:
         overlap = 0.5 * (last - first) / np.hypot(*(last - first).T)[:, None]  # pixel, so that joints close
         start, end, _ = clip_segments(first - overlap, last + overlap, low - rim, high + rim)
         sheet.marks.append(Strokes(start, end, rim, ink))

@@ -23,8 +23,12 @@ ENDING = (StopReason.EVENT, StopReason.DIVERGED, StopReason.UNRESOLVED)  # reaso
 SAFETY = 0.9  # share of the stable step that the automatic step takes in large models
 ACCURATE = 0.1  # share in small ones, whose steps cost next to nothing; error ∝ its square
 FIRST_SHARE = 0.1  # of 1/ω, the step at which error control begins
+CRAWLING = 1e-3  # of it: so much shorter ones under error control are told of
 FREE_STEP = 1e-3  # s, where nothing limits the step
 DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
+
+TOLD_SHARE = 0.1  # of all energy ever supplied; smaller: warns of lattices by automatic steps of Verlet
+TOLD_FROM = 1e-24  # J, below which nothing is told from round-off
 
 ERROR_CONTROL = (
     "step_error",
@@ -96,6 +100,10 @@ class StepPolicy:
         fits = 0.5 * wanted <= size <= min(1.5 * wanted, 0.95 * limits.stable_step)
         return None if fits else wanted
 
+    def crawls(self, limits: Limits, mean: float) -> bool:
+        """True if forces change so fast that error control takes tiny steps. mean: of many steps (s)."""
+        return self.controls_error and mean < CRAWLING * self.first(limits)[0]
+
     def limit(self, limits: Limits) -> float:
         """The longest step (s) under error control, by stability and contacts; 0: nothing limits it.
 
@@ -146,6 +154,24 @@ def is_sleep_review(steps: Any) -> Any:
 def is_before(time: Any, target: float) -> Any:
     """True where a time (s) is not yet the target (s), by more than round-off."""
     return target - time > 4.0 * math.ulp(target)
+
+
+def energy_is_off(imbalance: Any, scale: Any) -> Any:
+    """True where steps lost or created so much energy (J) that a person is told; numbers or arrays.
+
+    imbalance, scale: largest_imbalance and energy_scale of the clock.
+    """
+    return abs(imbalance) > TOLD_SHARE * scale + TOLD_FROM
+
+
+def energy_warning(imbalance: float, scale: float) -> str:
+    """The sentence that steps lost (positive) or created this energy (J); "" if it is a small part of all supplied."""
+    if not energy_is_off(imbalance, scale):
+        return ""
+    share = abs(imbalance) / max(scale, TOLD_FROM)
+    amount = f"{100.0 * share:.3g} % of" if share < 10.0 else f"{share:.3g} times"
+    did = "lost" if imbalance > 0.0 else "created"
+    return f"The steps {did} {amount} the energy that was supplied: the results may be as wrong."
 
 
 def residual(measures: Column) -> Column:

@@ -7,7 +7,9 @@ from contextlib import contextmanager
 
 from components.model import Model
 from components.rod import is_warm
+from components.settings import AUTOMATIC
 from systems.base import Integrator, Phase, StepSystem
+from systems.collision.free.discs import Discs
 from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
 from systems.collision.system import FreeFlight
@@ -94,11 +96,29 @@ class Programs:
     @property
     def _chosen(self) -> Integrator:
         """The integrator that the settings name; the automatic choice if they name none, or one that does not act here."""
-        named = INTEGRATORS.get(self._model.settings.integrator)
-        off = named is None or (named.mod is not None and named.mod.off)
-        if named is None or off or not self._schedule.is_active(named, self.scene):
-            return INTEGRATORS[choose(self._model)]
-        return named
+        name = self._model.settings.integrator
+        return INTEGRATORS[choose(self._model) if name == AUTOMATIC or self._refused else name]
+
+    @property
+    def _refused(self) -> str:
+        """Why the integrator that the settings name does not act here; "" if it does, or if they name none."""
+        name = self._model.settings.integrator
+        if name == AUTOMATIC:
+            return ""
+        named = INTEGRATORS.get(name)
+        if named is None:
+            return "of a mod that is not loaded"
+        if named.mod is not None and named.mod.off:
+            return "switched off with its mod"
+        return "" if self._schedule.is_active(named, self.scene) else self._schedule.inactive(named, self.scene)
+
+    @property
+    def note(self) -> str:
+        """What a person should know of the choice of the integrator; "" if it is the one that the settings name."""
+        refused = self._refused
+        if not refused or self.integrator.exact:
+            return ""
+        return f"The integrator {self._model.settings.integrator} is {refused}: {self.integrator.key} acts instead."
 
     @property
     def ready(self) -> bool:
@@ -118,6 +138,11 @@ class Programs:
         program = self.dynamics
         assert isinstance(program, Program)
         return program
+
+    @property
+    def flying(self) -> Discs | None:
+        """The discs of exact flight in the midst of a step, if there are any; binds nothing."""
+        return self._bound.flying if isinstance(self._bound, Flight) else None
 
     def bind(self) -> Dynamics:
         """Bind what moves the model to its columns. A mod whose system cannot join the program is switched off."""

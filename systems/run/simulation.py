@@ -21,11 +21,12 @@ from systems.collision.driven.stepper import DrivenCollisions
 from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
 from systems.collision.overlaps import part_overlaps
+from systems.physics.rest import rests_unseen
 from systems.program.program import OBSERVED
 from systems.program.writer import REVIEW_INTERVAL
 from systems.run.checkpoint import Checkpoint
 from systems.run.energy import Account, Energy
-from systems.run.policy import at_rest_since, begin_steps, is_sleep_review, residual
+from systems.run.policy import at_rest_since, begin_steps, energy_warning, is_sleep_review, residual
 from systems.run.program_steps import ProgramSteps
 from systems.run.programs import Dynamics, Programs
 from systems.run.recovery import Recovery
@@ -33,7 +34,13 @@ from systems.run.sleep import Sleep
 from systems.run.step_size import StepSize
 from systems.schedule import Plan, Schedule
 
-CHOSEN = ("step_size", "guard_energy", "initial_energy", "potential_reference")  # of the clock, as a run begins
+# Of the clock, as a run begins.
+CHOSEN = ("step_size", "guard_energy", "largest_imbalance", "initial_energy", "potential_reference")
+
+STUCK = (
+    f"Each {REVIEW_INTERVAL} steps lead back to the same state, though forces are not balanced or the integration took"
+    " the motion: what moves alternates, or is lost in rounding. Choose another time step."
+)
 
 ENDS = (StopReason.REST, StopReason.DIVERGED)  # of a run
 
@@ -46,6 +53,15 @@ class EventRecord:
     time: float
     fallen: tuple[str, ...]
     risen: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a run is: everything has happened up to a time (s)."""
+
+    time: float
+    steps: int
+    impacts: int
 
 
 class Simulation:
@@ -155,8 +171,9 @@ class Simulation:
             problem = incomputable(self.model)
             if not problem:
                 collides = any(system.impulsive for system in self.plan)
-                self.note = part_overlaps(self.model) if collides else ""  # of what edits left in one place
+                parted = part_overlaps(self.model) if collides else ""  # what edits left in one place
                 self.program.commit()  # rods that edits left beyond a strength yield
+                self.note = " ".join(filter(None, [self.programs.note, parted]))
                 self._account.close()
                 self._sleep.review(self.program)
                 self.step_size.begin(self.step_size.first())
@@ -311,11 +328,19 @@ class Simulation:
 
     def _review(self) -> None:
         """After a fixed number of steps: keep a safe state, see whether all stands still, adapt the step size."""
+        clock, safe = self.model.clock, self._recovery.safe
+        assert safe is not None
+        since, before = float(safe.columns["clock.time"][0]), int(safe.columns["clock.steps"][0])
         moves = self._recovery.keep(self.present())
-        if not moves and self.program.changes_end <= self.model.clock.time:
-            self._heed(StopReason.REST)  # all that happened was lost in rounding
-        else:
-            self.step_size.review()
+        if not moves and self.program.changes_end <= clock.time:
+            energy = self.energy
+            lost, damped = energy.imbalance, energy.dissipated_damping
+            if rests_unseen(self.program.measures, lost, damped, clock.energy_scale):
+                self._heed(StopReason.REST)  # all that happened was lost in rounding
+                return
+            if not self.warning:
+                self.note = STUCK
+        self.step_size.review((clock.time - since) / max(clock.steps - before, 1))
 
     def _recover(self, reason: StopReason) -> None:
         """Return to the last good state and go on without a mod or with shorter steps, or give up."""
@@ -371,13 +396,17 @@ class Simulation:
                 self.run_to(limit)
                 break
         if not self.halted:
-            self.message = _why_not_at_rest(self.program, limit)
+            self.message = _why_not_at_rest(self.program, self.energy, limit)
         return self.reason is StopReason.REST
 
     def _show(self, target: float) -> bool:
         """Show the moment `target` (s) within the next step; False if the step ends before, at an event or by failing."""
         started, before = time.perf_counter(), self.present()
-        reason = self._stepper.land(target)
+        try:
+            reason = self._stepper.land(target)
+        except BaseException:  # interrupted, or a mod failed
+            before.restore(self.model)
+            raise
         happened = reason is StopReason.EVENT and (self.integrator.controlled or self.programs.collides)
         if happened or self.model.clock.time != target:
             before.restore(self.model)
@@ -457,6 +486,30 @@ class Simulation:
 
     # --- reading -------------------------------------------------------------------------------------
 
+    @property
+    def progress(self) -> Progress:
+        """How far the run is, also in the midst of a step; changes nothing, so that it can be asked at any moment."""
+        clock, flying = self.model.clock, self.programs.flying
+        if flying is None:
+            return Progress(clock.time, clock.steps, clock.collisions)
+        return Progress(max(clock.time, flying.now), clock.steps, max(clock.collisions, flying.impacts))
+
+    @property
+    def warning(self) -> str:
+        """What a person should know though the run goes on, or has come to rest; "" if nothing."""
+        clock, warning = self.model.clock, "" if self.halted else self.step_size.warning
+        told = "" if warning else energy_warning(clock.largest_imbalance, clock.energy_scale)
+        if told:
+            warning = f"{told} {self.step_size.remedy(clock.step_size)}"
+        return " ".join(filter(None, [warning, self.note]))
+
+    @property
+    def said(self) -> str:
+        """Why the run ended, unless it was edited since, and what a person should know of it; "" if nothing."""
+        message = self.message if self.armed else ""
+        diverged = self.halted and self.reason is StopReason.DIVERGED
+        return message if diverged else " ".join(filter(None, [message, self.warning]))
+
     def observe(self) -> None:
         """Bring axial forces, lengths, reactions and energies up to date with the state."""
         self.program.observe()
@@ -483,7 +536,7 @@ class Simulation:
         return float(residual(self._measured()))
 
 
-def _why_not_at_rest(program: Dynamics, limit: float) -> str:
+def _why_not_at_rest(program: Dynamics, energy: Energy, limit: float) -> str:
     """The message of a run that did not come to rest by the time `limit` (s)."""
     message = f"Not at rest within {limit:g} s of simulated time."
     if program.lasting:
@@ -492,4 +545,6 @@ def _why_not_at_rest(program: Dynamics, limit: float) -> str:
         return f"{message} Nothing damps the motion, so it never will be; give rods damping or set a drag."
     if program.changes_end > limit:
         return f"{message} A load still changes; raise the limit."
+    if energy.imbalance > energy.dissipated_damping:
+        return f"{message} The steps, not dampers or drag, took most of the motion; make the time step smaller."
     return f"{message} Raise the limit, or the damping of the rods or the drag."

@@ -78,12 +78,19 @@ class StepSize:
         self._model.writable("clock.step_limit")[0] = limit
         return size
 
-    def review(self) -> None:
-        """Change automatic steps if what is stable changed much."""
-        if self._policy.controls_error:
-            self.limit_anew()
-        elif self._policy.fixed is None:
-            wanted = self._policy.reviewed(self.look_up(), self._model.clock.step_size)
+    def review(self, mean: float) -> None:
+        """Change automatic steps if what is stable changed much. mean: of the steps since the last review (s)."""
+        policy = self._policy
+        if policy.controls_error:
+            limits = self.look_up()
+            self._model.writable("clock.step_limit")[0] = policy.limit(limits)
+            if policy.crawls(limits, mean):
+                self.warning = (
+                    f"Forces change so fast that steps of {mean:.2g} s are needed, {1.0 / mean:.2g} for a second:"
+                    " look for a law that is singular, or much stiffer than the rods."
+                )
+        elif policy.fixed is None:
+            wanted = policy.reviewed(self.look_up(), self._model.clock.step_size)
             if wanted is not None:
                 self.begin(wanted)
 

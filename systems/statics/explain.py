@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from components.model import Model
+from components.wording import cut
 from systems.statics.equations import Array, Flags, Rows
 
 NAMED = 5  # at most so many by name, then "and 7 more"
@@ -17,7 +18,7 @@ ONE_WAY = 1e-3  # ratio of a particle's motions across and along, below which it
 
 def listed(names: Sequence[str]) -> str:
     """Up to NAMED names, as in "B, C and D", and the number of the others."""
-    shown = list(names[:NAMED])
+    shown = [cut(name) for name in names[:NAMED]]
     if len(names) > NAMED:
         return f"{', '.join(shown)} and {len(names) - NAMED} more"
     return " and ".join(filter(None, [", ".join(shown[:-1]), *shown[-1:]]))

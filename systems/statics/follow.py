@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from systems.statics.complementarity import yielding_set, yielding_sets
-from systems.statics.equations import ROUND_OFF, Array, Branches, Flags, Response, Structure, largest
+from systems.statics.equations import AT_LIMIT, ROUND_OFF, Array, Branches, Flags, Response, Structure, largest
 from systems.statics.factor import Factor, regular
 
 LARGEST_MOVE = 0.1  # of a rod's length, in one increment; larger: fewer increments, less sure of the branch
@@ -27,7 +27,10 @@ CONVERGED = 1e-11  # of the largest force: a smaller residual that falls no more
 EXACT_EVENTS = 500  # rods up to which every yield ends an increment; larger: slower, answers as exact
 HALF = 0.5  # share of an increment to try after it failed
 RESOLUTION = 1 / 8  # of the change of load, to which yields are told apart in larger structures
-EVENT = 1e-8  # of the change of load, to which a yield is located
+MOST_SHARES = (
+    20  # trials after which an increment is halved each time, where round-off hides the end of a piece
+)
+LEAST_SHARE = 0.01  # of an increment to try next where a rod leaves its piece sooner
 REVERSAL = 1e-5  # increment to which the end of yielding is located; the error goes with its square
 SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
 NARROWINGS = 42  # halvings that locate a loss of stability
@@ -275,12 +278,13 @@ class Path:
         """
         far = LARGEST_MOVE / max(self.structure.move(tangent.rate, point.response.reach), 1e-300)
         nearest = min(self._until_event(point, tangent), 0.99 * far * self.stretch(tangent))
-        trial, failed = min(increment, nearest), False
+        trial, failed, shares = min(increment, nearest), False, 0
         while trial > SMALLEST:
             found = self.attempt(point, tangent, trial)
             if isinstance(found, tuple):
                 return Step(*found, trial, increment if failed else 2.0 * increment)
-            trial *= found
+            shares += 1
+            trial *= found if shares < MOST_SHARES else min(found, HALF)
             if found == HALF:
                 increment, failed = trial, True
         return None
@@ -294,19 +298,17 @@ class Path:
             dt = self.end - point.t
         predicted = dt * tangent.rate
         guess = point.displacement + structure.spread(predicted)
-        found = self.correct(point, guess, point.t + dt, None if last else tangent)
+        found = self._found(point, tangent, guess, point.t + dt, None if last else tangent)
         if found is not None and found.t > self.end:
-            found = self.correct(point, found.displacement, self.end, None)
-        if found is None:
-            return HALF
+            found = self._found(point, tangent, found.displacement, self.end, None)
         reached = self._reached(point, tangent, found, dt)
         if isinstance(reached, tuple) and self._turned_back(point, tangent, *reached):
-            straight = self.correct(point, guess, point.t + dt, None)
-            reached = HALF if straight is None else self._reached(point, tangent, straight, dt)
+            straight = self._found(point, tangent, guess, point.t + dt, None)
+            reached = self._reached(point, tangent, straight, dt)
             if isinstance(reached, tuple) and self._is_near(point, tangent, *reached, predicted):
                 return reached
             return HALF
-        if not isinstance(reached, tuple):
+        if found is None or not isinstance(reached, tuple):
             return reached
         change = structure.gather(found.displacement - point.displacement)
         if self._reversed(tangent, found, reached[1], increment):
@@ -316,13 +318,26 @@ class Path:
         coarse = not self.exact_events and switched and abs(dt) <= RESOLUTION
         return reached if fine or coarse else HALF
 
+    def _found(
+        self, point: Point, tangent: Tangent, guess: Array, t: float, across: Tangent | None
+    ) -> Point | None:
+        """The equilibrium near a guess, as by `correct`; its rods may have left the pieces that the tangent is on."""
+        if not self.exact_events:
+            return self.correct(point, guess, t, across)
+        found = self.correct(point, guess, t, across, tangent)
+        if found is None or self._new_ends(point, found).any() or self._is_on(point, tangent, found):
+            return found
+        return self.correct(point, found.displacement, found.t, across)
+
     def _reached(
-        self, point: Point, tangent: Tangent, found: Point, dt: float
+        self, point: Point, tangent: Tangent, found: Point | None, dt: float
     ) -> tuple[Point, Tangent] | float:
         """A point found, with its tangent; or the share of the increment after which a rod left its piece."""
-        kink = self._kink(point, tangent, found, dt)
-        if kink < 1.0:
-            return max(kink, HALF)  # far sooner than by the tangent: the point found is on another branch
+        if found is None:
+            return HALF
+        share = self._share(point, tangent, found, dt)
+        if share < 1.0:
+            return share
         change = self.structure.gather(found.displacement - point.displacement)
         return found, self.tangent(found, change, tangent)
 
@@ -345,14 +360,21 @@ class Path:
         limit = (1.0 + MISS) * self.structure.move(predicted, reach)
         return following.stable and self.structure.move(change, reach) <= limit
 
-    def correct(self, start: Point, guess: Array, t: float, across: Tangent | None) -> Point | None:
-        """The equilibrium near a guess: at constant t, or on the plane across a tangent; None if not found."""
+    def correct(
+        self, start: Point, guess: Array, t: float, across: Tangent | None, piece: Tangent | None = None
+    ) -> Point | None:
+        """The equilibrium near a guess: at constant t, or on the plane across a tangent; None if not found.
+
+        piece: that in which all rods stay on the pieces of their laws that this tangent is on.
+        """
         structure = self.structure
         normal = across.rate / self.reference**2 if across is not None and self.reference > 0.0 else None
         displacement, step = guess, np.zeros_like(guess)
         before, dt, share, soft = math.inf, 0.0, 1.0, None
         for iteration in range(NEWTON_ITERATIONS):
             response = structure.respond(displacement, start.plastic_strain)
+            if piece is not None:
+                response = self._on_piece(start, piece, response)
             residual = structure.gather(self.load(t) - structure.internal(response))
             size, scale = largest(residual), self.largest_force(response)
             if not size <= 1e6 * scale:
@@ -422,29 +444,49 @@ class Path:
         wait[branches.outward * growth > 0.0] = np.inf
         return float(wait.min(initial=np.inf)) * self.stretch(tangent)
 
-    def _kink(self, point: Point, tangent: Tangent, found: Point, dt: float) -> float:
-        """Share of an increment after which the first rod left its piece; 1 if at the end or not at all.
+    def _on_piece(self, start: Point, piece: Tangent, response: Response) -> Response:
+        """A response as it were if all rods stayed on the pieces of their laws that a tangent at the start is on."""
+        branches = self.branches(start.response)
+        edge = np.where(branches.outward > 0.0, branches.high, branches.low)
+        force = np.where(piece.slack, 0.0, np.where(piece.flowing, edge, response.elastic_force))
+        return replace(response, axial_force=force, flowing=piece.flowing, slack=piece.slack)
 
-        Forces within the increment are quadratic, by their values at both ends and their rates at the start.
+    def _is_on(self, start: Point, piece: Tangent, found: Point) -> bool:
+        """True if the rods at a point are on the pieces of their laws that a tangent at the start is on."""
+        difference = found.response.axial_force - self._on_piece(start, piece, found.response).axial_force
+        return largest(difference) <= 4.0 * ROUND_OFF * self.largest_force(found.response)
+
+    def _new_ends(self, point: Point, found: Point) -> Array:
+        """1 or −1 for the rods that have gone beyond the upper or lower end of the piece that they were on, else 0."""
+        branches, force = self.branches(point.response), found.response.elastic_force
+        above = (force > branches.high) & (branches.outward <= 0.0)
+        below = (force < branches.low) & (branches.outward >= 0.0)
+        return above.astype(float) - below
+
+    def _share(self, point: Point, tangent: Tangent, found: Point, dt: float) -> float:
+        """Share of an increment after which the first rod left its piece; 1 if none did.
+
+        Forces within the increment are quadratic, by their values at both ends and their rates at the start. The
+        share ends hardly before the end of the piece, where the rod counts as at its limit.
         """
-        structure, branches, after = self.structure, self.branches(point.response), found.response
-        above = (after.elastic_force > branches.high) & (branches.outward <= 0.0)
-        new = above | ((after.elastic_force < branches.low) & (branches.outward >= 0.0))
-        if not self.exact_events or not new.any():
+        ends = self._new_ends(point, found) if self.exact_events else np.zeros(0)
+        if not ends.any():
             return 1.0
-        edge, sign = np.where(above, branches.high, branches.low), np.where(above, 1.0, -1.0)[new]
+        structure, branches, new = self.structure, self.branches(point.response), ends != 0.0
+        edge, sign = np.where(ends > 0.0, branches.high, branches.low)[new], ends[new]
+        size = np.where(edge == 0.0, self.largest_force(found.response), np.abs(edge))
+        near = AT_LIMIT * size + 4.0 * ROUND_OFF * (structure.stiffness * np.abs(found.response.strain))[new]
         stiffness = (structure.stiffness / structure.rest_length)[new]
-        margin = sign * (edge - branches.force)[new]
+        margin = np.maximum(sign * (edge - branches.force[new]) - 0.5 * near, 0.0)
         linear = sign * stiffness * structure.elongation_rate(dt * tangent.rate, point.response)[new]
-        quadratic = sign * (after.elastic_force - branches.force)[new] - linear
+        quadratic = sign * (found.response.elastic_force - branches.force)[new] - linear
         root = np.sqrt(np.maximum(linear**2 + 4.0 * quadratic * margin, 0.0))
         share = np.where(
             linear >= 0.0,
             2.0 * margin / np.maximum(linear + root, np.finfo(float).tiny),
             (root - linear) / (2.0 * np.maximum(quadratic, np.finfo(float).tiny)),
         )
-        first = float(share.min())
-        return min(first, 0.99) if (1.0 - first) * abs(dt) > EVENT else 1.0
+        return min(max(float(share.min()), LEAST_SHARE), 1.0 - AT_LIMIT)
 
     def _reversed(self, tangent: Tangent, found: Point, following: Tangent, increment: float) -> bool:
         """True if a rod stopped flowing well within the increment."""

@@ -12,9 +12,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from components.field import FieldError
+from components.field import LARGEST, FieldError
 from components.model import Model
 from components.numeric_range import incomputable
+from components.wording import quoted
 from systems.statics.contacts import Discs, Sinking
 from systems.statics.equations import ROUND_OFF, Array, Flags, Rows, Structure, largest, normalised
 from systems.statics.events import Event, NoEquilibrium
@@ -171,7 +172,13 @@ def _factors(given: Sequence[float] | float) -> list[float]:
     except (TypeError, ValueError):
         factors = np.empty(0)
     if factors.ndim != 1 or len(factors) == 0 or not np.isfinite(factors).all():
-        raise ValueError(f"Load factors are {given!r}; give at least one finite number, such as (1.0, 0.0).")
+        raise ValueError(
+            f"Load factors are {quoted(given)}; give at least one finite number, such as (1.0, 0.0)."
+        )
+    for factor in factors[np.abs(factors) > LARGEST].tolist()[:1]:
+        raise FieldError(
+            f"The load factor {factor:g} is too large to compute with; make it at most {LARGEST:g}."
+        )
     found: list[float] = factors.tolist()
     return found
 

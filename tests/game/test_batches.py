@@ -18,7 +18,7 @@ from game.sweeps.plan import Plan, Record, plan_of
 from game.sweeps.variant_runner import VariantRunner
 from systems.physics.automatic import choose, stiffnesses, suited_to
 from systems.physics.spectrum import spectra, spectrum
-from tests.reference.models import square, triangle
+from tests.reference.models import oscillator, square, triangle
 
 TRIANGLE = triangle(damping=100, density=6.15, tensile_strength=215, compressive_strength=215)
 TIMES = Analysis(times=(1e-4, 3e-4, 1e-3))
@@ -130,6 +130,18 @@ def test_a_variant_that_is_left_to_a_run_of_its_own_warns_nobody() -> None:
     """With steps that are too long it has not begun any."""
     fixed = ["settings.time_step=3e-6,1", "settings.integrator=velocity_verlet"]
     assert set(Worker(planned(TRIANGLE, fixed, Analysis())).together(range(2))) == {0}
+
+
+def test_variants_of_whose_energy_a_person_is_told_are_single_runs() -> None:
+    """Nothing damps the motion, which rk4 takes at the longer step: not at rest, and not without a word."""
+    struck = oscillator(1000.0, velocity=[0.001, 0.0]) | {
+        "settings": {"integrator": "rk4", "collisions": False}
+    }
+    plan = planned(struck, ["settings.time_step=5e-5,2.5e-3"], Analysis(times=(0.2,)))
+    assert Worker(plan).together(range(2)) == {0: alone(plan, 0)}
+    [(status, message, *_)] = alone(plan, 1)
+    assert status == "time reached"
+    assert "The steps lost 100 % of the energy that was supplied" in message
 
 
 def test_the_number_of_threads_changes_no_bit() -> None:

@@ -182,7 +182,13 @@ REFUSED_ELEMENTS: dict[str, tuple[str, dict[Any, Any], str, str]] = {
     "same end": ("rods", {"name": "r", "between": ["A", "A"]}, ".between", "both ends are 'A'"),
     "second rod": ("rods", {"name": "r", "between": ["C", "B"]}, ".between", "$.rods[1] (rod BC) joins these"),
     "no length": ("rods", rod("A", "O"), "", "distance between its ends is 0 m; give it a 'rest_length'"),
-    "endless": ("rods", rod("D", "F"), "", "distance between its ends is inf m; place them nearer"),
+    "far": (
+        "particles",
+        particle("far", 0, -1.7e308),
+        ".position",
+        "y is -1.7e+308 m; it must be at least -1e+30 m",
+    ),
+    "light": ("particles", particle("P", 0, 9, mass=5e-324), ".mass", "e-324 kg; it must be at least 1e-30 kg"),
     "stiffness": ("rods", rod("A", "D", stiffness=0), ".stiffness", "is 0 kN; it must be greater than"),
     "missing particle": ("loads", {}, "", "its 'on' is missing"),
     "load on nothing": ("loads", {"on": "Q"}, ".on", "There is no 'Q' among the particles"),
@@ -206,7 +212,7 @@ def test_bad_elements_are_refused_with_path_and_reason(
     section: str, element: dict[Any, Any], key: str, reason: str
 ) -> None:
     document = triangle() | {"loads": []}
-    far = [particle("D", -1.7e308, 5), particle("O", 0, 0), particle("F", 1.7e308, 0)]
+    far = [particle("D", -1e30, 5), particle("O", 0, 0), particle("F", 1e30, 0)]
     document["particles"] = [*document["particles"], *far]
     row = len(document[section])
     document[section] = [*document[section], element]
@@ -296,7 +302,7 @@ MALFORMED = {
     "empty": (b" \n", "is empty; save the model anew"),
     "UTF-16": ('{"format": "pinjoint model"}'.encode("utf-16"), "written in UTF-16; save it in UTF-8"),
     "cut off": (HEAD + b'"rods": [', "line 1 column"),
-    "trailing comma": (HEAD + b'"rods": [],\n}', "line 2 column 1"),
+    "trailing comma": (HEAD + b'\n"rods": [],}', "line 2 column"),
     "Latin-1": (HEAD + b'\n"title": "\xe9"}', "has a character in line 2 that is not UTF-8; save it in UTF-8"),
     "nan": (HEAD + b'"environment": {"drag": NaN}}', "contains NaN; every number must be finite"),
     "infinity": (HEAD + b'"environment": {"drag": -Infinity}}', "contains -Infinity"),
@@ -515,11 +521,33 @@ def test_the_folder_is_synchronised_after_a_file_was_replaced(
     assert synchronised == [(tmp_path / "some.json").stat().st_ino, tmp_path.stat().st_ino]
 
 
+HALF = "half \ud800"
+
+
+@pytest.mark.parametrize(
+    "document",
+    [
+        BASE | {"title": HALF},
+        BASE | {"description": HALF},
+        BASE | {"particles": [particle(HALF, 0, 0)]},
+        BASE | {"particles": [particle(f"P{n}", n, 0) for n in range(20)] + [particle(HALF, 0, 0)]},
+        BASE | {"particles": [particle("A", 0, 0, components={"mod.Kind": {"text": HALF}})]},
+        BASE | {"particles": [particle("A", 0, 0, components={"mod.Kind": {HALF: 1}})]},
+    ],
+)
+def test_half_a_character_is_refused(document: dict[str, Any]) -> None:
+    """It could not be saved, copied, kept against a crash, or shown."""
+    with pytest.raises(ModelError, match="kept in a"):
+        models.parse(document)
+
+
 def test_a_text_that_no_file_can_hold_keeps_the_old_file(tmp_path: Path) -> None:
     path = tmp_path / "model.json"
     path.write_text("old", encoding="utf-8")
+    made = models.parse(BASE)
+    made.title = "\ud800"
     with pytest.raises(ModelError, match="surrogates not allowed"):
-        models.save(models.parse(BASE | {"title": "\ud800"}), path)
+        models.save(made, path)
     assert path.read_text(encoding="utf-8") == "old"
 
 

@@ -75,7 +75,8 @@ def test_every_element_of_a_table(frame: Model) -> None:
 
 def test_every_element_of_an_empty_table() -> None:
     empty = models.parse(model([], []))
-    apply_override(empty, "rods.*.damping=0")
+    with pytest.raises(PathError, match=r"^rods\.\*\.damping=0: the model has no rods"):
+        apply_override(empty, "rods.*.damping=0")
     assert len(empty.rods) == 0
 
 

@@ -42,13 +42,25 @@ def test_a_theme_is_remembered_and_other_entries_stay(folder: Path) -> None:
     assert [entry.name for entry in folder.iterdir()] == ["settings.json"]
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", '{"theme": 3}', '{"theme": "gone"}', "\x00\xff"])
+@pytest.mark.parametrize(
+    "text", ["", "{", "[]", '{"theme": 3}', '{"theme": "gone"}', "\x00\xff", "[" * 100_000]
+)
 def test_a_damaged_file_is_no_choice_and_can_be_written_again(folder: Path, text: str) -> None:
     folder.mkdir()
     (folder / "settings.json").write_bytes(text.encode("latin-1"))
     assert preferences.preferred_theme() == "light"
     preferences.remember("theme", "dark")
     assert preferences.preferred_theme() == "dark"
+
+
+def test_what_cannot_be_read_is_put_aside(folder: Path) -> None:
+    """A comma too many in keys that somebody chose would cost them all."""
+    slip = b'{"keys": {"pause": {"w": "undo"},}}'
+    folder.mkdir()
+    (folder / "settings.json").write_bytes(slip)
+    preferences.remember("theme", "dark")
+    assert preferences.preferred_theme() == "dark"
+    assert (folder / preferences.PUT_ASIDE).read_bytes() == slip
 
 
 def test_where_nothing_can_be_written_nothing_is_kept(folder: Path) -> None:
@@ -70,7 +82,15 @@ def test_the_magnification_is_kept_beside_the_theme(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "damaged", ["", '{"magnification": "large"}', '{"magnification": 1e9}', '{"magnification": [2]}']
+    "damaged",
+    [
+        "",
+        "[" * 100_000,
+        '{"keys": ' * 100_000,
+        '{"magnification": "large"}',
+        '{"magnification": 1e9}',
+        '{"magnification": [2]}',
+    ],
 )
 def test_a_damaged_magnification_is_the_usual_one(folder: Path, damaged: str) -> None:
     preferences.settings_path().parent.mkdir(parents=True, exist_ok=True)

@@ -235,6 +235,61 @@ def test_a_killed_sweep_goes_on_without_repeating(tmp_path: Path, computed: list
     assert output.read_bytes() == whole.read_bytes()
 
 
+def test_another_digit_in_a_journal_is_noticed(tmp_path: Path, computed: list[int]) -> None:
+    """A failing disk may turn one number into another, which would be reported as a result."""
+    output = tmp_path / "results.csv"
+    interrupted(output)
+    journal = tmp_path / "results.csv.journal"
+    lines = journal.read_bytes().split(b"\n")
+    lines[3] = lines[3].replace(b"1", b"2", 1)
+    journal.write_bytes(b"\n".join(lines))
+    computed.clear()
+    sweep(MODEL, [DRAWN], MEASURES, STATIC, samples=20, output=output)
+    assert computed == [2, *range(7, 20)]
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        b"\xff\x00\x00",
+        b"",
+        b"[" * 100_000,
+        b"[[3]]",
+        b'[[3, [["equilibrium"]]]]',
+        b"[[99, []]]",
+        b'{"3": 4}',
+        b'[[3, [["equilibrium", 7, 0.0, 1.0, [], "x"]]]]',
+    ],
+    ids=lambda damage: repr(damage[:12]),
+)
+def test_a_damaged_line_is_computed_anew(tmp_path: Path, computed: list[int], damage: bytes) -> None:
+    output = tmp_path / "results.csv"
+    interrupted(output)
+    journal = tmp_path / "results.csv.journal"
+    lines = journal.read_bytes().split(b"\n")
+    journal.write_bytes(b"\n".join([*lines[:3], damage, *lines[4:]]))
+    computed.clear()
+    sweep(MODEL, [DRAWN], MEASURES, STATIC, samples=20, output=output)
+    assert computed == [2, *range(7, 20)]
+
+
+@pytest.mark.parametrize("foreign", [b"my diary", b"my diary\n", b"my\ndiary\n", b"\x00" * 9])
+def test_a_file_that_is_no_journal_is_left_alone(tmp_path: Path, foreign: bytes) -> None:
+    journal = tmp_path / "results.csv.journal"
+    journal.write_bytes(foreign)
+    with pytest.raises(SweepError, match="or it is something else"):
+        sweep(MODEL, [DRAWN], MEASURES, STATIC, samples=20, output=tmp_path / "results.csv")
+    assert journal.read_bytes() == foreign
+
+
+@pytest.mark.parametrize("kept", [b"", b'{"pinjo'])
+def test_a_journal_that_a_kill_left_at_its_first_line_begins_anew(tmp_path: Path, kept: bytes) -> None:
+    (tmp_path / "results.csv.journal").write_bytes(kept)
+    assert (
+        len(sweep(MODEL, [DRAWN], MEASURES, STATIC, samples=2, output=tmp_path / "results.csv")["variant"]) == 2
+    )
+
+
 @pytest.mark.parametrize(
     "change",
     [

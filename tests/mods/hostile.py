@@ -251,7 +251,7 @@ HOSTILE: dict[str, Hostile] = {
         law("return np.random.normal(), 0.0"), "draws random numbers (np.random)", (RUN,)
     ),
     "a kernel that imports": Hostile(
-        law("import random\n    return random.random(), 0.0"), "The kernel of bad.law does not compile", (RUN,)
+        law("import json\n    return 0.0, 0.0"), "The kernel of bad.law does not compile", (RUN,)
     ),
     "arrays that are a list": Hostile(
         law("return 0.0, 0.0", "def arrays(self, model): return [1]"), "a dictionary", (RUN,)
@@ -262,7 +262,7 @@ HOSTILE: dict[str, Hostile] = {
         (RUN,),
     ),
     "a flight that is a text": Hostile(
-        law("return 0.0, 0.0", "def leaves_flight_exact(self, model): return 'no'"), "of type bool", (RUN,)
+        law("return 0.0, 0.0", "def leaves_flight_exact(self, model): return 'no'"), "of type bool", ()
     ),
     "a history that never says when it ends": Hostile(
         history("{}, factor, 1.0, lambda history: 'never'"), "it must be of type float", (RUN,)

@@ -222,7 +222,8 @@ def test_a_shape_that_fails_switches_the_mod_off(write_mod: Write, shape: str, s
     head = f"{GATE}\ndef as_pieces(gates):\n    {shape}\n"
     opened(write_mod, "app.kind(Gate)\napp.shape(Gate, as_pieces)", head)
     session = Session.open(FALLING)
-    session.run(time=0.1)
+    with pytest.raises(mods.ModError, match="The run stopped at t = 0 s"):
+        session.run(time=0.1)
     assert said in session.message
     assert mods.MODS[-1].off
     assert models.document(session.model)["components"] == FALLING["components"]

@@ -283,3 +283,31 @@ def test_a_system_of_a_mod_is_checked_by_its_name_with_its_components(unloaded: 
         check_system("wind.pull", [document])
     with pytest.raises(ModError, match="There is no mod in"):
         check_system("wind.push", mods=[folder.parent.parent / "fonts"])
+
+
+class Attraction(Law):
+    name = "test.attraction"
+    each = "pairs"
+    kernel = compiled(
+        lambda apart, particles_mass: (particles_mass[0] * apart[0], particles_mass[0] * apart[1])
+    )
+    reads = ("particles.mass",)
+
+
+class Spring(Attraction):
+    kernel = compiled(lambda apart: (0.1 * apart[0], 0.1 * apart[1]))
+    potential = compiled(lambda apart: 0.05 * (apart[0] * apart[0] + apart[1] * apart[1]))
+
+
+class Harder(Spring):
+    potential = compiled(lambda apart: 0.1 * (apart[0] * apart[0] + apart[1] * apart[1]))
+
+
+def test_laws_of_pairs_are_checked_for_opposite_forces_and_those_of_their_potential() -> None:
+    assert check_system(Spring, [BODIES]).cost > 0.0
+    with pytest.raises(SystemCheckError, match="not opposite if the other one comes first"):
+        check_system(Attraction, [BODIES])
+    with pytest.raises(
+        SystemCheckError, match=r"potential has the slope 0\.52.* kN, but the force on the .* is 0\.26"
+    ):
+        check_system(Harder, [BODIES])

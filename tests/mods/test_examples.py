@@ -8,7 +8,9 @@ from typing import Any
 import pytest
 
 from game import Session, check_system, mods
+from game.commands.reports.report import Analysis
 from game.scripts.playing import perform
+from game.sweeps import sweep
 from systems.render.picture import compose
 from systems.render.theme import load_theme
 from tests.mods.conftest import Write
@@ -107,6 +109,58 @@ def test_the_count_down_has_keys_of_its_own_and_ends_in_the_simulation(unloaded:
     assert session.scene == "simulation"
 
 
+def magnets(**further: Any) -> dict[str, Any]:
+    """Three on a line, the middle one of another sign than the last; one far away."""
+    places = {"A": (0.0, 2.0), "B": (0.4, 1.0), "C": (0.9, -1.5), "D": (7.0, 1.0)}
+    particles = [
+        {
+            "name": name,
+            "position": [x, 0],
+            "mass": 1,
+            "radius": 0.01,
+            "components": {"magnets.Magnet": {"pole": pole}},
+        }
+        for name, (x, pole) in places.items()
+    ]
+    return {**BALL, "particles": particles, **further}
+
+
+def test_magnets_attract_and_repel_up_to_their_reach_and_keep_the_energy(unloaded: None) -> None:
+    session = Session.open(magnets(), mods=[FOLDER / "magnets"])
+
+    def force(distance: float) -> float:
+        return 0.001 * (1.0 / distance**2 - 1.0)
+
+    pulls = session.particles.applied_force[:, 0]
+    expected = [
+        -2.0 * force(0.4) + 3.0 * force(0.9),
+        2.0 * force(0.4) + 1.5 * force(0.5),
+        -1.5 * force(0.5) - 3.0 * force(0.9),
+        0.0,
+    ]
+    assert pulls == pytest.approx(expected, abs=1e-15)
+    session.settings.time_step = 1e-5
+    session.run(time=0.1)
+    assert session.energy.kinetic > 0.1
+    assert abs(session.energy.imbalance) < 1e-6 * session.energy.kinetic
+    assert check_system("magnets.force", [magnets()]).needed == 1
+
+
+def test_magnets_reach_discs_that_lie_on_the_ground(unloaded: None) -> None:
+    """Contacts and impacts know of the forces between pairs: a magnet below a disc holds it against its weight."""
+    fixed = {"name": "held", "position": [0, 0], "fixed": [True, True], "radius": 0.1}
+    disc = {"name": "disc", "position": [0, -0.2], "mass": 0.1, "radius": 0.1}
+    document = {**BALL, "particles": [fixed, disc], "environment": {"acceleration": [0, -9.81]}}
+    for one, pole in ((fixed, 1.0), (disc, -1.0)):
+        one["components"] = {"magnets.Magnet": {"pole": pole}}
+    session = Session.open(document, mods=[FOLDER / "magnets"])
+    session.run(time=0.05)
+    assert session.particles["disc"].displacement[1] == pytest.approx(0.0, abs=1e-6)
+    session.particles["disc"].magnets_pole = 0.0  # type: ignore[attr-defined]
+    session.run(time=0.05)
+    assert session.particles["disc"].displacement[1] < -0.01
+
+
 def test_one_can_point_and_click_in_the_scene_of_a_mod(unloaded: None) -> None:
     session = Session.open("pendulum", mods=[FOLDER / "countdown"])
     session.press("n")
@@ -161,3 +215,14 @@ def test_the_message_of_a_mods_scene_is_seen_and_clicks_are_its_own(write_mod: W
     texts = compose(session.model, session.view, load_theme("light")).texts
     assert "1 hits" in texts
     assert "Aim" in texts
+
+
+def test_sweeps_know_of_forces_between_pairs(unloaded: None) -> None:
+    mods.load([FOLDER / "magnets"])
+    poles, measure = [0.5, 1.0], "particles.A.velocity"
+    found = sweep(magnets(), {"particles.B.magnets_pole": poles}, [measure], Analysis(times=(0.05,)))
+    for row, pole in enumerate(poles):
+        session = Session.open(magnets())
+        session.particles["B"].magnets_pole = pole  # type: ignore[attr-defined]
+        session.run(time=0.05)
+        assert found[f"{measure}.x"][row] == session.particles["A"].velocity[0] != 0.0

@@ -14,6 +14,9 @@ import pytest
 
 from game import mods
 from game.commands.command_line import main
+from game.editor.actions import ACTIONS
+from systems.base import ACCOUNTS
+from systems.input.bindings import BINDINGS, FORMS
 
 GUIDE = Path(__file__).parents[2] / "assets" / "mods" / "README.md"
 BLOCK = re.compile(r"(?:^`([\w./]+)`:\n\n)?^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -51,6 +54,18 @@ def test_the_guide_works_at_the_first_try(
     assert output.err == ""
     assert "breeze 0.1: all is well" in output.out
     assert not mods.FAULTS
+
+
+def test_the_guide_names_all_that_can_be_registered_called_and_chosen() -> None:
+    guide = " ".join(GUIDE.read_text(encoding="utf-8").split())
+    methods = [name for name, method in vars(mods.App).items() if callable(method) and name[0] != "_"]
+    for name in methods:
+        assert name == "withdraw" or f"`{name}(" in guide, name
+    in_forms = {b.action for b in BINDINGS if set(b.scenes) <= set(FORMS)}
+    listed = set(guide.partition("besides the ones in forms: ")[2].partition(".")[0].split(", "))
+    assert listed == {name for name in ACTIONS if "." not in name} - in_forms
+    for account in ACCOUNTS:
+        assert f'"{account}"' in guide
 
 
 @pytest.mark.parametrize("module", ["components", "systems.base", "game", "game.mods", "game.api"])

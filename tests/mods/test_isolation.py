@@ -426,3 +426,40 @@ def test_where_a_run_diverges_the_laws_of_mods_are_named(write_mod: Write) -> No
     session = Session.open(PULLED, mods=[write_mod("apple", law)])
     assert session.run(time=1.0) == "diverged"
     assert "Laws of mods act in it: apple.harder; see whether it runs without them." in session.message
+
+
+PAIRS = """
+from numba import njit
+from systems.base import Law
+
+class Pull(Law):
+    name = "apple.pull"
+    each = "pairs"
+    kernel = njit(error_model="numpy")(lambda apart, particles_mass: ({force}, 0.0))
+    reads = ("particles.mass",)
+
+    def cutoff(self, model):
+        return {cutoff}
+
+def plugin(app):
+    app.system(Pull)
+"""
+
+
+@pytest.mark.parametrize(
+    ("force", "cutoff", "said"),
+    [
+        ("0.0", "1 / 0", "cutoff of 'apple.pull' failed: ZeroDivisionError"),
+        ("0.0", "'far'", "cutoff of 'apple.pull' failed: TypeError: what it returned is 'far'"),
+        ("0.0", "-1.0", "The cutoff of apple.pull is -1.0; give a distance above 0 m"),
+        ("1.0 / (apart[0] - apart[0])", "5.0", "gave inf for particle A and particle B"),
+        ("apart", "5.0", "must return a pair, the force (fx, fy) on the first particle"),
+    ],
+)
+def test_a_law_of_pairs_that_fails_is_named(session: Any, force: str, cutoff: str, said: str) -> None:
+    made, _ = session(PAIRS.format(force=force, cutoff=cutoff))
+    made.press("space")
+    made.frame(0.01)
+    made.press("space")
+    made.run(time=0.001)
+    assert said in mods.MODS[-1].problem

@@ -149,6 +149,7 @@ def test_a_wrong_mod_is_left_out_with_its_reason(
         ('author = "me"', "the key 'author'"),
         ("description = 1", "description is 1"),
         ("description = ", "not TOML"),
+        ("description = " + "[" * 10_000, "nested too deeply"),
     ],
 )
 def test_a_wrong_manifest_is_named(tmp_path: Path, write_mod: Write, line: str, said: str) -> None:

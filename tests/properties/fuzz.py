@@ -69,6 +69,7 @@ KINDS = {  # what `python -m tests.properties.fuzz` can try: modules with explor
     "editing": "tests.properties.fuzz",
     "windows": "tests.properties.windows",
     "damage": "tests.properties.damage",
+    "models": "tests.properties.hostile_models",
 }
 MOST_ELEMENTS = 60  # beyond this the person deletes before going on, so that everything stays quick
 

@@ -1,8 +1,10 @@
-"""Limits that nothing may exceed, whatever it is given."""
+"""Limits that nothing may exceed, whatever it is given, and Ctrl+C after a while."""
 
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+
+from game.interrupts import Interrupt
 
 
 class Hang(AssertionError):
@@ -12,13 +14,30 @@ class Hang(AssertionError):
 @contextmanager
 def within(seconds: float, what: str = "this") -> Iterator[None]:
     """Raise Hang in whatever takes more processor time (s) than that; not where the system has no such timers."""
-    if not hasattr(signal, "setitimer"):
-        yield
-        return
 
     def handle(*_: object) -> None:
         raise Hang(f"{what} took more than {seconds:g} s of processor time")
 
+    with _after(seconds, handle):
+        yield
+
+
+@contextmanager
+def interrupted_after(seconds: float) -> Iterator[None]:
+    """Ctrl+C in whatever takes more processor time (s) than that; not where the system has no such timers."""
+
+    def handle(*_: object) -> None:
+        raise Interrupt
+
+    with _after(seconds, handle):
+        yield
+
+
+@contextmanager
+def _after(seconds: float, handle: Callable[..., object]) -> Iterator[None]:
+    if not hasattr(signal, "setitimer"):
+        yield
+        return
     before = signal.signal(signal.SIGPROF, handle)
     signal.setitimer(signal.ITIMER_PROF, seconds)
     try:

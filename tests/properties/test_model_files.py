@@ -12,14 +12,15 @@ from typing import Any
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from components.field import Role, same
+from components.field import LARGEST, SMALLEST, Role, same
 from components.model import Model
 from game.documents import models
 from game.documents.models import ModelError
 
 finite = st.sampled_from([0.0, -0.0]) | st.floats(allow_nan=False, allow_infinity=False)
-places = st.floats(-1e100, 1e100)
-positive = st.floats(1e-100, 1e100)
+made = st.sampled_from([0.0, -0.0]) | st.floats(-LARGEST, LARGEST)
+places = st.floats(-LARGEST, LARGEST)
+positive = st.floats(SMALLEST, LARGEST)
 names = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=4).filter(str.strip)
 
 
@@ -44,7 +45,7 @@ foreign = st.dictionaries(
     max_size=2,
 )
 histories = objects({"kind": st.just("constant")}) | objects(
-    {"kind": st.just("ramp")}, start=finite, duration=st.floats(0, 1e300)
+    {"kind": st.just("ramp")}, start=made, duration=st.floats(0, LARGEST)
 )
 
 
@@ -54,8 +55,8 @@ def particle_elements(name: str) -> st.SearchStrategy[dict[str, Any]]:
         displacement=pair(finite),
         velocity=pair(finite),
         fixed=pair(st.booleans()),
-        force=pair(finite),
-        acceleration=pair(finite),
+        force=pair(made),
+        acceleration=pair(made),
         mass=st.none() | positive,
         radius=positive,
         components=foreign,
@@ -71,14 +72,14 @@ def without_velocity_where_fixed(element: dict[str, Any]) -> dict[str, Any]:
 
 
 def rod_elements(name: str, ends: list[str]) -> st.SearchStrategy[dict[str, Any]]:
-    strengths = st.none() | st.floats(0, 1e300)
+    strengths = st.none() | st.floats(0, LARGEST)
     return objects(
         {"name": st.just(name), "between": st.just(ends), "rest_length": positive},
         stiffness=positive,
         tensile_strength=strengths,
         compressive_strength=strengths,
-        damping=st.floats(0, 1e100),
-        density=st.floats(0, 1e100),
+        damping=st.floats(0, LARGEST),
+        density=st.floats(0, LARGEST),
         plastic_strain=finite,
         components=foreign,
     )
@@ -96,9 +97,7 @@ def documents(draw: st.DrawFn) -> dict[str, Any]:
         rods = draw(st.lists(names, min_size=len(pairs), max_size=len(pairs), unique=True))
         document["rods"] = [draw(rod_elements(*rod)) for rod in zip(rods, pairs, strict=True)]
     if nodes:
-        load = objects(
-            {"on": st.sampled_from(nodes)}, force=pair(finite), history=histories, components=foreign
-        )
+        load = objects({"on": st.sampled_from(nodes)}, force=pair(made), history=histories, components=foreign)
         document["loads"] = draw(st.lists(load, max_size=3))
     hidden = objects({"shown": st.just(False)}, spacing=pair(positive))
     document["grids"] = draw(st.lists(hidden, max_size=2))
@@ -106,7 +105,7 @@ def documents(draw: st.DrawFn) -> dict[str, Any]:
         {},
         title=names,
         description=names,
-        environment=objects({}, force=pair(finite), acceleration=pair(finite), drag=st.floats(0, 1e300)),
+        environment=objects({}, force=pair(made), acceleration=pair(made), drag=st.floats(0, LARGEST)),
         settings=objects(
             {}, restitution=st.floats(0, 1), time_step=st.none() | positive, plasticity=st.booleans()
         ),

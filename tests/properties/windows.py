@@ -88,12 +88,16 @@ class Monkey:
         elements = self.session.model.particles.count + self.session.model.rods.count
         if elements > MOST_ELEMENTS and self.session.scene == "pause":
             return self._key("ctrl+a") + self._key("delete")
-        if chance < 0.45:
+        if (
+            chance < 0.03 and self.session.scene != "simulation"
+        ):  # else it stays for long where few keys lead away
+            return self._key("escape")
+        if chance < 0.5:
             known = [b.key for b in BINDINGS if self.session.scene in b.scenes]
             return self._key(self.random.choice([*known, *2 * OFTEN.get(self.session.scene, ("space",))]))
-        if chance < 0.5:
+        if chance < 0.55:
             return self._key(self.random.choice([*self._codes]))
-        if chance < 0.75:
+        if chance < 0.77:
             return self._mouse()
         if chance < 0.87:
             return self._text(self.random.choice(TEXTS if self.random.random() < 0.95 else LONG))
@@ -108,7 +112,7 @@ class Monkey:
         last, mod = last + name[-1], 0
         for modifier in modifiers:
             mod |= {"ctrl": pygame.KMOD_CTRL, "shift": pygame.KMOD_SHIFT}.get(modifier, 0)
-        if last.startswith(("click", "drag", "drop", "wheel")) or last not in self._codes:
+        if last not in self._codes:  # such as "drag"
             return self._mouse()
         code = self._codes[last]
         pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=code, mod=mod, unicode="", scancode=0))
@@ -136,11 +140,11 @@ class Monkey:
 
     def _mouse(self) -> str:
         at, post, new = self._place(), pygame.event.post, pygame.event.Event
-        kind = self.random.choice(("click", "click", "down", "move", "up", "wheel", "pan"))
+        kind = self.random.choice(("click", "click", "click", "down", "move", "up", "wheel", "pan"))
         held = (1, 0, 0) if self._down else (0, 0, 0)
         pygame.key.set_mods(self.random.choice((0, 0, 0, pygame.KMOD_LCTRL)))
         if kind == "wheel":
-            post(new(pygame.MOUSEWHEEL, x=0, y=self.random.choice((-30, -1, 1, 30)), flipped=False))
+            post(new(pygame.MOUSEWHEEL, x=0, y=self.random.choice((-9, -1, 1, 2)), flipped=False))
             return kind
         rel = self.random.randint(-300, 300), self.random.randint(-300, 300)
         buttons = (0, 1, 0) if kind == "pan" else held

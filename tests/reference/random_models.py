@@ -25,6 +25,7 @@ class Kind:
 
     title: str
     moves: bool = True
+    rests: bool = False  # followed until it is at rest
     shape: str = (
         "truss"  # truss: stiff; graph: anything; chain: hanging; lattice: hundreds of rods; discs; on a truss
     )
@@ -61,13 +62,24 @@ KINDS = (
     Kind("cables with dampers", cables=True, damped=1.0, shape="graph"),
     Kind("yielding", yields=True),
     Kind("yielding, damped, under ramps", yields=True, damped=1.0, drag=True, histories=("ramp",)),
-    Kind("stiff", damped=400.0, drag=True, turns=(1.0, 30.0)),
+    Kind("stiff", damped=400.0, drag=True, turns=(0.5, 8.0)),
     Kind("islands and free particles", islands=3, damped=0.5, sizes=(3, 5)),
     ALL,
     replace(ALL, title="everything, islands", islands=3, sizes=(3, 5), shape="graph"),
     Kind("free discs that collide", shape="discs", sizes=(3, 9)),
     Kind("discs on trusses", shape="on a truss", sizes=(3, 6), damped=0.5, stiffness=(1e2, 1e4)),
     Kind("lattices of 220 to 400 rods", shape="lattice", turns=(10.0, 60.0)),
+    Kind(
+        "until at rest",
+        rests=True,
+        islands=3,
+        sizes=(3, 5),
+        damped=2.0,
+        drag=True,
+        cables=True,
+        yields=True,
+        histories=("ramp",),
+    ),
     Kind("equilibrium: elastic", moves=False),
     Kind("equilibrium: elastic, prestrained", moves=False, prestrained=True),
     Kind("equilibrium: hanging chains", moves=False, shape="chain"),
@@ -120,7 +132,7 @@ def _structure(lot: Lot, kind: Kind) -> Model:
             _initial_state(lot, kind, each)
         nodes += made
         rods += [_rod(lot, kind, made[i], made[j]) for i, j in pairs]
-    if kind.islands > 1:
+    if kind.islands > 1 and not kind.rests:
         free = [particle(f"free{k}", 5.0 * k, 30.0, velocity=[1.0, 0.5 * k], radius=0.2) for k in range(2)]
         nodes += free
     return _finished(lot, kind, nodes, rods)

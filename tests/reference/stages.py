@@ -45,6 +45,14 @@ class Kernel:
             value = self.model.tables[table].column(column)[0 if self.model.tables[table].kind.single else row]
         return tuple(value.tolist()) if np.ndim(value) else value.item()
 
+    def of_two(self, first: int, second: int, provided: dict[str, Any]) -> Any:
+        """Its result for two particles, of each of which it gets the values."""
+        given = [
+            provided[name] if name in provided else tuple(self._value(name, row, {}) for row in (first, second))
+            for name in self.parameters
+        ]
+        return self.function(*given)
+
     @property
     def takes_rate(self) -> bool:
         return "rate" in self.parameters or "particles_velocity" in self.parameters
@@ -79,6 +87,9 @@ class Stages:
         self.damping = [k for k in of_rods if k.takes_rate]
         self.pushing = [k for k in named if k.system.each == "particles" and not k.takes_rate]
         self.resisting = [k for k in named if k.system.each == "particles" and k.takes_rate]
+        of_pairs = [k for k in named if k.system.each == "pairs"]
+        self.attracting = [k for k in of_pairs if "drift" not in k.parameters]
+        self.slowing = [k for k in of_pairs if "drift" in k.parameters]
         self.loading = [k for k in named if k.system.each == "loads"]
         self.commits = [k for k in kernels if isinstance(k.system, Commit)]
         self.u = model.particles.displacement.tolist()
@@ -204,7 +215,28 @@ class Stages:
         for on, x, y in self._loads(time):
             total[on][0] += x
             total[on][1] += y
+        for i, j, x, y, _ in self._pairs(self.attracting, u, v, time, dt):
+            self._push_apart(total, i, j, x, y)
         return total
+
+    def _pairs(self, kernels: list[Kernel], u: Any, v: Any, time: float, dt: float) -> Iterator[Any]:
+        """The forces between particles i < j within the cutoff, all pairs looked at: (i, j, fx, fy, kernel)."""
+        place = self.model.particles.position.tolist()
+        for i in range(len(u)):
+            for j in range(i + 1, len(u)):
+                x, y = ((place[j][d] - place[i][d]) + (u[j][d] - u[i][d]) for d in range(2))
+                drift = v[j][0] - v[i][0], v[j][1] - v[i][1]
+                for kernel in kernels:
+                    if x * x + y * y < kernel.system.cutoff(self.model) ** 2:
+                        given = {"apart": (x, y), "drift": drift, "time": time, "dt": dt}
+                        yield i, j, *kernel.of_two(i, j, given), kernel
+
+    @staticmethod
+    def _push_apart(total: list[list[float]], i: int, j: int, x: float, y: float) -> None:
+        total[i][0] += x
+        total[i][1] += y
+        total[j][0] -= x
+        total[j][1] -= y
 
     def _loads(self, time: float) -> list[tuple[int, float, float]]:
         made = []
@@ -256,6 +288,13 @@ class Stages:
                         target[row][1] += y
                     sign = 1.0 if kernel.system.account == "work" else -1.0
                     power[kernel.system.account] += sign * (x * v[row][0] + y * v[row][1])
+        for i, j, x, y, kernel in self._pairs([*self.attracting, *self.slowing], u, v, time, dt):
+            if kernel in self.slowing:
+                self._push_apart(total, i, j, x, y)
+            if not kernel.system.potential:
+                sign = 1.0 if kernel.system.account == "work" else -1.0
+                done = x * (v[i][0] - v[j][0]) + y * (v[i][1] - v[j][1])
+                power[kernel.system.account] += sign * done
         directions, elongations = self.geometry(u)
         axial = self.axial_forces(elongations, time, dt)
         rates = self.rates(v, directions)

@@ -155,6 +155,10 @@ def test_loads_count_in_statics_as_documented(session: Session) -> None:
     found = {name: session.particles[name].displacement[0] / STATIC for name in HISTORIES}
     expected = {"step": 1.0, "ramp": 1.0, "rise": 1.0, "pulse": 0.0, "sine": 0.0, "record": 0.0}
     assert found == pytest.approx(expected, abs=1e-12)
+    assert session.time < math.inf  # though the sine never ends
+    session.run(steps=10)
+    assert session.time < math.inf
+    session.undo()
     session.undo()
 
 

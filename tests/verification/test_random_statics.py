@@ -98,7 +98,7 @@ def test_a_curve_passes_a_plateau_and_rods_that_become_straight_on_it() -> None:
     assert curve.load_factor[-1] == pytest.approx(0.4, rel=1e-9)
 
 
-@settings(max_examples=15)
+@settings(max_examples=8)
 @given(seed=st.integers(0, 10_000))
 def test_random_structures_settle_or_it_is_said_why(seed: int) -> None:
     loaded = models.load(random_structure(seed))
@@ -109,12 +109,12 @@ def test_random_structures_settle_or_it_is_said_why(seed: int) -> None:
         check_laws(loaded, state)
 
 
-@settings(max_examples=8)
+@settings(max_examples=4)
 @given(seed=st.integers(0, 10_000))
 def test_curves_of_yielding_trusses_do_not_end_early(seed: int) -> None:
     """One rod begins to yield, or ceases to, while others unload: some motion always goes on."""
-    curve = load_path(models.load(plastic_truss(seed)), Goal(1e9), points=80)
-    assert len(curve.load_factor) == 80
+    curve = load_path(models.load(plastic_truss(seed)), Goal(1e9), points=50)
+    assert len(curve.load_factor) == 50
 
 
 def dangling(**properties: object) -> Document:

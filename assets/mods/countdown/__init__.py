@@ -3,14 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from game.editor.scenes import Scene
-from systems.base import Phase, System
-
-if TYPE_CHECKING:
-    from game import Context
-    from game.mods import App
+from game.api import App, Context, Phase, Scene, System
 
 SECONDS = 3.0
 

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from numba import njit
 
-from components import Component, Field, Model, Rod
-from systems.base import Law
-
-if TYPE_CHECKING:
-    from game.mods import App
+from game.api import App, Component, Field, Law, Model, Rod
 
 
 class Material(Component):

@@ -3,17 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from numba import njit
 
-from components import Component, Environment, Field, Model, Particle, Readout, Vector
-from systems.base import Law
-
-if TYPE_CHECKING:
-    from game import Context
-    from game.mods import App
-
+from game.api import App, Component, Context, Environment, Field, Law, Model, Particle, Readout, Vector
 
 DENSITY = 1.2  # kg/m³, of air
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ import numpy as np
 from components.model import Model
 from components.settings import AUTOMATIC
 from game.commands.output import ResultError
+from game.commands.progress import Watch
 from game.commands.reports.results import Run, State, state
 from game.documents.open_documents import without_mods
 from game.mods.heeding import check_mods, heeding_mods
@@ -28,6 +30,7 @@ if TYPE_CHECKING:  # they import scipy
     from systems.statics.events import Event
     from systems.statics.settle import StaticState
 
+INTERRUPTED = "interrupted"  # the status of a run that Ctrl+C ended
 MOD_FAILED = "mod failed"
 FOUND = ("equilibrium", "at rest", "time reached")  # statuses of a run that found what was asked for
 
@@ -71,20 +74,48 @@ class Analysis:
             if self.load_factors is not None:
                 return self.run(session.simulation, name)
             session.run(steps=0)  # records the beginning, for theory beside the run
-            with session.without_frames():
+            with session.without_frames(), Watch(session.simulation) as watch:
                 found = self.run(session.simulation, name)
+        except Interrupted as interrupted:
+            watch.take_back()
+            return _interrupted(session.simulation, name, interrupted.states)
         except ModError as failure:
             return _failed(session.simulation, name, failure)
         happened = [asdict(event) for event in session.simulation.events]
         error = session.document.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
+        unknown = "" if error is not None else _uncontrolled(session.simulation)
         return {
             **found,
-            "message": " ".join(
-                filter(None, [session.message, "" if error else _uncontrolled(session.simulation)])
-            ),
+            "message": " ".join(filter(None, [session.message, unknown])),
             "events": [*happened, *_records(session.model, session.remarks)],
             "error_estimate": asdict(error) if error is not None else None,
         }
+
+
+class Interrupted(KeyboardInterrupt):
+    """A run that was interrupted, with the states that it had reported."""
+
+    def __init__(self, states: list[State]) -> None:
+        super().__init__()
+        self.states = states
+
+
+@contextmanager
+def _interruptible(states: list[State]) -> Iterator[None]:
+    """Let an interrupt inside bring along the states so far."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise Interrupted(states) from None
+
+
+def _interrupted(simulation: Simulation, name: str, states: list[State]) -> Run:
+    """The result of a run that was interrupted: what it had reported, and its last state between two steps."""
+    if not states or simulation.model.clock.time > states[-1]["time"]:
+        states = [*states, _state(simulation)]
+    found = _run(simulation, name, INTERRUPTED, states)
+    reached = f"Interrupted at t = {found['time']:.9g} s, after {found['steps']} steps."
+    return {**found, "message": f"{reached} {found['message']}".rstrip(), "error_estimate": None}
 
 
 def _failed(simulation: Simulation, name: str, error: ModError) -> Run:
@@ -106,7 +137,8 @@ def _uncontrolled(simulation: Simulation) -> str:
 
 def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
     """Run until at rest, at most `limit` s of simulated time."""
-    simulation.run_until_rest(simulation.model.clock.time + limit)
+    with _interruptible([]):
+        simulation.run_until_rest(simulation.model.clock.time + limit)
     ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
     status = ended.get(simulation.reason, "limit reached")
     return _run(simulation, name, status, [_state(simulation)])
@@ -123,7 +155,8 @@ def run_at(simulation: Simulation, name: str, times: Sequence[float]) -> Run:
         )
     states: list[State] = []
     for target in times:
-        simulation.run_to(target)
+        with _interruptible(states):
+            simulation.run_to(target)
         states.append(_state(simulation))
         if simulation.reason is StopReason.DIVERGED:
             return _run(simulation, name, "diverged", states)
@@ -189,7 +222,7 @@ def _run(
     return {
         "model": name,
         "status": status,
-        "message": simulation.message or simulation.step_size.warning,
+        "message": simulation.said,
         "time": clock.time,
         "steps": clock.steps,
         "time_step": clock.step_size if moves else None,

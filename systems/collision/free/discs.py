@@ -40,6 +40,7 @@ from systems.collision.system import REST_HEIGHT
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
 REPORTED_AT_ONCE = 4096  # impacts; fetched before more are reported
+WORK_AT_ONCE = 2**22  # discs × events, after which a kernel returns, so that Python can heed Ctrl+C
 MORE_PATIENCE = 64  # calm steps between two searches for the equilibrium of a pile
 
 
@@ -156,10 +157,11 @@ class Discs:
         last = int(self.counts[Count.EVENTS]) + most_events
         taken = [self._take()]
         while True:
-            reason = self._go_on(float(until), last - int(self.counts[Count.EVENTS]))
+            left = last - int(self.counts[Count.EVENTS])
+            reason = self._go_on(float(until), min(left, max(WORK_AT_ONCE // (self.count + 1), 1)))
             if self.counts[Count.REPORTED]:
                 taken.append(self._take())
-            if reason in (Reason.DONE, Reason.BUSY):
+            if reason is Reason.DONE or (reason is Reason.BUSY and self.counts[Count.EVENTS] >= last):
                 pairs, details = (np.concatenate(parts) for parts in zip(*taken, strict=True))
                 time, impulse, loss = details[:, : Detail.X].T
                 return reason, ImpactColumns(pairs, time, impulse, loss, details[:, Detail.X :])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import time
+from collections import deque
 from typing import Protocol
 
 import numpy as np
@@ -17,12 +18,13 @@ from components.load import loads_end
 from components.model import Model
 from components.obstacles import obstacles
 from systems.base import Event, StopReason
-from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc
+from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc, Reason
 from systems.collision.free.compiled import EVENTS, HORIZONS, PILES, engine
 from systems.collision.free.discs import Discs
-from systems.collision.impacts import Impacts
+from systems.collision.impacts import MOST_KEPT, Impacts
 from systems.entries import Measure
 
+EVENTS_AT_ONCE = 2**18  # of which the impacts are gathered
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
 
 
@@ -63,6 +65,11 @@ class Flight:
             PILES.load()  # now, so that an edit that needs it does not wait
         self.bind()
         self.compile_seconds = time.perf_counter() - started
+
+    @property
+    def flying(self) -> Discs | None:
+        """The discs as they are in the midst of a step, if they fly already."""
+        return self._flying
 
     @property
     def changes_end(self) -> float:
@@ -191,14 +198,20 @@ class Flight:
         return 1, StopReason.DONE
 
     def _fly(self, target: float) -> Discs:
-        """Advance the discs and record the impacts."""
-        discs = self.discs
-        _, happened = discs.advance(target)
-        if len(happened):
-            clock = self.model.clock
-            columns = (happened.time, happened.pairs, happened.impulse, happened.loss, happened.point)
-            self._impacts.record(np.column_stack(columns))
-            self.model.writable("clock.collisions")[0] = clock.collisions + len(happened)
+        """Advance the discs and record the impacts, the last ones where there are too many."""
+        discs, reason = self.discs, Reason.BUSY
+        parts: deque[NDArray[np.float64]] = deque()
+        kept = happened = 0
+        while reason is Reason.BUSY:
+            reason, found = discs.advance(target, EVENTS_AT_ONCE)
+            columns = (found.time, found.pairs, found.impulse, found.loss, found.point)
+            parts.append(np.column_stack(columns))
+            kept, happened = kept + len(found), happened + len(found)
+            while kept - len(parts[0]) >= MOST_KEPT:
+                kept -= len(parts.popleft())
+        if happened:
+            self._impacts.record(np.concatenate(parts), happened - kept)
+            self.model.writable("clock.collisions")[0] = self.model.clock.collisions + happened
         return discs
 
     def _steps_until_rest(self, discs: Discs) -> float:

@@ -66,11 +66,17 @@ def box_size(i, grid):
 
 
 @compiled
-def level_of(i, grid, cell):
-    """The finest level (0: cells of size `cell`, then doubling) that suits the box of a disc."""
+def suitable_size(i, grid):
+    """The least size of cells of which the box of a disc overlaps two, not three, and that can be told apart there."""
     boxes = grid.boxes
     away = max(abs(boxes[i, 0] + boxes[i, 2]), abs(boxes[i, 1] + boxes[i, 3]))
-    size = 1.001 * max(box_size(i, grid), 0.5 * away / FARTHEST_CELL)  # a box overlaps two cells, not three
+    return 1.001 * max(box_size(i, grid), 0.5 * away / FARTHEST_CELL)
+
+
+@compiled
+def level_of(i, grid, cell):
+    """The finest level (0: cells of size `cell`, then doubling) that suits the box of a disc."""
+    size = suitable_size(i, grid)
     if size <= cell:
         return 0
     mantissa, exponent = math.frexp(size / cell)

@@ -5,9 +5,20 @@ boxes overlap are computed and queued. The impact of two discs follows from thei
 grid and queue can be discarded and made anew at any time without changing a bit of the results.
 """
 
+import math
+
 from systems.collision.columns import NONE, Count, Disc, Number, Reason
 from systems.collision.kernels import compiled
-from systems.collision.kernels.grid import COARSEST, box_size, enclose, enter, layer_of, level_of, neighbours
+from systems.collision.kernels.grid import (
+    COARSEST,
+    box_size,
+    enclose,
+    enter,
+    layer_of,
+    level_of,
+    neighbours,
+    suitable_size,
+)
 from systems.collision.kernels.heap import changes, purge, push
 from systems.collision.kernels.persistent_contact import find_persistent
 from systems.collision.kernels.time_of_impact import (
@@ -222,11 +233,17 @@ def set_layers(grid, numbers, counts):
 
 @compiled
 def _cell_size(grid):
-    """About the largest of the boxes, but not more than a few times the small ones."""
+    """About the largest of the boxes, but not more than a few times the small ones.
+
+    Nor so small that no layer is coarse enough for the largest: every box overlaps few cells, however small others are.
+    """
     if grid.boxes.shape[0] == 0:
         return 1.0
     small, large = _quantile(grid, 0.1), _quantile(grid, 0.9)
-    return large if large <= 8.0 * small else 2.0 * small
+    least = 0.0
+    for i in range(grid.boxes.shape[0]):
+        least = max(least, math.ldexp(suitable_size(i, grid), 1 - COARSEST))
+    return max(large if large <= 8.0 * small else 2.0 * small, least)
 
 
 @compiled

@@ -34,6 +34,7 @@ rods has branches), COMMITS (something has a history) and those of its integrato
     runge_kutta.py   integrators that control their steps: one loop for every tableau
     implicit.py      the stages of implicit ones
     forces.py        forces, history, and what they do per second
+    pairs.py         pairs of particles that are near each other
     rods.py          what is computed of one rod
     events.py        where rods leave the branches of their laws
     observing.py     energies and derived columns of a state

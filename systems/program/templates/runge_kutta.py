@@ -200,6 +200,11 @@ def attempt(time, end, tolerance, smallest, control, state, scratch, *columns):
             if wanted < smallest:  # the event is where the step begins
                 search[Search.ENDED] = 1.0
                 wanted = search[Search.LENGTH]
+            if search[Search.ENDED] == 0.0:
+                place = (time + wanted) - time
+                if not search[Search.NEAR] < place < search[Search.FAR]:  # no time lies between the two
+                    search[Search.ENDED] = 1.0
+                    wanted = search[Search.FAR]
             if wanted != h:
                 h = wanted
                 continue

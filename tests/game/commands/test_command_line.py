@@ -65,7 +65,7 @@ MODEL = {
         ("run isostatic --static --load-factors ,", "write numbers separated by commas"),
         ("run isostatic --output /no/such/folder/x.json", "there is no folder /no/such/folder"),
         ("run isostatic --events /", "it is a folder"),
-        ("run isostatic --set particles.B.position=1e200,1", "1e+200 m, too large to compute with"),
+        ("run isostatic --set particles.B.position=1e200,1", "1e+200 m; it must be at most 1e+30 m"),
         ("curve von_mises --factor nan", "nan is not a finite number"),
         ("curve von_mises --points 1", "1 is not a whole number of at least 2"),
         ("plot isostatic", "required: --of, --until, --output. See: pinjoint plot --help"),

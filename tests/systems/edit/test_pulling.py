@@ -41,8 +41,8 @@ def test_dragging_a_running_particle_pulls_it_with_a_spring_whose_work_is_accoun
 
 @pytest.mark.filterwarnings("error")
 def test_what_could_not_begin_to_move_can_be_taken_hold_of() -> None:
-    """A force that is too large to compute with leaves the run without a step size."""
-    particles = [{"name": "A", "position": [0, 0], "force": [1e300, 0]}, {"name": "B", "position": [1, 0]}]
+    """A speed that is too large to compute with leaves the run without a step size."""
+    particles = [{"name": "A", "position": [0, 0], "velocity": [1e300, 0]}, {"name": "B", "position": [1, 0]}]
     session = Session.open({"format": "pinjoint model", "version": 1, "particles": particles})
     session.press("space")
     session.frame(1 / 60)

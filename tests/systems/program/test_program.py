@@ -84,8 +84,8 @@ def test_loops_of_large_models_give_the_same_bits_with_any_integrator(
 
 def assert_identical(document: Model, integrator: str, mods: list[Any], steps: int = 500) -> Session:
     size = 5e-6
-    document = document | {"settings": {"integrator": integrator, "time_step": size}}
-    session = Session.open(document, mods)
+    settings = document.get("settings", {}) | {"integrator": integrator, "time_step": size}
+    session = Session.open(document | {"settings": settings}, mods)
     session.simulation.advance(0)
     stages = Stages(session.model, session.simulation.programs.compiled.systems)
     assert session.run(steps=steps) == "time reached"

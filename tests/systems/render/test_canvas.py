@@ -24,6 +24,7 @@ from systems.render.picture import compose
 from systems.render.pygame_canvas import Canvas, _rounded, _small_rounded
 from systems.render.theme import load_theme
 from systems.render.typography import WEIGHTS, text_width
+from tests.properties.limits import within
 
 LIGHT = load_theme("light")
 
@@ -191,3 +192,18 @@ def test_opacity_and_colour_of_a_stamped_disc() -> None:
     assert red == 255
     assert green == pytest.approx(204, abs=2)
     assert blue == pytest.approx(204, abs=2)
+
+
+@pytest.mark.parametrize(
+    "name", ["a\0b", "\ud800", "\u202e", "\u0301", "x" * 1_000_000, "\x1b[31m\n\t", "🏗", ""]
+)
+def test_any_name_is_drawn(name: str) -> None:
+    """Names in a file may hold anything; what fonts cannot draw ended the window."""
+    surface = pygame.Surface((100, 40), depth=32)
+    with within(20.0):
+        Canvas().draw(
+            surface,
+            Picture(Viewport(0, 0, 100, 40), (255, 255, 255, 255), [Text(name, 5.0, 20.0, 13, (0, 0, 0, 255))]),
+        )
+    drawn = pygame.surfarray.array2d(surface) != surface.map_rgb((255, 255, 255))
+    assert drawn.any() == (name not in ("\u202e", ""))

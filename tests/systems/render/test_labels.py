@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -178,3 +179,13 @@ def test_values_of_many_forces_leave_the_rods_to_their_own_where_there_is_room()
     inside = [mark for mark in forces[1:] if abs(mark.x - middle) < 10.0]
     assert len(inside) <= 1  # below the lowest particle there is no rod
     assert {written(float(force)) for force in range(1, count)} <= set(picture.texts)
+
+
+@pytest.mark.filterwarnings("error")
+def test_what_lies_far_outside_takes_no_room() -> None:
+    taken = Occupancy(Viewport(0, 0, 200, 100), 1.0)
+    far = np.array([[1e300, -1e300], [np.inf, 0.0], [1e30, 50.0]])
+    taken.line(far, far[::-1], STRONG)
+    taken.block_squares(far[[0, 2]], np.array([5.0, 5.0]))
+    assert not taken.taken.any()
+    assert not taken.lined.any()

@@ -175,3 +175,20 @@ def test_selected_grid_is_red_and_hidden_grids_are_not_drawn() -> None:
     assert len(marks_of(picture_of(model), Rectangles, LIGHT.selected)) == 1
     model.tag(second, Selected)
     assert len(marks_of(picture_of(model), Rectangles, LIGHT.selected)) == 1
+
+
+@pytest.mark.parametrize("radius", [150.0, 1e5, 1e11, 1e30])
+def test_discs_of_any_size_are_drawn_by_few_lines(radius: float) -> None:
+    model = Model()
+    model.create(Particle, 3, position=[(-radius, 0), (0, 0), (1, 0)], radius=[radius, 0.1, 0.1])
+    view = View(camera=Camera(centre=(0.5, 0.0), scale=200.0))
+    low, high = view.camera.viewport.left, view.camera.viewport.left + view.camera.viewport.width
+    rims = marks_of(compose(model, view, LIGHT), Strokes, LIGHT.ink)
+    points = np.concatenate([np.empty((0, 2)), *(rim.start for rim in rims), *(rim.end for rim in rims)])
+    assert len(points) < 20_000
+    assert (points >= low - 10).all()
+    assert (points <= high + 10).all()
+    if radius < 1e12:  # beyond, its edge is not known to a pixel
+        assert len(points)
+        edge = view.camera.to_pixels((0.0, 0.0))
+        np.testing.assert_allclose(points[:, 0], edge[0], atol=5.0)

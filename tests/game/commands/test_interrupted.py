@@ -1,0 +1,140 @@
+"""Work without an end: it says how far it is, Ctrl+C ends it at once, and what was found until then is written."""
+
+from __future__ import annotations
+
+import json
+import signal
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from game.commands import progress
+from game.commands.command_line import main
+from tests.properties.limits import interrupted_after
+
+pytestmark = pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="nothing would interrupt it")
+HEAD = {"format": "pinjoint model", "version": 1}
+CABLE = {"tension_only": True}
+FIXED = {"fixed": [True, True], "radius": 0.1}
+BILLION_IMPACTS = HEAD | {
+    "particles": [
+        {"name": "A", "position": [0, 0], "velocity": [1e9, 0], "radius": 0.1},
+        {"name": "L", "position": [-1, 0], **FIXED},
+        {"name": "R", "position": [1, 0], **FIXED},
+    ]
+}
+STIFF_DAMPER = HEAD | {
+    "particles": [
+        {"name": "A", "position": [0, 0], "fixed": [True, True]},
+        {"name": "B", "position": [1, 0], "force": [1, 0]},
+    ],
+    "rods": [{"name": "AB", "between": ["A", "B"], "damping": 1e9}],
+    "settings": {"integrator": "velocity_verlet"},
+}
+ENDLESS = {"impacts": BILLION_IMPACTS, "a stiff damper": STIFF_DAMPER}
+
+
+@pytest.mark.parametrize("model", ENDLESS.values(), ids=ENDLESS.keys())
+def test_a_run_that_is_interrupted_reports_what_it_had(
+    model: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "endless.json"
+    path.write_text(json.dumps(model), encoding="utf-8")
+    main(["run", str(path), "--at", "1e-9"])  # compiles
+    capsys.readouterr()
+    with interrupted_after(1.0):
+        assert main(["run", str(path), "--at", "1e-9,1e6", "--format", "json"]) == 130
+    run = json.loads(capsys.readouterr().out)
+    assert run["status"] == "interrupted"
+    assert run["message"].startswith("Interrupted at t = ")
+    assert run["states"][0]["time"] == 1e-9
+    last = run["states"][-1]
+    assert len(run["states"]) == (1 if model is BILLION_IMPACTS else 2)  # its one step is not over
+    energy = last["energy"]
+    assert abs(energy["imbalance"]) <= 1e-6 * max(abs(energy["work"]), energy["kinetic"])
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "plot MODEL --of energy.kinetic --until 1e6 --output OUT.csv",
+        "render MODEL --at 1e6 --output OUT.png",
+        "render MODEL --at 1e6 --output OUT.gif",
+        "sweep MODEL --vary settings.restitution=1,1 --measure energy.kinetic --at 1e6 --workers 1 --output OUT.csv",
+    ],
+    ids=lambda words: words[:6],
+)
+def test_other_commands_end_with_a_sentence(
+    words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "endless.json"
+    path.write_text(json.dumps(BILLION_IMPACTS), encoding="utf-8")
+    given = words.replace("MODEL", str(path)).replace("OUT", str(tmp_path / "out"))
+    with interrupted_after(1.0):
+        assert main(given.split()) == 130
+    assert "pinjoint: Interrupted" in capsys.readouterr().err
+
+
+def test_what_lasts_says_how_far_it_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(progress, "SILENT", 0.2)
+    monkeypatch.setattr(progress, "FURTHER", 0.2)
+    path = tmp_path / "endless.json"
+    path.write_text(json.dumps(BILLION_IMPACTS), encoding="utf-8")
+    with interrupted_after(1.0), progress.told():
+        assert main(["run", str(path), "--at", "1e6"]) == 130
+    said = [line for line in capsys.readouterr().err.splitlines() if "impacts. Ctrl+C stops it." in line]
+    impacts = [int(line.rpartition(" steps, ")[2].partition(" ")[0]) for line in said]
+    assert len(impacts) > 1
+    assert impacts == sorted(impacts)
+    assert impacts[-1] > 1000
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {
+            "particles": [
+                BILLION_IMPACTS["particles"][0],
+                {"name": "B", "position": [0.5, 1], "velocity": [1e16, 1e19]},
+            ]
+        },
+        {
+            "particles": [
+                {"name": "A", "position": [0, 0], "velocity": [1, 0]},
+                {"name": "B", "position": [1, 0.05]},
+            ],
+            "components": {"walls.Wall": [{"start": [-1e12, -1], "end": [1e12, -1]}]},
+        },
+        {  # a rod of 1.4e9 m leaves its branch between two times that are next to each other
+            "particles": [
+                {"name": "P0", "position": [0, 0], "displacement": [0.016, 1e9], **FIXED, "mass": 2},
+                {
+                    "name": "P1",
+                    "position": [-1e9, 0.3],
+                    "velocity": [1.3211215257974307, -1.1614779683649394],
+                    "acceleration": [1, -9.81],
+                    "mass": 2,
+                    "radius": 0.2,
+                },
+                {"name": "P2", "position": [2, 0], "displacement": [0.016, -0.01]},
+                {"name": "P3", "position": [0, 1.3], "velocity": [0.28764957300111266, 1.3866213842230934]},
+            ],
+            "rods": [
+                {"name": "P1P0", "between": ["P1", "P0"], "temperature_change": 30, "tension_only": True},
+                {"name": "P2P0", "between": ["P2", "P0"], "rest_length": 1, "temperature_change": 30} | CABLE,
+                {"name": "P3P0", "between": ["P3", "P0"], "tensile_strength": 100, "plastic_strain": 0.001},
+                {"name": "P3P1", "between": ["P3", "P1"], "temperature_change": 30},
+            ],
+        },
+    ],
+    ids=["speeds", "a wall", "cables"],
+)
+def test_numbers_of_very_different_sizes_do_not_make_work(given: dict[str, Any], tmp_path: Path) -> None:
+    path = tmp_path / "sizes.json"
+    path.write_text(json.dumps(HEAD | given), encoding="utf-8")
+    main(["run", str(path), "--at", "1e-9"])  # compiles
+    with interrupted_after(5.0):
+        assert main(["run", str(path), "--at", "0.01", "--output", str(tmp_path / "out")]) == 0
