@@ -179,6 +179,15 @@ def test_there_is_none_below_what_a_tolerance_can_tell() -> None:
     assert session.document.assessment.error() is None
 
 
+@pytest.mark.parametrize(("integrator", "share"), [("rk4", 0.95), ("velocity_verlet", 0.99)])
+def test_there_is_none_where_steps_lost_or_created_most_of_the_energy(integrator: str, share: float) -> None:
+    made = oscillator(2 * math.pi, 0.0, velocity=[0.1, 0])
+    problem = Problem("long", made, 200.0, lambda: tightly(made, 200.0))
+    session = _run(problem, integrator=integrator, time_step=share * _limit(problem, integrator))
+    assert "energy" in session.message
+    assert session.document.assessment.error(10**9) is None
+
+
 def test_the_error_is_in_the_report(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["run", "isostatic", "--at", "0.002", "--integrator", "velocity_verlet", "--format"]
     assert main([*words, "json"]) == 0
