@@ -112,18 +112,7 @@ class Journal:
             if not lines:
                 _append(file, title)
         for line in lines[1:]:
-            self.finished.update(self._outcomes(line))
-
-    def _outcomes(self, line: bytes) -> list[Outcome]:
-        """What a line says; nothing if it is damaged, so that its variants are computed anew."""
-        seal, _, content = line.partition(b" ")
-        if seal != _seal(content):
-            return []
-        try:
-            found = msgspec.json.decode(content, type=list[Outcome])
-        except (ValueError, RecursionError):
-            return []
-        return found if all(map(self._plan.allows, found)) else []
+            self.finished.update(_outcomes(line))
 
     def add(self, outcomes: Sequence[Outcome]) -> None:
         """Keep what some variants came to; it survives a kill from now on."""
@@ -137,6 +126,12 @@ class Journal:
         """The results are written; nothing is left to keep."""
         if self.path is not None:
             self.path.unlink(missing_ok=True)
+
+
+def _outcomes(line: bytes) -> list[Outcome]:
+    """What a line says; nothing if it is damaged, so that its variants are computed anew."""
+    seal, _, content = line.partition(b" ")
+    return msgspec.json.decode(content, type=list[Outcome]) if seal == _seal(content) else []
 
 
 def _seal(content: bytes) -> bytes:

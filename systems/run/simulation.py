@@ -402,7 +402,11 @@ class Simulation:
     def _show(self, target: float) -> bool:
         """Show the moment `target` (s) within the next step; False if the step ends before, at an event or by failing."""
         started, before = time.perf_counter(), self.present()
-        reason = self._stepper.land(target)
+        try:
+            reason = self._stepper.land(target)
+        except BaseException:  # interrupted, or a mod failed
+            before.restore(self.model)
+            raise
         happened = reason is StopReason.EVENT and (self.integrator.controlled or self.programs.collides)
         if happened or self.model.clock.time != target:
             before.restore(self.model)

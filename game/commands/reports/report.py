@@ -83,11 +83,10 @@ class Analysis:
             return _failed(session.simulation, name, failure)
         happened = [asdict(event) for event in session.simulation.events]
         error = session.document.assessment.error(math.inf if self.measures_error else IN_A_COMMAND)
+        unknown = "" if error is not None else _uncontrolled(session.simulation)
         return {
             **found,
-            "message": " ".join(
-                filter(None, [session.message, "" if error else _uncontrolled(session.simulation)])
-            ),
+            "message": " ".join(filter(None, [session.message, unknown])),
             "events": [*happened, *_records(session.model, session.remarks)],
             "error_estimate": asdict(error) if error is not None else None,
         }
