@@ -81,13 +81,27 @@ class Mod:
 
     def describe(self, error: BaseException) -> str:
         """An error with the file and the line of this mod in which it happened."""
-        place, message = self.place_of(error), _message(error)
+        place, message = self.place_of(error), self._message(error)
         said = message if isinstance(error, ModError) else f"{type(error).__name__}: {message}"
         return f"{said.rstrip('.: ')}{f' ({place})' if place else ''}."
 
+    def _message(self, error: BaseException) -> str:
+        """What an error says, in one line; its class may be the mod's, and do whatever it likes when it is asked."""
+
+        def read() -> str:
+            said = error.msg if isinstance(error, SyntaxError) else error
+            return printable(" ".join(str(said).split()))[:LONGEST_MESSAGE]
+
+        try:
+            return self.within(PATIENCE, read)
+        except BaseException as other:  # of code that is not ours
+            if is_persons(other):
+                raise
+            return "its message cannot be read"
+
     def place_of(self, error: BaseException) -> str:
         """The file and the line of this mod in which an error happened; "" if in none."""
-        if isinstance(error, SyntaxError) and error.filename:
+        if isinstance(error, SyntaxError) and isinstance(error.filename, str):
             return f"{_short(error.filename)}, line {error.lineno}"
         frames = traceback.extract_tb(error.__traceback__)
         own = [f for f in frames if self.folder is not None and Path(f.filename).is_relative_to(self.folder)]
@@ -130,15 +144,6 @@ class Mod:
         if not math.isfinite(patience) or self.folder is None:
             return function()
         return within(patience, is_running(f"{self.folder}{os.sep}", others=OURS), function)
-
-
-def _message(error: BaseException) -> str:
-    """What an error says, in one line."""
-    try:
-        said = str(error.msg if isinstance(error, SyntaxError) else error)
-    except Exception:  # of code that is not ours
-        return "its message cannot be read"
-    return printable(" ".join(said.split()))[:LONGEST_MESSAGE]
 
 
 def _short(path: str) -> str:

@@ -160,6 +160,25 @@ HOSTILE: dict[str, Hostile] = {
     "an exception without words": Hostile(
         plugin("app.layer(draw)", "def draw(sheet):\n    raise Mean\n"), "Mean: its message cannot be read"
     ),
+    "an exception that ends the program when it is read": Hostile(
+        plugin(
+            "app.layer(draw)",
+            "class Over(Exception):\n    __str__ = lambda self: sys.exit(3)\ndef draw(sheet):\n    raise Over\n",
+        ),
+        "Over: its message cannot be read",
+    ),
+    "an exception that is read for ever": Hostile(
+        plugin(
+            "app.layer(draw)",
+            "class Long(Exception):\n    def __str__(self):\n        while True: pass\n"
+            "def draw(sheet):\n    raise Long\n",
+        ),
+        "Long: its message cannot be read",
+    ),
+    "a mistake in a file that is none": Hostile(
+        plugin("app.layer(draw)", "def draw(sheet):\n    raise SyntaxError('odd', (5, 5, 5, 'x'))\n"),
+        "SyntaxError: odd (bad/__init__.py",
+    ),
     "a generator that closes itself": Hostile(
         plugin("app.layer(draw)", "def draw(sheet):\n    yield Mark\n    raise GeneratorExit\n"),
         "GeneratorExit",

@@ -21,7 +21,7 @@ CASES = pytest.mark.parametrize("hostile", HOSTILE.values(), ids=HOSTILE)
 
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in (guard, interface):
+    for module in (guard, interface, mod):
         monkeypatch.setattr(module, "PATIENCE", 0.3)
     monkeypatch.setitem(mod.Mod.call.__kwdefaults__, "patience", 0.3)
 
