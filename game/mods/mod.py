@@ -77,7 +77,9 @@ class Mod:
         sentence = f"The mod '{self.name}' was switched off: {reason} Your model is as it was before."
         FAULTS.append(sentence)
         LOG.error(sentence)
-        LOG.debug("Traceback of the mod '%s':", self.name, exc_info=error)
+        if error is not None:  # without its message, which is code of the mod
+            places = "".join(traceback.format_tb(error.__traceback__)).rstrip()
+            LOG.debug("Traceback of the mod '%s':\n%s", self.name, places)
 
     def describe(self, error: BaseException) -> str:
         """An error with the file and the line of this mod in which it happened."""
