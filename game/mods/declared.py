@@ -14,6 +14,7 @@ import inspect
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, wraps
+from itertools import islice
 from types import NoneType, UnionType
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
@@ -24,6 +25,7 @@ from components.wording import quoted
 C = TypeVar("C")
 Made = Callable[[Any, str], Any]  # the plain value of a value that is called so; raises TypeError, ValueError
 
+MOST = 1_000_000  # entries of anything but an array; an iterable may have no end, in code that nothing interrupts
 _SEQUENCES = (list, Sequence, Iterable)
 _NUMBERS: Mapping[type, tuple[type, ...]] = {
     bool: (bool, np.bool_),
@@ -156,7 +158,10 @@ def _choice(choices: Sequence[Any]) -> Made:
 def _items(value: Any, called: str) -> list[Any]:
     if isinstance(value, str | bytes) or not isinstance(value, Iterable):
         raise _refused(value, called, "several, as a list or tuple")
-    return list(value)
+    items = list(islice(value, MOST + 1))
+    if len(items) > MOST:
+        raise ValueError(f"{called} has more than {MOST:,} entries")
+    return items
 
 
 def _each(entry: Any) -> Made:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import replace
+from inspect import getattr_static
 from typing import Any, ClassVar, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -40,11 +41,11 @@ _ROLES = (Law, Commit, Event, Integrator, StepSystem, System)
 
 def guarded_maker(mod: Mod, system: Callable[[], System]) -> Callable[[], System]:
     """What makes a system of a mod for every session; one that cannot be made any more does nothing."""
-    name = check_declarations(system()).name
+    name = guarded_system(mod, system()).name
 
     def make() -> System:
-        made = mod.call(f"making the system '{name}'", system)
-        return guarded_system(mod, made) if made is not None else _nothing(name)
+        made = mod.call(f"making the system '{name}'", lambda: guarded_system(mod, system()))
+        return made if made is not None else _nothing(name)
 
     return make
 
@@ -56,6 +57,8 @@ def check_declarations(system: Any) -> System:
         raise ModError(f"{type(system).__name__} is no System; derive it from one of systems.base.")
     for name, hint in get_type_hints(role).items():
         if get_origin(hint) is ClassVar:
+            if isinstance(getattr_static(system, name), property):  # which might answer differently, or fail, later
+                raise ModError(f"{type(system).__name__}.{name} is a property; give the value itself.")
             as_declared(getattr(system, name), get_args(hint)[0], f"{type(system).__name__}.{name}")
     made: System = system
     return made
@@ -68,21 +71,20 @@ def _nothing(name: str) -> System:
     return made
 
 
-def guarded_system(mod: Mod, system: System) -> System:
+def guarded_system(mod: Mod, system: Any) -> System:
     """The system of a mod, wrapped so that it is left out once the mod is switched off.
 
     The commands of a frame system, or of an event, are one step of undo. If the system raises or takes too long,
     or leaves what a Field cannot take, such as NaN, its commands are dropped whole, and the columns that it declares
     in `writes` and `adds` are restored.
     """
+    system = check_declarations(system)
     what, process = f"the system '{system.name}'", system.process
     system.mod = mod
     _guard_question(mod, system, "needs", bool, otherwise=False)
     if isinstance(system, StepSystem):
         _guard_question(mod, system, "arrays", Mapping[str, NDArray[Any]], otherwise={})
         _guard_question(mod, system, "leaves_flight_exact", bool, otherwise=False)
-        if isinstance(system, Law):
-            _guard_question(mod, system, "cutoff", float, otherwise=math.inf)
     else:
         vars(system)["process"] = lambda frame: _change_whole(
             mod, system, what, frame.session.model, lambda: _in_frame(process, frame)

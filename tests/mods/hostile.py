@@ -179,6 +179,10 @@ HOSTILE: dict[str, Hostile] = {
         plugin("app.layer(draw)", "def draw(sheet):\n    raise SyntaxError('odd', (5, 5, 5, 'x'))\n"),
         "SyntaxError: odd (bad/__init__.py",
     ),
+    "marks without end": Hostile(
+        plugin("app.layer(draw)", "from itertools import repeat\ndef draw(sheet): return repeat(None)\n"),
+        "what the layer draws has more than 1,000,000 entries",
+    ),
     "a generator that closes itself": Hostile(
         plugin("app.layer(draw)", "def draw(sheet):\n    yield Mark\n    raise GeneratorExit\n"),
         "GeneratorExit",
@@ -249,6 +253,15 @@ HOSTILE: dict[str, Hostile] = {
     "a frame system that never ends": Hostile(system("while True: pass", "INPUT"), "it ran for more than"),
     "columns in one text": Hostile(
         system("pass", more="reads = 'particles.position'"), "Bad.reads is 'particles.position'", (LOAD,)
+    ),
+    "columns that are another answer each time": Hostile(
+        system("pass", more="adds = property(lambda self: ())"), "Bad.adds is a property", (LOAD,)
+    ),
+    "a system that is another one each time": Hostile(
+        system("pass", more="n = []\n    def __init__(self):\n        self.n.append(1)\n"
+               "        self.reads = () if len(self.n) < 3 else 5"),
+        "making the system 'bad.system' failed: TypeError: Bad.reads is 5",
+        ANYWHERE,
     ),
     "a phase that is a text": Hostile(
         system("pass", more="phase = 'events'"), "Bad.phase is 'events'", (LOAD,)
