@@ -30,7 +30,7 @@ class NearPairs:
         within = largest * (1.0 + MARGIN) if count > ALL_PAIRS_DISCS else math.inf  # so few need no list
         travel = 0.5 * MARGIN * largest * (1.0 - 1e-9)
         self.arrays: dict[str, Column] = {
-            "pair_reach": np.array([travel**2, within, *(cutoff**2 for cutoff in cutoffs)]),
+            "pair_reach": np.array([travel * travel, within, *(cutoff * cutoff for cutoff in cutoffs)]),
             "pair_listed": np.zeros((count, 2)),
             "pair_order": np.arange(count),
             "pair_first": np.zeros(count + 1, dtype=np.int64),

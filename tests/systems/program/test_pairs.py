@@ -266,6 +266,30 @@ def test_islands_do_not_sleep_while_others_act_on_them_from_afar() -> None:
     assert session.particles["b3"].displacement[0] != 0.0
 
 
+class Odd(Springy):
+    def __init__(self, distance: float) -> None:
+        self.distance = distance
+
+    def cutoff(self, model: Model) -> float:
+        return self.distance
+
+
+@pytest.mark.parametrize("distance", [1e-300, 1e3, 1e200, 1.7e308, math.inf])
+def test_cutoffs_of_any_size(distance: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(near_pairs, "ALL_PAIRS_DISCS", 0)
+    document = crowd(6, integrator="velocity_verlet", time_step=1e-4) | {"rods": []}
+    session = Session.open(document, [Odd(distance)])
+    before = session.particles.velocity.copy()
+    assert session.run(steps=3) == "time reached"
+    assert bool((session.particles.velocity != before).any()) is (distance > 1.0)
+
+
+@pytest.mark.parametrize("distance", [-1.0, math.nan])
+def test_cutoffs_of_no_size_are_refused(distance: float) -> None:
+    with pytest.raises(ProgramError, match="give a distance above 0 m, or"):
+        Session.open(crowd(4), [Odd(distance)]).run(steps=1)
+
+
 # --- mistakes ----------------------------------------------------------------------------------------------
 
 
