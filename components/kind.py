@@ -12,6 +12,7 @@ from components.field import Role
 from components.handle import Handle
 from components.model import ADDED, KINDS, Model
 from components.table import Table, fields_of
+from components.wording import is_identifier
 
 
 def add_kind(mod: str, kind: type[Handle]) -> str:
@@ -27,7 +28,7 @@ def add_kind(mod: str, kind: type[Handle]) -> str:
             raise ValueError(
                 f"{kind.__name__}: its {part} '{word}' is missing or taken; give it one of its own."
             )
-    if not kind.table.isidentifier() or hasattr(Model, kind.table):
+    if not is_identifier(kind.table) or hasattr(Model, kind.table):
         raise ValueError(f"{kind.__name__}: '{kind.table}' cannot be the name of a table; use another plural.")
     if kind.single:
         raise ValueError(

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 import reprlib
+from keyword import iskeyword
 from typing import Any
+from unicodedata import normalize
 
 LONGEST = 60  # characters of a name or value in a sentence
 
@@ -12,6 +14,11 @@ LONGEST = 60  # characters of a name or value in a sentence
 _UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 _VALUES = reprlib.Repr()
 _VALUES.maxlevel, _VALUES.maxstring, _VALUES.maxother = 3, LONGEST, LONGEST
+
+
+def is_identifier(name: str) -> bool:
+    """Whether a name means the same in Python source, which compatible characters are replaced in: µ and μ, ﬁ and fi."""
+    return name.isidentifier() and not iskeyword(name) and normalize("NFKC", name) == name
 
 
 def printable(text: str) -> str:

@@ -25,7 +25,9 @@ from components.wording import quoted
 C = TypeVar("C")
 Made = Callable[[Any, str], Any]  # the plain value of a value that is called so; raises TypeError, ValueError
 
-MOST = 1_000_000  # entries of anything but an array; an iterable may have no end, in code that nothing interrupts
+MOST = (
+    1_000_000  # entries of anything but an array; an iterable may have no end, in code that nothing interrupts
+)
 _SEQUENCES = (list, Sequence, Iterable)
 _NUMBERS: Mapping[type, tuple[type, ...]] = {
     bool: (bool, np.bool_),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import keyword
 import logging
 import math
 import os
@@ -12,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
-from components.wording import printable, quoted
+from components.wording import is_identifier, printable, quoted
 from game.editor.context import FAULTS
 from game.interrupts import is_persons
 from game.mods.declared import as_declared
@@ -191,7 +190,7 @@ def _fill(made: Mod, entries: dict[str, Any], named: str | None) -> None:
         if value or key != "name":
             setattr(made, key, value)
     made.module = named or made.name
-    if not made.name.isidentifier() or keyword.iskeyword(made.name) or "__" in made.name:
+    if not is_identifier(made.name) or "__" in made.name:
         raise ModError(f"{MANIFEST}: the name '{made.name}' must be like a Python name, such as 'wind'.")
     if named is not None and made.name != named:
         raise ModError(f"{MANIFEST}: the name is '{made.name}', but the entry point calls it '{named}'.")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import keyword
 from pathlib import Path
 
+from components.wording import is_identifier
 from game.mods.finding import origin_of_module
 from game.mods.mod import MANIFEST, ModError
 
@@ -73,7 +73,7 @@ _FILES = {MANIFEST: _MANIFEST, "__init__.py": _CODE, "test_{name}.py": _TEST}
 
 def write_skeleton(name: str, parent: Path, version: str) -> list[Path]:
     """Write a new mod into a folder of its name; returns its files. Raises ModError."""
-    if not name.isidentifier() or keyword.iskeyword(name) or "__" in name:
+    if not is_identifier(name) or "__" in name:
         raise ModError(f"The name '{name}' must be like a Python name, such as 'wind'.")
     folder = parent / name
     if not folder.exists() and origin_of_module(name) is not None:

@@ -11,7 +11,7 @@ from components.field import Field, FieldError, Role
 from components.load import HISTORIES
 from components.model import ADDED, Model
 from components.suggestions import missing
-from game.checks import EVERYTHING, columns_of, compare
+from game.checks import EVERYTHING, FRAME, FRAMES, STEPS, columns_of, compare
 from game.documents import models
 from game.documents.library import data_apart
 from game.editor.context import FAULTS
@@ -27,9 +27,6 @@ from systems.physics.integrators import INTEGRATORS
 from systems.program.binding import KERNELS, ProgramError, bind, problem_of
 from systems.program.writer import read_sources
 
-STEPS = 40  # that runs take
-FRAMES = 3
-FRAME = 1.0 / 60.0  # s
 SIZES = ((640, 480, 1.0), (160, 120, 2.0))  # pixels, and pixels to a point, of the pictures
 SCALES = (1.0, 1e4, 1e-4)  # by which a person may zoom
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from components.field import Role
 from components.model import Model
+from components.wording import is_identifier
 from systems.base import Commit, Event, Integrator, Law, StepSystem
 from systems.entries import ACCOUNTS
 from systems.program.chance import source_of_chance
@@ -277,7 +278,7 @@ def check_names(bound: Iterable[Bound]) -> None:
 
 def _check_role(system: StepSystem, model: Model) -> None:
     name = system.name
-    if not all(part.isidentifier() for part in name.split(".")):
+    if not all(is_identifier(part) for part in name.split(".")):
         raise ProgramError(f"The name '{name}' of a step system cannot be used; name it like 'mymod.wind'.")
     if isinstance(system, Law) and system.each not in _KINDS:
         raise ProgramError(f"{name} is a law for each of '{system.each}'; choose one of {', '.join(_KINDS)}.")

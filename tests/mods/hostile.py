@@ -258,8 +258,11 @@ HOSTILE: dict[str, Hostile] = {
         system("pass", more="adds = property(lambda self: ())"), "Bad.adds is a property", (LOAD,)
     ),
     "a system that is another one each time": Hostile(
-        system("pass", more="n = []\n    def __init__(self):\n        self.n.append(1)\n"
-               "        self.reads = () if len(self.n) < 3 else 5"),
+        system(
+            "pass",
+            more="n = []\n    def __init__(self):\n        self.n.append(1)\n"
+            "        self.reads = () if len(self.n) < 3 else 5",
+        ),
         "making the system 'bad.system' failed: TypeError: Bad.reads is 5",
         ANYWHERE,
     ),

@@ -399,3 +399,9 @@ def test_installed_packages_bring_mods(
     found = {mod.name: mod for mod in mods.load(installed=True)}
     assert not found["pear"].problem
     assert "There is no module 'fig'" in found["fig"].problem
+
+
+def test_a_name_that_python_reads_as_another_one_is_refused(write_mod: Write) -> None:
+    """The micro sign: attributes and parameters of that name have the Greek letter."""
+    (found,) = mods.load([write_mod("\N{MICRO SIGN}m")])
+    assert "must be like a Python name" in found.problem
