@@ -73,14 +73,14 @@ def _nothing(name: str) -> System:
     return made
 
 
-def guarded_system(mod: Mod, system: Any) -> System:
+def guarded_system(mod: Mod, made: System) -> System:
     """The system of a mod, wrapped so that it is left out once the mod is switched off.
 
     The commands of a frame system, or of an event, are one step of undo. If the system raises or takes too long,
     or leaves what a Field cannot take, such as NaN, its commands are dropped whole, and the columns that it declares
     in `writes` and `adds` are restored.
     """
-    system = check_declarations(system)
+    system = check_declarations(made)
     what, process = f"the system '{system.name}'", system.process
     system.mod = mod
     _guard_question(mod, system, "needs", bool, otherwise=False)

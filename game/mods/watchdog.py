@@ -20,8 +20,8 @@ class TooLong(BaseException):
 
     limit = 0.0
 
-    def __str__(self) -> str:
-        return f"it ran for more than {self.limit:g} s"
+    def __init__(self) -> None:
+        super().__init__(f"it ran for more than {self.limit:g} s")
 
 
 class _Watchdog:

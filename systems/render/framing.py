@@ -126,8 +126,8 @@ def _fills(corners: Points, colour: Colour, viewport: Viewport) -> Iterator[Fill
     inside = ((corners >= low) & (corners <= high)).all(axis=(1, 2))
     if inside.any():
         yield Fills(corners[inside], colour)
-    away = (corners < low).all(axis=1) | (corners > high).all(axis=1)  # by axis
-    for polygon in corners[~inside & ~away.any(axis=1)]:
+    away = ((corners < low).all(axis=1) | (corners > high).all(axis=1)).any(axis=-1)
+    for polygon in corners[~inside & ~away]:
         cut = _cut(polygon, low, high)
         if len(cut) > 2:
             yield Fills(cut[None], colour)
