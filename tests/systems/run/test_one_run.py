@@ -50,6 +50,25 @@ def _discs(drag: float = 0.0, **settings: Any) -> Model:
     }
 
 
+def _stacked(aside: float = 0.0, **settings: Any) -> Model:
+    """Two discs that come to lie on a third; a pulse and a ramp lift them off again."""
+    return {
+        "format": "pinjoint model",
+        "version": 1,
+        "particles": [
+            {"name": "A", "position": [0, 0], "fixed": [True, True], "radius": 0.1},
+            {"name": "B", "position": [0, 0.22], "mass": 1, "radius": 0.1},
+            {"name": "C", "position": [aside, 0.45], "mass": 2, "radius": 0.1},
+        ],
+        "environment": {"acceleration": [0, -9.81], "drag": 0.3},
+        "loads": [
+            {"on": "B", "force": [0, 0.05], "history": {"kind": "pulse", "start": 0.5, "duration": 0.05}},
+            {"on": "C", "force": [0, 0.06], "history": {"kind": "ramp", "start": 0.7, "duration": 0.05}},
+        ],
+        "settings": {"restitution": 0.2, **settings},
+    }
+
+
 CASES = {
     "automatic": _moving(),
     "Verlet": _moving(integrator="velocity_verlet"),
@@ -87,6 +106,19 @@ def test_looking_at_moments_changes_nothing(made: Model) -> None:
         _ = looked_at.energy, looked_at.rods.axial_force
     _run_to(looked_at, END)
     _assert_same(_left_alone(made), looked_at)
+
+
+@pytest.mark.parametrize(
+    ("made", "looks"),
+    [(_stacked(aside=0.005), 37), (_stacked(integrator="rk4", time_step=0.003), 211)],
+    ids=["as contacts end", "as a load jumps within a step"],
+)
+def test_looking_changes_nothing_of_what_lies_on_something(made: Model, looks: int) -> None:
+    end, looked_at = 0.9, Session.open(made)
+    for number in range(1, looks):
+        _run_to(looked_at, end * number / looks)
+    _run_to(looked_at, end)
+    _assert_same(_left_alone(made, end), looked_at)
 
 
 @EACH
