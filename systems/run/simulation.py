@@ -184,8 +184,7 @@ class Simulation:
         elif self._recovery.safe is None:
             self.step_size.look_up()
         if self._recovery.safe is None:
-            departure = self.model.clock.departure
-            self._recovery.safe = self.present() if departure is None else departure.state
+            self._recovery.safe = self._whole(self.present())
         self.programs.bind()
 
     def account_for_edits(self) -> None:
@@ -247,7 +246,7 @@ class Simulation:
         self._forget_run()
         self.armed, self._account.before_edit = checkpoint.armed, checkpoint.before_edit
         if checkpoint.whole:  # else the stable step is determined anew
-            self._recovery.safe = checkpoint.state
+            self._recovery.safe = self._whole(checkpoint.state)
             self.step_size.stable, self.step_size.warning = checkpoint.stable_step, checkpoint.warning
         self.armed_revision = self.model.revision
 
@@ -435,6 +434,11 @@ class Simulation:
         departure = self.model.clock.departure
         if departure is not None:
             self.programs.return_to(departure.state)
+
+    def _whole(self, state: Snapshot) -> Snapshot:
+        """The present state, or that after the last whole step, if the present moment lies within the next."""
+        departure = self.model.clock.departure
+        return state if departure is None else departure.state
 
     def stay(self) -> None:
         """Let the run go on from the present moment, as something changes here: it ends the step that is under way."""

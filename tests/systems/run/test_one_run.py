@@ -15,7 +15,9 @@ from game.commands.command_line import main
 from game.documents.document import ModelError, document, parse
 from game.scripts.playing import Recorder, play
 from game.scripts.script import Script
+from systems.base import StopReason
 from systems.edit.pull import hand_on
+from systems.run.program_steps import ProgramSteps
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import oscillator
@@ -230,9 +232,27 @@ def test_a_report_has_the_bits_of_a_session(capsys: pytest.CaptureFixture[str]) 
     assert found["rods"]["AB"]["axial_force"] == session.rods["AB"].axial_force
 
 
+def test_a_run_that_fails_after_undo_goes_back_to_a_whole_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    session = _left_alone(CASES["fixed steps of Verlet"], LOOKS[2])
+    simulation = session.simulation
+    whole, within = simulation.moment
+    assert within is not None
+    session.run(time=0.1)
+    session.undo()
+    monkeypatch.setattr(ProgramSteps, "advance", lambda *_: (0, StopReason.DIVERGED))
+    assert session.run(steps=1) == "diverged"
+    assert simulation.moment == (whole, None)
+
+
 def test_a_damaged_departure_is_refused_by_name() -> None:
     session = _left_alone(_moving(), LOOKS[2])
-    for key, value in {"particles.displacement": [[0, 0]], "clock.time": ["x"], "clock.work": 3}.items():
+    damages: dict[str, Any] = {
+        "particles.displacement": [[0, 0]],
+        "clock.time": ["x"],
+        "clock.work": 3,
+        "clock.departure": [{}],
+    }
+    for key, value in damages.items():
         made = document(session.model)
         made["state"]["departure"][key] = value
         with pytest.raises(ModelError, match=rf"state\.departure\.{key}"):
