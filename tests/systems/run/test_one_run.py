@@ -17,6 +17,7 @@ from game.scripts.playing import Recorder, play
 from game.scripts.script import Script
 from systems.base import StopReason
 from systems.edit.pull import hand_on
+from systems.program.program import Program
 from systems.run.program_steps import ProgramSteps
 from tests.reference import bits
 from tests.reference.elements import Model
@@ -242,6 +243,27 @@ def test_a_run_that_fails_after_undo_goes_back_to_a_whole_step(monkeypatch: pyte
     monkeypatch.setattr(ProgramSteps, "advance", lambda *_: (0, StopReason.DIVERGED))
     assert session.run(steps=1) == "diverged"
     assert simulation.moment == (whole, None)
+
+
+@pytest.mark.parametrize("name", ["automatic", "Verlet", "driven"])
+def test_an_interrupt_leaves_a_whole_step(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    session = Session.open(CASES[name])
+    advance = Program.advance
+
+    def interrupted(program: Program, *bounds: Any) -> tuple[int, StopReason]:
+        done = advance(program, *bounds)
+        if session.time > 0.2:
+            session.model.writable("clock.steps")[0] = 3  # as where the clock is still to follow
+            raise KeyboardInterrupt
+        return done
+
+    session.run(time=0.1)
+    with monkeypatch.context() as patched:
+        patched.setattr(Program, "advance", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            session.run(time=END)
+    _run_to(session, END)
+    _assert_same(_left_alone(CASES[name]), session)
 
 
 def test_a_damaged_departure_is_refused_by_name() -> None:
