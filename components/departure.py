@@ -35,6 +35,8 @@ class Departure(Mapping[str, Any]):
         for name, table in world.tables.items():
             for field in table.fields_in(Role.STATE):
                 column, key = field.allocate(table.count), f"{name}.{field.name}"
+                if key in saved and field.checker is check_departure:
+                    raise FieldError(f"{where}.{key}: {_REMEDY}")
                 if key in saved:
                     values = saved[key]
                     if not isinstance(values, list | tuple) or len(values) != table.count:

@@ -39,6 +39,7 @@ from systems.edit.pull import Pull
 from systems.input.bindings import FORMS, TEXT, action_for, key_named
 from systems.run.simulation import Simulation
 from systems.run.system import Time
+from systems.run.watch import watched
 from systems.schedule import Plan, Schedule
 
 if TYPE_CHECKING:  # they import scipy
@@ -156,7 +157,8 @@ class Session(Context):
         """Let time pass: until "rest" (at most `limit` s of simulated time), by `time` s, or by `steps`.
 
         Returns "at rest", "time reached", "limit reached" or "diverged"; `message` says more. Raises ValueError, and
-        ModError if a mod fails meanwhile: the run stops where it did, and a further one goes on without the mod.
+        ModError if a mod fails meanwhile: the run stops where it did, and a further one goes on without the mod. An
+        interrupt (Ctrl+C) leaves the state after a step shortly before, from which a further run goes on.
         """
         if sum(option is not None for option in (until, time, steps)) != 1 or until not in (None, "rest"):
             raise ValueError('Say how far to run: until="rest", time=SECONDS or steps=NUMBER, one of them.')
@@ -184,13 +186,13 @@ class Session(Context):
     def _time_passing(self) -> Iterator[Simulation]:
         """Time passes inside: it is one run in the log, which stops, by ModError, where a mod fails."""
         self.act_in_scene()
-        document = self.document
+        document, simulation = self.document, self.simulation
         document.note_beginning()
         document.history.begin_run()
         document.timeline.begin()
         try:
-            with heeding_mods(document.simulation), self.without_frames():
-                yield document.simulation
+            with heeding_mods(simulation), self.without_frames(), watched(simulation):
+                yield simulation
         finally:
             if not self.time_passes:
                 document.history.end_run()

@@ -184,13 +184,13 @@ class Performance:
         now, end = clock.time, clock.time + clock.step_size
         simulation.before_steps.remove(self._watch_time)  # the run stands still during the picture
         while not self._skipping:
-            with simulation.at(now):
-                self._frame()
+            self._frame()
             shown = time.monotonic() - self._running_since
             between = 2.0 ** max(shown - PATIENCE * self._pace, 0.0) * self._natural / RATE
             now += between
-            if now >= end:
+            if now >= end or not simulation.show(now):
                 break
+        simulation.rejoin()
         simulation.before_steps.append(self._watch_time)
         steps = between / clock.step_size if clock.step_size > 0.0 and not self._skipping else REVIEW_INTERVAL
         return math.ceil(min(max(steps, 1.0), REVIEW_INTERVAL))

@@ -44,7 +44,7 @@ class Recovery:
         assert self.safe is not None
         if find_culprit(self._programs.compiled, self.safe) is None:
             return False
-        self.safe.restore(self._model)
+        self._programs.return_to(self.safe)
         return True
 
     def with_shorter_steps(self) -> bool:
@@ -57,7 +57,7 @@ class Recovery:
             return False
         assert self.safe is not None
         size = self._model.clock.step_size
-        self.safe.restore(self._model)
+        self._programs.return_to(self.safe)
         self._sleep.forget()
         self._step_size.begin(0.5 * size)
         self._halvings += 1
@@ -67,7 +67,7 @@ class Recovery:
         """Return to the good state for good; says what happened and what helps."""
         failed, size = self._model.clock.time, self._model.clock.step_size
         assert self.safe is not None
-        self.safe.restore(self._model)
+        self._programs.return_to(self.safe)
         return (
             f"The simulation diverged near t = {failed:.6g} s: {why}. {self._step_size.remedy(size)}"
             f" The last good state, at t = {self._model.clock.time:.6g} s, was kept.{self._acting_mods()}"

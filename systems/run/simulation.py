@@ -184,8 +184,7 @@ class Simulation:
         elif self._recovery.safe is None:
             self.step_size.look_up()
         if self._recovery.safe is None:
-            departure = self.model.clock.departure
-            self._recovery.safe = self.present() if departure is None else departure.state
+            self._recovery.safe = self._whole(self.present())
         self.programs.bind()
 
     def account_for_edits(self) -> None:
@@ -247,7 +246,7 @@ class Simulation:
         self._forget_run()
         self.armed, self._account.before_edit = checkpoint.armed, checkpoint.before_edit
         if checkpoint.whole:  # else the stable step is determined anew
-            self._recovery.safe = checkpoint.state
+            self._recovery.safe = self._whole(checkpoint.state)
             self.step_size.stable, self.step_size.warning = checkpoint.stable_step, checkpoint.warning
         self.armed_revision = self.model.revision
 
@@ -378,7 +377,7 @@ class Simulation:
         while not self.halted and taken < most_steps and clock.time < target:
             if done := self.advance(min(most_steps - taken, REVIEW_INTERVAL), target):
                 taken += done
-            elif self.halted or whole or self._show(target):
+            elif self.halted or whole or self.show(target):
                 break
             else:  # an event ends the step before
                 self._take(1, math.inf)
@@ -399,17 +398,18 @@ class Simulation:
             self.message = _why_not_at_rest(self.program, self.energy, limit)
         return self.reason is StopReason.REST
 
-    def _show(self, target: float) -> bool:
+    def show(self, target: float) -> bool:
         """Show the moment `target` (s) within the next step; False if the step ends before, at an event or by failing."""
+        self.rejoin()
         started, before = time.perf_counter(), self.present()
         try:
             reason = self._stepper.land(target)
         except BaseException:  # interrupted, or a mod failed
-            before.restore(self.model)
+            self.programs.return_to(before)
             raise
         happened = reason is StopReason.EVENT and (self.integrator.controlled or self.programs.collides)
         if happened or self.model.clock.time != target:
-            before.restore(self.model)
+            self.programs.return_to(before)
             return False
         self._depart(before, begun=1)
         self.compute_seconds += time.perf_counter() - started
@@ -433,7 +433,12 @@ class Simulation:
         """Go back to the whole step that the present moment was reached from, if it lies within the next."""
         departure = self.model.clock.departure
         if departure is not None:
-            departure.state.restore(self.model)
+            self.programs.return_to(departure.state)
+
+    def _whole(self, state: Snapshot) -> Snapshot:
+        """The present state, or that after the last whole step, if the present moment lies within the next."""
+        departure = self.model.clock.departure
+        return state if departure is None else departure.state
 
     def stay(self) -> None:
         """Let the run go on from the present moment, as something changes here: it ends the step that is under way."""
@@ -457,17 +462,6 @@ class Simulation:
         clock = self.model.clock
         within = clock.departure is not None and clock.time != then.columns["clock.time"][0]
         return bool(within or clock.steps != then.columns["clock.steps"][0])
-
-    @contextmanager
-    def at(self, target: float) -> Iterator[None]:
-        """The model as it is at a time (s) within the next step, inside the `with`; then as it was before."""
-        before = self.present()
-        if target > self.model.clock.time:
-            self._stepper.land(target)
-        try:
-            yield
-        finally:
-            before.restore(self.model)
 
     @contextmanager
     def aside(self, beginning: Snapshot) -> Iterator[None]:

@@ -14,7 +14,6 @@ import numpy as np
 from components.model import Model
 from components.settings import AUTOMATIC
 from game.commands.output import ResultError
-from game.commands.progress import Watch
 from game.commands.reports.results import Run, State, state
 from game.documents.open_documents import without_mods
 from game.mods.heeding import check_mods, heeding_mods
@@ -25,6 +24,7 @@ from systems.base import StopReason
 from systems.physics.automatic import AFFORDABLE
 from systems.run.measured_error import IN_A_COMMAND
 from systems.run.simulation import Simulation
+from systems.run.watch import watched
 
 if TYPE_CHECKING:  # they import scipy
     from systems.statics.events import Event
@@ -74,10 +74,9 @@ class Analysis:
             if self.load_factors is not None:
                 return self.run(session.simulation, name)
             session.run(steps=0)  # records the beginning, for theory beside the run
-            with session.without_frames(), Watch(session.simulation) as watch:
+            with session.without_frames(), watched(session.simulation):
                 found = self.run(session.simulation, name)
         except Interrupted as interrupted:
-            watch.take_back()
             return _interrupted(session.simulation, name, interrupted.states)
         except ModError as failure:
             return _failed(session.simulation, name, failure)

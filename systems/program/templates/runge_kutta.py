@@ -222,7 +222,8 @@ def controlled(steps, first, origin, tolerance, limit, bounds, control, state, s
 
     tolerance: relative, of one step; 0: all steps have the length control[Control.STEP_SIZE]. breaks: times that
     no step passes, ascending, the last one infinite. landing: another such time (s), after which steps of fixed
-    length are counted from there. A fixed step that is interrupted goes on to its end in pieces.
+    length are counted from there. A fixed step that breaks interrupt goes on to its end in pieces; none of them is taken
+    where that end is after `until`.
     """
     time = control[Control.TIME]
     search[Search.LIMIT] = limit
@@ -237,7 +238,7 @@ def controlled(steps, first, origin, tolerance, limit, bounds, control, state, s
         if time < landing < stop:
             stop = landing
         end = stop if reach >= stop else goal
-        if end > until:
+        if end > until or (tolerance == 0.0 and min(goal, landing) > until):
             break
         least = max(SMALLEST_SHARE * min(step, end - time), np.nextafter(time, math.inf) - time)
         h, ahead, error, rejected = attempt(time, end, tolerance, least, control, *state, *scratch, *columns)

@@ -15,7 +15,10 @@ from game.commands.command_line import main
 from game.documents.document import ModelError, document, parse
 from game.scripts.playing import Recorder, play
 from game.scripts.script import Script
+from systems.base import StopReason
 from systems.edit.pull import hand_on
+from systems.program.program import Program
+from systems.run.program_steps import ProgramSteps
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import oscillator
@@ -47,6 +50,25 @@ def _discs(drag: float = 0.0, **settings: Any) -> Model:
         ],
         "environment": {"drag": drag},
         "settings": settings,
+    }
+
+
+def _stacked(aside: float = 0.0, **settings: Any) -> Model:
+    """Two discs that come to lie on a third; a pulse and a ramp lift them off again."""
+    return {
+        "format": "pinjoint model",
+        "version": 1,
+        "particles": [
+            {"name": "A", "position": [0, 0], "fixed": [True, True], "radius": 0.1},
+            {"name": "B", "position": [0, 0.22], "mass": 1, "radius": 0.1},
+            {"name": "C", "position": [aside, 0.45], "mass": 2, "radius": 0.1},
+        ],
+        "environment": {"acceleration": [0, -9.81], "drag": 0.3},
+        "loads": [
+            {"on": "B", "force": [0, 0.05], "history": {"kind": "pulse", "start": 0.5, "duration": 0.05}},
+            {"on": "C", "force": [0, 0.06], "history": {"kind": "ramp", "start": 0.7, "duration": 0.05}},
+        ],
+        "settings": {"restitution": 0.2, **settings},
     }
 
 
@@ -87,6 +109,19 @@ def test_looking_at_moments_changes_nothing(made: Model) -> None:
         _ = looked_at.energy, looked_at.rods.axial_force
     _run_to(looked_at, END)
     _assert_same(_left_alone(made), looked_at)
+
+
+@pytest.mark.parametrize(
+    ("made", "looks"),
+    [(_stacked(aside=0.005), 37), (_stacked(integrator="rk4", time_step=0.003), 211)],
+    ids=["as contacts end", "as a load jumps within a step"],
+)
+def test_looking_changes_nothing_of_what_lies_on_something(made: Model, looks: int) -> None:
+    end, looked_at = 0.9, Session.open(made)
+    for number in range(1, looks):
+        _run_to(looked_at, end * number / looks)
+    _run_to(looked_at, end)
+    _assert_same(_left_alone(made, end), looked_at)
 
 
 @EACH
@@ -198,9 +233,48 @@ def test_a_report_has_the_bits_of_a_session(capsys: pytest.CaptureFixture[str]) 
     assert found["rods"]["AB"]["axial_force"] == session.rods["AB"].axial_force
 
 
+def test_a_run_that_fails_after_undo_goes_back_to_a_whole_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    session = _left_alone(CASES["fixed steps of Verlet"], LOOKS[2])
+    simulation = session.simulation
+    whole, within = simulation.moment
+    assert within is not None
+    session.run(time=0.1)
+    session.undo()
+    monkeypatch.setattr(ProgramSteps, "advance", lambda *_: (0, StopReason.DIVERGED))
+    assert session.run(steps=1) == "diverged"
+    assert simulation.moment == (whole, None)
+
+
+@pytest.mark.parametrize("name", ["automatic", "Verlet", "driven"])
+def test_an_interrupt_leaves_a_whole_step(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    session = Session.open(CASES[name])
+    advance = Program.advance
+
+    def interrupted(program: Program, *bounds: Any) -> tuple[int, StopReason]:
+        done = advance(program, *bounds)
+        if session.time > 0.2:
+            session.model.writable("clock.steps")[0] = 3  # as where the clock is still to follow
+            raise KeyboardInterrupt
+        return done
+
+    session.run(time=0.1)
+    with monkeypatch.context() as patched:
+        patched.setattr(Program, "advance", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            session.run(time=END)
+    _run_to(session, END)
+    _assert_same(_left_alone(CASES[name]), session)
+
+
 def test_a_damaged_departure_is_refused_by_name() -> None:
     session = _left_alone(_moving(), LOOKS[2])
-    for key, value in {"particles.displacement": [[0, 0]], "clock.time": ["x"], "clock.work": 3}.items():
+    damages: dict[str, Any] = {
+        "particles.displacement": [[0, 0]],
+        "clock.time": ["x"],
+        "clock.work": 3,
+        "clock.departure": [{}],
+    }
+    for key, value in damages.items():
         made = document(session.model)
         made["state"]["departure"][key] = value
         with pytest.raises(ModelError, match=rf"state\.departure\.{key}"):
