@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import reprlib
 from typing import Any
@@ -30,3 +31,11 @@ def quoted(value: Any) -> str:
         return printable(_VALUES.repr(value))
     except (ValueError, RecursionError):  # numbers of thousands of digits; what contains itself
         return f"a value of type {type(value).__name__}"
+
+
+def as_json(value: Any) -> str:
+    """A value that a JSON file holds as a part of a sentence, as the file writes it."""
+    try:
+        return cut(json.dumps(value, ensure_ascii=False))
+    except RecursionError:
+        return "a value nested too deeply"

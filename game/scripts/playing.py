@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, TextIO
 
 from components.field import Vector, is_broken
-from components.wording import cut, quoted
+from components.wording import as_json, cut
 from game.documents.document import ModelError
 from game.editor.context import FAULTS
 from game.mods.loading import MODS
@@ -134,7 +134,7 @@ def _check_line(entry: Mapping[str, Any]) -> None:
         example = _EXAMPLES[key]
         fits = _is_like(value, example) and not (key in _SIZES and min(value) <= 0)
         if not fits and (key, value) != ("run", "rest"):
-            raise ValueError(f"{key} is {quoted(value)}; write it like {json.dumps({key: example})}.")
+            raise ValueError(f"{key} is {as_json(value)}; write it like {json.dumps({key: example})}.")
 
 
 def _is_like(value: Any, example: Any) -> bool:

@@ -36,7 +36,7 @@ from pathlib import Path
 from typing import Any
 
 from components.suggestions import remedy
-from components.wording import cut, quoted
+from components.wording import as_json, cut
 
 HEADER = {"format": "pinjoint session", "version": 1}
 _HEADER_KEYS = (*HEADER, "model", "title", "description", "mods")
@@ -83,7 +83,7 @@ class Script:
             raise ScriptError(f"{source}: its first line must be like {form}.")
         if header.get("version") != HEADER["version"]:
             raise ScriptError(
-                f"{source}: version {quoted(header.get('version'))} is not known; update Pinjoint."
+                f"{source}: version {as_json(header.get('version'))} is not known; update Pinjoint."
             )
         for key in header:
             if key not in _HEADER_KEYS:
@@ -91,11 +91,11 @@ class Script:
                     f"{source} line 1: there is no '{cut(key)}'; use one of {', '.join(_HEADER_KEYS)}."
                 )
         if not isinstance(model := header.get("model", EMPTY), str | dict):
-            raise ScriptError(f"{source} line 1: model is {quoted(model)}; write a name or a document.")
+            raise ScriptError(f"{source} line 1: model is {as_json(model)}; write a name or a document.")
         self.mods: dict[str, str] | None = header.get("mods")
         if self.mods is not None and not _are_mods(self.mods):
             raise ScriptError(
-                f'{source} line 1: mods is {quoted(self.mods)}; write names and versions, {{"wind": "1.0"}}.'
+                f'{source} line 1: mods is {as_json(self.mods)}; write names and versions, {{"wind": "1.0"}}.'
             )
         self.title, self.description = (str(header.get(key, "")) for key in ("title", "description"))
 
