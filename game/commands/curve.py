@@ -40,6 +40,8 @@ def command(words: Sequence[str]) -> int:
     except ValueError as error:
         raise UsageError(str(error)) from None
     write_result(options, _data(session.model, found), _rows)
+    if laws := session.schedule.left_out_of_statics(session.model):
+        tell(f"The curve leaves out the laws of mods: {', '.join(laws)}.")
     if not found.complete:
         tell(
             f"The curve ends at the load factor {found.load_factor[-1]:.6g}."

@@ -105,6 +105,10 @@ def test_an_equilibrium_without_the_laws_of_mods_is_not_called_one(
     assert main([*words, "--set", "rods.*.stiffening_cubic=0"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert (found["status"], found["left_out"]) == ("equilibrium", [])
+    assert main(["verify", words[1], "--theory-only"]) == 0
+    assert "Theory leaves out the laws of mods: stiffening.cubic." in capsys.readouterr().out
+    assert main(["curve", words[1]]) == 1  # C can move
+    assert "The curve leaves out the laws of mods: stiffening.cubic." in capsys.readouterr().err
 
 
 def test_a_mod_that_was_asked_for_is_not_left_out_of_what_is_computed(

@@ -188,6 +188,14 @@ def test_there_is_none_where_steps_lost_or_created_most_of_the_energy(integrator
     assert session.document.assessment.error(10**9) is None
 
 
+def test_there_is_none_where_states_alternate() -> None:
+    made = oscillator(1000.0, mass=1.0, force=1.0)
+    problem = Problem("alternating", made, 20.0, lambda: tightly(made, 20.0))
+    session = _run(problem, integrator="velocity_verlet", time_step=0.002)  # 2/ω
+    assert "the same state" in session.message
+    assert session.document.assessment.error(10**9) is None
+
+
 def test_the_error_is_in_the_report(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["run", "isostatic", "--at", "0.002", "--integrator", "velocity_verlet", "--format"]
     assert main([*words, "json"]) == 0

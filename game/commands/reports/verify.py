@@ -79,8 +79,14 @@ def verify(session: Session, name: str, limit: float, *, simulate: bool = True) 
         departed = any(remark["kind"] in DEPARTURES for remark in found["remarks"])
         agreed = VERIFIED if not differs(comparison) else DIFFERS if departed else NOT_VERIFIED
         found["status"] = agreed if simulate else THEORY_ONLY
-    found["message"] = "\n".join(_messages(found))
+    found["message"] = "\n".join([*_left_out(session), *_messages(found)])
     return found
+
+
+def _left_out(session: Session) -> Iterator[str]:
+    """A sentence about the laws of mods that act in the simulation and not in theory, if there are some."""
+    if laws := session.schedule.left_out_of_statics(session.model):
+        yield f"Theory leaves out the laws of mods: {', '.join(laws)}."
 
 
 def _by_element(comparison: Comparison | None) -> dict[str, dict[str, Any]]:
