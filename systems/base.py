@@ -32,6 +32,7 @@ from systems.entries import ACCOUNTS
 __all__ = [
     "ACCOUNTS",
     "EVENT_INTERVAL",
+    "REVIEW_INTERVAL",
     "Commit",
     "Event",
     "Integrator",
@@ -76,6 +77,7 @@ class Mod(Protocol):
         """Call no code of the mod any more."""
 
 
+REVIEW_INTERVAL = 8192  # steps between reviews of the step size, and between safe states
 EVENT_INTERVAL = 16  # steps, at multiples of which systems of phase EVENTS run where there are no frames
 
 

@@ -15,7 +15,7 @@ from game.editor.frame import Frame
 from game.scripts.playing import Failure, play_line
 from game.scripts.script import Script
 from game.session import Session
-from systems.program.writer import REVIEW_INTERVAL
+from systems.base import REVIEW_INTERVAL
 
 FOOTER = 112.0  # points, height of the strip for the words of a script below the picture
 LARGER = 1.25  # factor of the type in that strip

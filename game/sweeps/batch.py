@@ -17,13 +17,12 @@ from components.field import Column
 from components.load import load_breaks, loads_end
 from game.sweeps.batch_program import BatchProgram
 from game.sweeps.batched_model import BatchedModel
-from systems.base import StopReason
+from systems.base import REVIEW_INTERVAL, StopReason
 from systems.entries import ACCOUNT, CONTROL, Measure
 from systems.islands import IMMOVABLE, islands
 from systems.physics.rest import RestMeasure
 from systems.physics.spectrum import spectra
 from systems.program.program import COLUMNS_OBSERVED
-from systems.program.writer import REVIEW_INTERVAL
 from systems.run.energy import ENTRIES, Energy, energy_of, opened
 from systems.run.policy import (
     ENDING,

@@ -9,12 +9,11 @@ import numpy as np
 
 from components.model import Model
 from components.snapshot import Snapshot
-from systems.base import Mod, StepSystem
+from systems.base import REVIEW_INTERVAL, Mod, StepSystem
 from systems.program.binding import ProgramError, bind
 from systems.program.near_pairs import pairs_within
 from systems.program.program import MOTION, Program
 from systems.program.reference_laws import in_turn
-from systems.program.writer import REVIEW_INTERVAL
 
 
 def blame_mod(error: ProgramError) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 
 from components.model import Model
 from components.rod import is_warm
-from systems.base import Event, Integrator, StepSystem, StopReason
+from systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
 from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
 from systems.physics.automatic import SMALL
 from systems.program.binding import (
@@ -33,7 +33,6 @@ from systems.program.near_pairs import ARRAYS
 from systems.program.pasting import expanded, fragment, indented, pasted, source_of
 from systems.program.templates import events, fixed_steps, forces, observing, pairs, rods
 
-REVIEW_INTERVAL = 8192  # steps between reviews of the step size, and between safe states
 ROUND_OFF = 2.220446049250313e-16  # of forces, relative to stiffness × displacement
 
 _AT_STRENGTH = 1.0 - 1e-9  # share of its strength from which on a rod is said to yield

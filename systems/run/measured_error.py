@@ -9,8 +9,8 @@ import numpy as np
 
 from components.field import Column
 from components.snapshot import Snapshot
+from systems.base import REVIEW_INTERVAL
 from systems.program.program import Program
-from systems.program.writer import REVIEW_INTERVAL
 from systems.run.policy import TOLD_FROM
 from systems.run.simulation import STUCK, Simulation
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 
 from components.model import Model
-from systems.base import StopReason
+from systems.base import REVIEW_INTERVAL, StopReason
 from systems.program.program import Program
-from systems.program.writer import REVIEW_INTERVAL
 from systems.run.policy import ENDING
 from systems.run.programs import Programs
 from systems.run.sleep import Sleep

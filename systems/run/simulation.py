@@ -16,14 +16,13 @@ from components.model import ADDED, Model
 from components.numeric_range import incomputable
 from components.snapshot import Snapshot
 from components.world import Derivation
-from systems.base import Integrator, StepSystem, StopReason
+from systems.base import REVIEW_INTERVAL, Integrator, StepSystem, StopReason
 from systems.collision.driven.stepper import DrivenCollisions
 from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
 from systems.collision.overlaps import part_overlaps
 from systems.physics.rest import rests_unseen
 from systems.program.program import OBSERVED
-from systems.program.writer import REVIEW_INTERVAL
 from systems.run.checkpoint import Checkpoint
 from systems.run.energy import Account, Energy
 from systems.run.policy import at_rest_since, begin_steps, energy_warning, is_sleep_review, residual

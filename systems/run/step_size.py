@@ -16,6 +16,7 @@ from systems.run.programs import Programs
 from systems.run.sleep import Sleep
 
 OBSERVED = 1.0 / 120.0  # s shown, at the natural pace, between two looks at exact flight or at what touches
+PASSED = 1e-4  # share of the time so far between two looks at exact flight, so that any time is reached in some steps
 DEFAULT_INTEGRATOR = "velocity_verlet"
 
 
@@ -40,9 +41,14 @@ class StepSize:
             self._programs.integrator,
             model.settings.time_step,
             model.rods.count,
-            lambda: OBSERVED * natural_pace(model),
+            self._observed,
             model.clock.collision_state is not None,
         )
+
+    def _observed(self) -> float:
+        """The time (s) between two looks at exact flight or at what touches."""
+        exact, shown = self._programs.integrator.exact, OBSERVED * natural_pace(self._model)
+        return max(shown, PASSED * self._model.clock.time) if exact else shown
 
     def begin(self, size: float) -> None:
         """From now on steps have this size (s); the guard against divergence compares with this moment."""

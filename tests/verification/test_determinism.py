@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from game import Session
+from systems.base import REVIEW_INTERVAL
 from systems.physics.integrators import VelocityVerlet
-from systems.program.writer import REVIEW_INTERVAL
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import model, particle, rod, square

@@ -17,7 +17,7 @@ from components.handle import Handle
 from components.load import loads_end
 from components.model import Model
 from components.obstacles import obstacles
-from systems.base import Event, StopReason
+from systems.base import REVIEW_INTERVAL, Event, StopReason
 from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc, Reason
 from systems.collision.free.compiled import EVENTS, HORIZONS, PILES, engine
 from systems.collision.free.discs import Discs
@@ -176,6 +176,7 @@ class Flight:
     def _pass(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         clock = self.model.clock
         first, origin, size = clock.steps - clock.origin_steps, clock.origin, clock.step_size
+        steps = min(steps, REVIEW_INTERVAL - clock.steps % REVIEW_INTERVAL)
         if until < math.inf:
             steps = min(steps, max(math.floor((until - origin) / size * (1.0 + 1e-15)) - first, 0))
         target = origin + (first + steps) * size
@@ -188,7 +189,9 @@ class Flight:
         if rest <= steps:
             steps = int(rest)
         self._enter(discs, steps, origin + (first + steps) * size)
-        return steps, StopReason.REST if rest <= steps else StopReason.DONE
+        if rest <= steps:
+            return steps, StopReason.REST
+        return steps, StopReason.DONE if clock.steps % REVIEW_INTERVAL else StopReason.REVIEW
 
     def _land(self, landing: float) -> tuple[int, StopReason]:
         discs = self._fly(landing)
