@@ -119,10 +119,10 @@ def error_of(dt, tolerance, longest, largest_x, largest_v, size, wrong_x, wrong_
     allowed_v = tolerance * largest_v + round_off
     if ESTIMATES == 0 or tolerance == 0.0:
         return 0.0 * size  # not a number if something overflowed
-    if not (allowed_x > 0.0 and allowed_v > 0.0):
+    if not (allowed_x > 0.0 or allowed_v > 0.0):
         return 0.0 * size
-    scale_x = dt * dt / allowed_x
-    scale_v = dt / allowed_v
+    scale_x = dt * dt / allowed_x if allowed_x > 0.0 else 0.0  # a push may have set off what has not moved yet
+    scale_v = dt / allowed_v if allowed_v > 0.0 else 0.0
     wrong = scale_x * scale_x * wrong_x + scale_v * scale_v * wrong_v
     if ESTIMATES == 1:
         return math.sqrt(wrong)
@@ -291,7 +291,9 @@ def follow(control, h, limit, error, rejected):
             * max(control[Control.STEP_ERROR], LEAST_ERROR) ** PROPORTIONAL
         )
         factor = min(max(wanted, SHORTEN), LENGTHEN)
-    if rejected:
+    if error > 1.0:  # a jump was crossed; the forces after it need no shorter steps
+        control[Control.STEP_SIZE] = min(h * LENGTHEN, limit)
+    elif rejected:
         control[Control.STEP_SIZE] = min(h * min(factor, 1.0), limit)
     else:
         control[Control.STEP_SIZE] = min(max(h * factor, step if h < step else 0.0), limit)

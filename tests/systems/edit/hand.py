@@ -15,9 +15,9 @@ EMPTY = {"format": "pinjoint model", "version": 1}
 FRAME = 1.0 / 60.0
 
 
-def opened() -> Session:
+def opened(**settings: Any) -> Session:
     content = document(models.load("isostatic"))
-    session = Session.open(content | {"settings": content["settings"] | {"displacement_scale": 1.0}})
+    session = Session.open(content | {"settings": content["settings"] | {"displacement_scale": 1.0} | settings})
     session.view.camera.scale = 100.0
     return session
 

@@ -58,7 +58,8 @@ def test_another_action_ends_a_drag_but_a_look_does_not(triangle: Session) -> No
     assert triangle.particles["B"].position == (1.2, 1.0)
 
 
-def test_what_is_undone_leaves_no_trace(triangle: Session) -> None:
+def test_what_is_undone_leaves_no_trace() -> None:
+    triangle = opened(integrator="velocity_verlet")  # whose steps do not end at rest
     triangle.run(steps=200)
     triangle.particles["B"].force = (10.0, 20.0)
     triangle.run(steps=100)
@@ -69,7 +70,7 @@ def test_what_is_undone_leaves_no_trace(triangle: Session) -> None:
     for _ in range(5):
         triangle.press("ctrl+z")
     triangle.run(steps=300)
-    reference = opened()
+    reference = opened(integrator="velocity_verlet")
     reference.run(steps=200)
     reference.run(steps=300)
     assert_same_state(triangle, Snapshot.take(reference.model))

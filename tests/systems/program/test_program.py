@@ -73,7 +73,7 @@ def test_loops_of_large_models_give_the_same_bits(in_stages: None) -> None:
 def test_loops_of_large_models_give_the_same_bits_with_any_integrator(
     in_stages: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    document = everything() | {"settings": {"integrator": "rk4", "time_step": 5e-6}}
+    document = everything() | {"settings": {"integrator": "semi_implicit_euler", "time_step": 5e-6}}
     large, small = (Session.open(document) for _ in range(2))
     large.run(steps=300)
     monkeypatch.setattr(writer, "SMALL", 200)
@@ -463,7 +463,7 @@ class WideArray(OwnArray):
         (law(plain), "not compiled; put `@njit`"),
         (law("systems.nowhere:law"), "cannot be found"),
         (law("systems.physics.kernels:nothing"), "cannot be found"),
-        (law(heated, each="rod"), "choose one of rods, particles, loads"),
+        (law(heated, each="rod"), "choose one of rods, particles, pairs, loads"),
         (law(heated, reads=("rods.stiffness",), account="heat"), "choose one of work"),
         (law(failing, each="particles"), "name parameters <table>_<column>, time, dt or"),
         (commit(progressive, writes=("rods.yielding",)), "a parameter 'rate', but there is no column"),
