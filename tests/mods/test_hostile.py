@@ -28,7 +28,7 @@ def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def bad(write_mod: Write) -> Iterator[Any]:
-    modules = dict(sys.modules)
+    modules = {name: module for name, module in sys.modules.items() if not name.startswith("pinjoint_program")}
     yield lambda hostile: write_mod("bad", hostile.code)
     assert all(sys.modules.get(name) is module for name, module in modules.items())
 
