@@ -25,6 +25,7 @@ class Account(IntEnum):
     LARGEST_IMBALANCE = 9  # what the steps lost (positive) or created at most
 
 
+SMALLEST_ENERGY = 1e-24  # J, below which the account tells nothing from round-off
 ACCOUNT = tuple(entry.name.lower() for entry in Account)  # columns of the clock
 ACCOUNTS = ACCOUNT[: Account.DISSIPATED_IMPACT + 1]  # those that laws and commits choose among
 

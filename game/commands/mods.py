@@ -47,10 +47,8 @@ def load_as_asked(words: Sequence[str]) -> list[str]:
     unsafe = not options.no_mods and others[:1] not in [[name] for name in COMMANDS] and crashed()
     if unsafe:
         FAULTS.append(LEFT_OUT)
-    named, computes = (
-        {Path(folder).resolve() for folder in options.mods},
-        set(others[:1]) & set(COMMANDS) - {"open"},
-    )
+    named = {Path(folder).resolve() for folder in options.mods}
+    computes = set(others[:1]) & set(COMMANDS) - {"open"}
     for mod in load(options.mods, installed=not (options.no_mods or unsafe)):
         if mod.off and others[:1] != ["mods"]:
             if computes and mod.folder is not None and {mod.folder, mod.folder.parent} & named:

@@ -129,9 +129,7 @@ class Autosave(System):
 
     def _put(self, path: Path, still: _Still) -> None:
         began = time.monotonic()
-        with contextlib.suppress(
-            models.ModelError, ValueError
-        ):  # what no file can hold; saving says what it is
+        with contextlib.suppress(models.ModelError, ValueError):  # what no file can hold; saving says so
             content = msgspec.json.encode(gathered(cast(Model, still)))
             try:
                 models.replace(path, content)

@@ -3,7 +3,7 @@
 import math
 
 from systems.base import StopReason
-from systems.entries import Account, Measure
+from systems.entries import SMALLEST_ENERGY, Account, Measure
 from systems.kernels import compiled, part
 
 REST_RESIDUAL = 2e-9  # of the largest force, so that sums of residuals are within 1e-8; larger: rests sooner
@@ -16,7 +16,6 @@ AMPLIFIED = 50.0  # times all energy ever supplied; Verlet amplifies one mode as
 LARGEST_ENERGY = 1e90  # J, of the largest mass at the largest speed that can be computed with
 LOST_UNSEEN = 1e-9  # of all energy ever supplied; larger: motion that the method took passes for rest
 AT_TAUT = 1e-9  # elastic strain within which a cable's motion tells whether it is slack
-SMALLEST_ENERGY = 1e-24  # J, below which nothing is told from round-off
 
 
 @compiled

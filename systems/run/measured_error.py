@@ -10,8 +10,8 @@ import numpy as np
 from components.field import Column
 from components.snapshot import Snapshot
 from systems.base import REVIEW_INTERVAL
+from systems.entries import SMALLEST_ENERGY
 from systems.program.program import Program
-from systems.run.policy import TOLD_FROM
 from systems.run.simulation import STUCK, Simulation
 
 FINER_TOLERANCE = 1e-2  # of the run's, by which it is taken again where the error is controlled
@@ -59,7 +59,8 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     clock, then = model.clock, beginning.columns
     met = clock.collisions > then["clock.collisions"][0] or clock.collision_state is not None
     meaningless = met or simulation.program.watches_events or simulation.integrator.exact
-    coarse = not -MOST_CREATED <= clock.largest_imbalance / max(clock.energy_scale, TOLD_FROM) <= MOST_LOST
+    lost = clock.largest_imbalance / max(clock.energy_scale, SMALLEST_ENERGY)
+    coarse = not -MOST_CREATED <= lost <= MOST_LOST
     coarse |= simulation.note == STUCK  # as at Verlet's stable step, where the energy may be right
     if meaningless or coarse or not clock.time > then["clock.time"][0]:
         return None

@@ -14,7 +14,7 @@ import numpy as np
 
 from components.field import Column
 from systems.base import Integrator, StopReason
-from systems.entries import Measure
+from systems.entries import SMALLEST_ENERGY, Measure
 from systems.physics.automatic import SMALL
 
 GOING_ON = (StopReason.DONE, StopReason.REVIEW)  # stop reasons after which a run simply goes on
@@ -28,7 +28,6 @@ FREE_STEP = 1e-3  # s, where nothing limits the step
 DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
 
 TOLD_SHARE = 0.1  # of all energy ever supplied; smaller: warns of lattices by automatic steps of Verlet
-TOLD_FROM = 1e-24  # J, below which nothing is told from round-off
 
 ERROR_CONTROL = (
     "step_error",
@@ -161,14 +160,14 @@ def energy_is_off(imbalance: Any, scale: Any) -> Any:
 
     imbalance, scale: largest_imbalance and energy_scale of the clock.
     """
-    return abs(imbalance) > TOLD_SHARE * scale + TOLD_FROM
+    return abs(imbalance) > TOLD_SHARE * scale + SMALLEST_ENERGY
 
 
 def energy_warning(imbalance: float, scale: float) -> str:
     """The sentence that steps lost (positive) or created this energy (J); "" if it is a small part of all supplied."""
     if not energy_is_off(imbalance, scale):
         return ""
-    share = abs(imbalance) / max(scale, TOLD_FROM)
+    share = abs(imbalance) / max(scale, SMALLEST_ENERGY)
     amount = f"{100.0 * share:.3g} % of" if share < 10.0 else f"{share:.3g} times"
     did = "lost" if imbalance > 0.0 else "created"
     return f"The steps {did} {amount} the energy that was supplied: the results may be as wrong."
