@@ -56,6 +56,7 @@ from systems.base import (
     System,
 )
 from systems.edit import Refusal
+from systems.kernels import compiled
 from systems.physics.integrators import (
     DormandPrince853,
     ImplicitRungeKutta4,
@@ -167,6 +168,7 @@ __all__ = [
     "analysis_of",
     "boxes",
     "check_system",
+    "compiled",
     "count",
     "faded",
     "finite",

@@ -17,19 +17,19 @@ from game.mods import MODS
 from game.prepare import WARM, Job, is_prepared, load_program
 from systems import cache
 from systems.base import Phase, StepSystem, System
-from systems.collision.driven.stepper import DRIVEN
-from systems.collision.free.compiled import EVENTS, HORIZONS, PILES
+from systems.collision.driven.compiled import DRIVEN
+from systems.collision.free.discs import EVENTS, HORIZONS, PILES
 from systems.collision.free.flight import may_pile
 from systems.collision.system import Support, persistent_contacts
 from systems.edit.pull import Pull
 from systems.physics.integrators import INTEGRATORS
-from systems.program.compiler import CompiledUnit, is_blank, load_compiler
+from systems.program.compiler import GeneratedModule, is_blank
 from systems.program.program import has_program
 from systems.program.writer import form_of, read_sources
 from systems.render.raster import RASTER, Raster, load_raster
 from systems.run.simulation import Simulation
 
-Units = tuple[CompiledUnit, ...]  # that one process compiles
+Units = tuple[GeneratedModule, ...]  # that one process compiles
 FREE: tuple[Units, ...] = (EVENTS,), (HORIZONS,)  # for free particles
 PULLED: tuple[Units, ...] = (EVENTS,), (HORIZONS, PILES)  # for those that may pile up
 AHEAD: tuple[Units, ...] = (RASTER,), (DRIVEN,), *PULLED  # which any model may come to need
@@ -211,7 +211,7 @@ def _has_program(simulation: Simulation, plan: Sequence[StepSystem]) -> bool:
 
 def _load_libraries() -> None:
     """Import what steps need besides their programs, which takes several frames."""
-    load_compiler()
+    importlib.import_module("systems.machine_code")
     for units in AHEAD:  # imports kernels, which takes several frames
         _are_compiled(units)
     read_sources([integrator for integrator in INTEGRATORS.values() if integrator.mod is None])

@@ -15,8 +15,8 @@ from components.rod import spawn_rods
 from game.commands.mods import load_as_asked
 from game.session import Session
 from systems.base import Integrator, StepSystem
-from systems.collision.driven.stepper import DRIVEN
-from systems.collision.free.compiled import EVENTS, HORIZONS, PILES
+from systems.collision.driven.compiled import DRIVEN
+from systems.collision.free.discs import EVENTS, HORIZONS, PILES
 from systems.edit.pull import Hand
 from systems.physics.integrators import INTEGRATORS
 from systems.program.compiler import forget_unused
@@ -44,7 +44,7 @@ def main(words: Sequence[str]) -> None:
 def load_program(job: Job) -> None:
     """Load a step program, compiled first if nobody has."""
     session, plan, integrator, form = _example(job)
-    make_program(session.model, plan, integrator, form)
+    make_program(session.model, plan, integrator, form).load()
 
 
 def is_prepared(job: Job) -> bool:

@@ -1,293 +1,116 @@
-"""How kernels are compiled, and the quick way to compile large programs of them.
+"""Kernels: functions of numbers and arrays that have two forms, plain Python and machine code, with the same bits.
 
-All of them: IEEE division (no exceptions), no fastmath, so that the same input gives the same bits.
+A kernel is declared by one of these decorators; declaring needs no compiler.
 
     compiled   a kernel that may also be called from Python, and tested, by itself
     part       a kernel that only other kernels call
-    kept       a function that calls kernels by itself, whose machine code is kept on disk
+    kept       a function of a generated module, that calls kernels, whose machine code is kept on disk
     entry      one by which Python enters a program that consists of parts
+    shared     one with a loop that cores share
 
-Plain numba optimises each part with everything that it calls, and makes machine code of it, although only the entry
-is called from Python. Here a part is only translated to LLVM code; the entry is linked with its parts, then optimised
-and compiled as a whole, in a fraction of the time. Only the entry's parts call one another, so that arguments which a
-part does not use are dropped: an array has nine, which would cost steps of a few rods a third of their time.
-
-This uses inner classes of numba (below PLAIN). With the environment variable PINJOINT_PLAIN_NUMBA=1 all these
-decorators are numba's own `njit` with the same options: programs compute the same bits and take longer to compile.
+All of them: IEEE division (no exceptions), no fastmath, so that the same input gives the same bits. The plain form is
+in systems/interpreter.py, machine code in systems/machine_code.py.
 """
-
-
-# mypy: allow-untyped-calls
 
 from __future__ import annotations
 
-import hashlib
+import inspect
 import os
-import pickle
 from collections.abc import Callable
-from functools import partial
+from enum import Enum
+from functools import cached_property, partial, update_wrapper
+from types import ModuleType
 from typing import Any
-
-from numba import njit
-from numba.core.caching import NullCache
-from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler, CompileResult
-from numba.core.compiler_machinery import PassManager
-from numba.core.registry import CPUDispatcher, cpu_target
-from numba.core.serialize import dumps
-from numba.core.typed_passes import InlineOverloads, NopythonRewrites
-from numba.core.types import Function, unliteral
-from numba.core.typing.context import Context
-from numba.core.untyped_passes import (
-    FindLiterallyCalls,
-    InlineClosureLikes,
-    InlineInlinables,
-    LiteralPropagationSubPipelinePass,
-    LiteralUnroll,
-    MakeFunctionToJitFunction,
-    WithLifting,
-)
-
-from systems import cache
 
 PLAIN = os.environ.get("PINJOINT_PLAIN_NUMBA", "") == "1"
 
-compiled = njit(error_model="numpy", no_cfunc_wrapper=True)  # type: ignore[call-overload]
+
+class Use(Enum):
+    """How a kernel is reached, which decides how it is compiled."""
+
+    BY_ITSELF = "compiled"
+    PART = "part"
+    KEPT = "kept"
+    ENTRY = "entry"
+    SHARED = "shared"
 
 
-def part(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """A decorator like `compiled`, with further options, for functions that only compiled ones call."""
-    if PLAIN:
-        plain: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True} | options
-        return njit(**plain)  # type: ignore[no-any-return]
-    chosen = {
-        "error_model": "numpy",
-        "nopython": True,
-        "boundscheck": None,
-        "no_cpython_wrapper": True,
-        "no_cfunc_wrapper": True,
-    }
-    return partial(_Part, locals={}, targetoptions=chosen | options, pipeline_class=_PartCompiler)
+class Kernel:
+    """A function that can be interpreted, or compiled to machine code.
+
+    py_func: what was declared. targetoptions: of numba. signature: the types that it is compiled for, if declared.
+    """
+
+    def __init__(self, function: Callable[..., Any], use: Use, signature: str = "", **options: Any) -> None:
+        self.py_func = function
+        self.use = use
+        self.signature = signature
+        self.targetoptions = options
+        update_wrapper(self, function)
+
+    @cached_property
+    def interpreted(self) -> Callable[..., Any]:
+        """The plain form, to be called with arrays."""
+        from systems.interpreter import interpreted
+
+        return interpreted(self)
+
+    @cached_property
+    def machine(self) -> Callable[..., Any]:
+        """The compiled form; what calls it first has it compiled, or loaded from the cache."""
+        from systems.machine_code import dispatcher_of
+
+        return dispatcher_of(self)
+
+    def __call__(self, *given: Any) -> Any:
+        """Compute, interpreted."""
+        return self.interpreted(*given)
 
 
-def kept(signature: str = "", **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """A decorator like numba's `njit`, for functions of generated modules: their machine code is kept on disk.
+def _declared(use: Use, signature: str = "", **options: Any) -> Callable[[Callable[..., Any]], Kernel]:
+    return partial(Kernel, use=use, signature=signature, error_model="numpy", **options)
+
+
+compiled = _declared(Use.BY_ITSELF)
+
+
+def part(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:
+    """A decorator like `compiled`, with further options of numba, for functions that only compiled ones call."""
+    return _declared(Use.PART, **options)
+
+
+def kept(signature: str = "", **options: Any) -> Callable[[Callable[..., Any]], Kernel]:
+    """A decorator like `compiled`, for functions of generated modules.
 
     signature: compile for it at once, and never for another.
     """
-
-    def made(function: Callable[..., Any]) -> Any:
-        dispatcher: Any = njit(**options)(function)
-        if _is_compiled(dispatcher):
-            dispatcher._cache = _MachineCode(function)
-            if signature:
-                dispatcher.compile(signature)
-                dispatcher.disable_compile()
-        return dispatcher
-
-    return made
+    return _declared(Use.KEPT, signature, **options)
 
 
-def entry(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+def entry(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:
     """A decorator like `compiled`, with further options, for functions by which Python enters a program of parts."""
-    chosen: dict[str, Any] = {"error_model": "numpy"} | options
-    return kept(**chosen) if PLAIN else kept(pipeline_class=_EntryCompiler, **chosen)
+    return _declared(Use.ENTRY, **options)
 
 
-def forget_own_cache(function: Any) -> None:
-    """Let a kernel of a mod with `cache=True` be compiled with its program only: numba trusts what it finds on disk."""
-    if _is_compiled(function):
-        function._cache = NullCache()
+def shared() -> Callable[[Callable[..., Any]], Kernel]:
+    """A decorator like `compiled`, for functions whose loops over a `prange` are shared among cores."""
+    return _declared(Use.SHARED)
 
 
-def _is_compiled(function: Any) -> bool:
-    """False where NUMBA_DISABLE_JIT has functions interpreted."""
-    return isinstance(function, CPUDispatcher)
+prange = range
 
 
-class _MachineCode(NullCache):
-    """Where numba looks for the machine code of a function, and leaves it.
-
-    Its own cache on disk trusts what it finds. The name of the function's module hashes all that the code follows
-    from, but for the types of the arguments.
-    """
-
-    def __init__(self, function: Callable[..., Any]) -> None:
-        self._function = function
-
-    def _name(self, signature: Any) -> str:
-        types = hashlib.sha256(repr(signature).encode()).hexdigest()[:16]
-        return f"{self._function.__module__}.{self._function.__name__}-{types}.code"
-
-    def load_overload(self, signature: Any, target: Any) -> Any:
-        """What was compiled for these types; None if it is to be compiled."""
-        target.refresh()
-        content = cache.read(self._name(signature))
-        if content is None:
-            return None
-        try:
-            return CompileResult._rebuild(target, *pickle.loads(content))
-        except Exception:  # such as a module that is gone
-            return None
-
-    def save_overload(self, signature: Any, result: Any) -> None:
-        """Keep what was compiled, unless it holds addresses of this process."""
-        if not result.library.has_dynamic_globals:
-            cache.write(self._name(signature), dumps(result._reduce()))
+def plain_function(function: Callable[..., Any]) -> Callable[..., Any]:
+    """What a kernel, or a function that numba's own decorators made, was declared as; other functions as they are."""
+    return getattr(function, "py_func", function)
 
 
-# --- what numba knows of types -------------------------------------------------------------------
-
-# Passes over a function that look for what kernels do not have: `with`, closures and comprehensions, functions
-# inlined before their types are known, loops over tuples of different types, expressions of whole arrays.
-UNUSED = (
-    WithLifting,
-    InlineClosureLikes,
-    MakeFunctionToJitFunction,
-    InlineInlinables,
-    FindLiterallyCalls,
-    LiteralUnroll,
-    LiteralPropagationSubPipelinePass,
-    InlineOverloads,
-    NopythonRewrites,
-)
-
-
-class _Typing(Context):
-    """numba's context of types, with a memory of what calls return.
-
-    For every `a + b` numba asks a dozen candidates. A large program has some six thousand such operations, of which
-    a few hundred differ in types.
-    """
-
-    def __init__(self, known: Context) -> None:
-        self.__dict__ = known.__dict__
-        self._found: dict[Any, Any] = {}
-
-    def resolve_function_type(self, function: Any, given: Any, named: Any) -> Any:
-        """The signature of a function for arguments of these types."""
-        known = self._lookup_global(function) or function
-        if named or not isinstance(known, Function):
-            return super().resolve_function_type(function, given, named)
-        key = known, tuple(given)
-        if key not in self._found:
-            found = super().resolve_function_type(function, given, named)
-            if found is None:
-                return None
-            self._found[key] = found
-        return self._found[key]
-
-
-class _LeanCompiler(Compiler):
-    """numba's compiler with that memory and without the passes that kernels have no use for."""
-
-    _typing = _Typing(cpu_target.typing_context)
-
-    def __init__(self, _: Any, *rest: Any) -> None:
-        super().__init__(self._typing, *rest)
-
-    def define_pipelines(self) -> list[PassManager]:
-        """The usual passes, less the unused ones."""
-        (usual,) = super().define_pipelines()
-        lean = PassManager(usual.pipeline_name)
-        for kind, purpose in usual.passes:
-            if kind not in UNUSED:
-                lean.add_pass(kind, purpose)
-        lean.finalize()
-        return [lean]
-
-
-# --- parts ---------------------------------------------------------------------------------------
-
-
-class _PartCode(JITCodeLibrary):
-    """LLVM code of a part and a list of the libraries that it calls. It is linked into others, and never run."""
-
-    def finalize(self) -> None:
-        """End construction without optimising: the entry that links this part optimises it."""
-        if hasattr(
-            self, "_reload_init"
-        ):  # newer versions of numba: functions to call when cached code is loaded
-            for called in self._linking_libraries:
-                self._reload_init.update(called._reload_init)
-        self._finalized = True
-
-    def _get_module_for_linking(self) -> Any:
-        """The part and all that it calls, each once.
-
-        Their functions are "linkonce_odr": where several parts bring the same function, the linker keeps one.
-        """
-        self._ensure_finalized()
-        if self._shared_module is None:
-            self._shared_module = self._final_module.clone()
-            for called in self._called({}):
-                is_part = isinstance(called, _PartCode)
-                module = called._final_module if is_part else called._get_module_for_linking()
-                self._shared_module.link_in(module, preserve=True)
-            for function in self._shared_module.functions:
-                if not function.is_declaration and function.linkage.name == "external":
-                    function.linkage = "linkonce_odr"
-        return self._shared_module
-
-    def _called(self, found: dict[Any, None]) -> dict[Any, None]:
-        """All libraries that it calls, directly or not, in the order of the calls."""
-        for called in self._linking_libraries:
-            if called not in found:
-                found[called] = None
-                if isinstance(called, _PartCode):
-                    called._called(found)
-        return found
-
-    def _optimize_functions(self, module: Any) -> None:
-        module.data_layout = self._codegen._data_layout
-
-    @property
-    def codegen(self) -> _PartCode:
-        """The receiver of set_env(), which numba's compiler looks up here."""
-        return self
-
-    def set_env(self, name: str, environment: Any) -> None:
-        """Do nothing: only machine code has an environment, to raise exceptions with, and parts raise none."""
-
-
-class _PartCompiler(_LeanCompiler):
-    """Compiles a part as far as LLVM code."""
-
-    def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
-        super().__init__(typing, target, library or _PartCode(target.codegen(), "part"), *rest)
-
-
-class _Part(CPUDispatcher):
-    """What the name of a part stands for."""
-
-    def get_call_template(self, given: Any, named: Any) -> Any:
-        """The same version for the constant 3 as for any other integer."""
-        plain = {name: unliteral(kind) for name, kind in named.items()}
-        return super().get_call_template(tuple(unliteral(kind) for kind in given), plain)
-
-    def __call__(self, *given: Any, **named: Any) -> Any:
-        """Raise TypeError: a part has no machine code of its own."""
-        raise TypeError(f"{self.py_func.__qualname__} is a part of programs: call it from a compiled function.")
-
-
-# --- entries -------------------------------------------------------------------------------------
-
-
-class _EntryCode(JITCodeLibrary):
-    """Code of an entry; its parts become internal, so that the optimiser may change how they are called."""
-
-    def _optimize_final_module(self) -> None:
-        for function in self._final_module.functions:
-            if not function.is_declaration and function.linkage.name == "linkonce_odr":
-                function.linkage = "internal"
-        super()._optimize_final_module()
-
-
-class _EntryCompiler(_LeanCompiler):
-    """Compiles an entry with its parts to machine code that can be cached."""
-
-    def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
-        if library is None:
-            library = _EntryCode(target.codegen(), "entry")
-            library.enable_object_caching()
-        super().__init__(typing, target, library, *rest)
+def used_by(plain: Callable[..., Any]) -> dict[str, Any]:
+    """The names that a function takes from outside: closure, globals, and attributes of modules among these."""
+    outside = inspect.getclosurevars(plain)
+    used: dict[str, Any] = {**outside.globals, **outside.nonlocals}
+    for name, value in list(used.items()):
+        if isinstance(value, ModuleType):
+            names = plain.__code__.co_names
+            used |= {f"{name}.{n}": getattr(value, n) for n in names if hasattr(value, n)}
+    return used

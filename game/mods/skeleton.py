@@ -18,8 +18,7 @@ requires = ["pinjoint>={version}"]
 _CODE = '''\
 """A steady wind on all particles: a law, the fact that it needs, and what a person sees of it."""
 
-from game.api import Component, Environment, Field, Law, Readout
-from numba import njit
+from game.api import Component, Environment, Field, Law, Readout, compiled
 
 
 class Air(Component):
@@ -27,7 +26,7 @@ class Air(Component):
     speed: Field[float] = Field("m/s", title="wind speed", doc="To the right; 0: no wind.")
 
 
-@njit
+@compiled
 def push(particles_mass, particles_velocity, environment_{name}_speed):
     """Force (x, y) in kN on one particle."""
     return 0.001 * particles_mass * (environment_{name}_speed - particles_velocity[0]), 0.0

@@ -20,6 +20,7 @@ from game.sweeps.batched_model import BatchedModel
 from systems.base import REVIEW_INTERVAL, StopReason
 from systems.entries import ACCOUNT, CONTROL, Measure
 from systems.islands import IMMOVABLE, islands
+from systems.physics.kernels import conserved
 from systems.physics.rest import RestMeasure
 from systems.physics.spectrum import spectra
 from systems.program.program import COLUMNS_OBSERVED
@@ -125,9 +126,9 @@ class Batch:
             return
         begin_steps(self.clock, variants, sizes[variants])
         self.observe()
-        module = self.program.program.module
-        conserved = module.conserved.py_func  # for all variants at once
-        energy = conserved(self.measures.T, self._clocks(ACCOUNT).T, self.clock("step_size"), module.SHADOW)
+        conserved_by_all = conserved.py_func  # arrays of all variants in place of numbers
+        guard = float(self.integrator.guard)
+        energy = conserved_by_all(self.measures.T, self._clocks(ACCOUNT).T, self.clock("step_size"), guard)
         self.clock("guard_energy")[variants] = energy[variants]
 
     # --- calling the program -------------------------------------------------------------------------

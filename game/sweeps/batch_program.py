@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from components.field import Column
 from game.sweeps.batched_model import BatchedModel
 from systems.program.binding import bind
-from systems.program.compiler import compile_module, note_compiled
+from systems.program.compiler import generated
 from systems.program.program import Program
 
 # One for all variants, besides what is written anew for each.
@@ -37,14 +37,16 @@ class BatchProgram:
         self.integrator = program.integrator
         self.threads = threads
         self._columns = program.columns
-        entries = {name: getattr(program.module, name, None) for name in ("advance", "observe", "commit")}
-        self._entries = {name: entry for name, entry in entries.items() if entry is not None}
+        functions = program.module.functions
+        self._entries = {
+            name: functions[name] for name in ("advance", "observe", "commit") if name in functions
+        }
         self.has_history = "commit" in self._entries
         self._scratch_shapes = program.scratch
         self._parameters = {
-            name: tuple(inspect.signature(entry.py_func).parameters) for name, entry in self._entries.items()
+            name: tuple(inspect.signature(entry).parameters) for name, entry in self._entries.items()
         }
-        self._module = compile_module(self._source(), self._entries)
+        self._module = generated("the program of variants", self._source(), self._entries)
 
     def _scratch(self, entry: str) -> dict[str, tuple[int, ...]]:
         """Shapes of the arrays that an entry writes and nobody reads; observed forces are kept for each variant."""
@@ -62,7 +64,7 @@ class BatchProgram:
             one_for_all = (*_SHARED, *self._scratch(name))
             arguments = [p if p in one_for_all else f"{p}[k]" for p in parameters]
             lines += [
-                '@kept(error_model="numpy", nogil=True)',
+                "@kept(nogil=True)",
                 f"def {name}_each(variants, taken, reason, {', '.join(parameters)}):",
                 "    for k in variants:",
                 f"        {_RETURNS.get(name, '')}{name}({', '.join(arguments)})",
@@ -108,11 +110,10 @@ class BatchProgram:
         def one_by_one(some: NDArray[np.intp]) -> None:
             scratch = {name: np.zeros(shape) for name, shape in self._scratch(entry).items()}
             given = [scratch[p] if p in scratch else arguments[p] for p in self._parameters[entry]]
-            getattr(self._module, f"{entry}_each")(some, taken, reason, *given)
+            getattr(self._module.form, f"{entry}_each")(some, taken, reason, *given)
 
         pieces = 1 if len(variants) < 2 * self.threads else self.threads * _PIECES
         self._share_out(one_by_one, np.array_split(variants, pieces))
-        note_compiled(self._module)
         return taken, reason
 
     def _share_out(self, work: Callable[[NDArray[np.intp]], None], pieces: Sequence[NDArray[np.intp]]) -> None:

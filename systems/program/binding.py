@@ -17,6 +17,7 @@ from components.model import Model
 from components.wording import is_identifier
 from systems.base import Commit, Event, Integrator, Law, StepSystem
 from systems.entries import ACCOUNTS
+from systems.kernels import Kernel
 from systems.program.chance import source_of_chance
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
@@ -202,7 +203,9 @@ def _bound(system: StepSystem, model: Model, kernel: str) -> Bound:
     function = find(getattr(system, kernel), system)
     plain = getattr(function, "py_func", None)
     if plain is None:
-        raise ProgramError(f"The kernel of {system.name} is not compiled; put `@njit` of numba above it.")
+        raise ProgramError(
+            f"The kernel of {system.name} is not compiled; put `@compiled` of game.api above it."
+        )
     if system.mod is not None and (chance := source_of_chance(function)):
         raise ProgramError(
             f"The kernel of {system.name} draws random numbers ({chance}), so that no run could be repeated; draw"
@@ -412,5 +415,6 @@ def _result_type(b: Bound, model: Model) -> Any:
 
     of_load = (types.float64, types.Array(types.float64, 1, "C", readonly=True), types.uint32)
     signature = of_load if b.each == "loads" else tuple(map(type_of, b.parameters))
-    b.function.compile(signature)  # type: ignore[attr-defined]
-    return b.function.overloads[signature].signature.return_type  # type: ignore[attr-defined]
+    dispatcher: Any = b.function.machine if isinstance(b.function, Kernel) else b.function
+    dispatcher.compile(signature)
+    return dispatcher.overloads[signature].signature.return_type

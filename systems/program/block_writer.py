@@ -19,8 +19,8 @@ _LIMITS = ("first = np.uint64(block_particles[block])", "last = np.uint64(block_
 _COMPLETED = f"{TRIAL_STATE}, predicted"
 _MOVED = f"{_COMPLETED}, ending"
 _PARALLEL = """\
-from numba import njit, prange
-parallel = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, parallel=True)
+from systems.kernels import prange, shared
+parallel = shared()
 """
 
 

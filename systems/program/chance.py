@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from systems.kernels import plain_function
+
 _MODULES = (random, np.random)
 _GENERATORS = (random.Random, np.random.RandomState, np.random.Generator)
 
@@ -22,7 +24,7 @@ def source_of_chance(kernel: Callable[..., Any]) -> str:
         if id(function) in seen:
             continue
         seen.add(id(function))
-        plain = getattr(function, "py_func", function)
+        plain = plain_function(function)
         if not inspect.isfunction(plain):
             continue
         outside = inspect.getclosurevars(plain)

@@ -1,23 +1,33 @@
-"""Compiling generated modules, step programs above all, with a cache on disk that processes share."""
+"""Generated modules, step programs above all: interpreted at once, compiled when that is worth it.
+
+Machine code is kept in a cache on disk that processes share.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import hashlib
+import importlib.metadata
 import inspect
 import linecache
+import logging
+import math
+import os
+import platform
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from enum import IntEnum
+from enum import Enum, IntEnum
+from functools import cache as once
 from functools import cached_property
-from types import CodeType, ModuleType
+from pathlib import Path
+from types import CodeType, ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from systems import cache
+from systems.kernels import PLAIN, Kernel, Use, plain_function, used_by
 
 
 def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
@@ -30,12 +40,12 @@ def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
         if isinstance(function, type):
             parts.append(_constant(function))
             continue
-        plain = getattr(function, "py_func", function)
+        plain = plain_function(function)
         parts += [
             f"{plain.__module__}.{plain.__qualname__}",
             repr(getattr(function, "targetoptions", {})),
             _described(plain.__code__),
-            *(f"{name} = {_constant(value)}" for name, value in sorted(_used_by(plain).items())),
+            *(f"{name} = {_constant(value)}" for name, value in sorted(used_by(plain).items())),
         ]
     return "\n".join(parts)
 
@@ -49,19 +59,8 @@ def _reached_from(functions: Iterable[Callable[..., Any]]) -> Iterator[Callable[
             seen.add(function)
             yield function
             if not isinstance(function, type):
-                used = _used_by(getattr(function, "py_func", function))
+                used = used_by(plain_function(function))
                 pending += [value for _, value in sorted(used.items()) if hasattr(value, "py_func")]
-
-
-def _used_by(plain: Callable[..., Any]) -> dict[str, Any]:
-    """The names that a function takes from outside: closure, globals, and attributes of modules among these."""
-    outside = inspect.getclosurevars(plain)
-    used: dict[str, Any] = {**outside.globals, **outside.nonlocals}
-    for name, value in list(used.items()):
-        if isinstance(value, ModuleType):
-            names = plain.__code__.co_names
-            used |= {f"{name}.{n}": getattr(value, n) for n in names if hasattr(value, n)}
-    return used
 
 
 def _described(code: CodeType) -> str:
@@ -78,77 +77,210 @@ def _constant(value: Any) -> str:
     return repr(value) if plain else type(value).__name__
 
 
-_LAYOUT = 2  # of what is kept on disk: raise it where former files are of no use any more
-_modules: dict[str, ModuleType] = {}
-_compiled = set[str]()  # names of modules all functions of which this process has called
+_LAYOUT = 3  # of what is kept on disk: raise it where former files are of no use any more
 
 
-def compile_module(source: str, kernels: Mapping[str, Callable[..., Any]]) -> ModuleType:
-    """The module with this source in which `kernels` are known by name; its machine code is cached."""
-    from systems.kernels import forget_own_cache
-
-    name = _name_of(source, kernels)
-    if name not in _modules:
-        for function in _reached_from(kernels.values()):
-            forget_own_cache(function)
-        module = ModuleType(name)
-        vars(module).update(kernels)
-        sys.modules[name] = module  # what is cached looks the module up by its name
-        shown = f"<{name}>"
-        linecache.cache[shown] = len(source), None, source.splitlines(keepends=True), shown  # for tracebacks
-        exec(compile(source, shown, "exec"), vars(module))
-        _modules[name] = module
-    return _modules[name]
+# --- which form ------------------------------------------------------------------------------------
 
 
-def _name_of(source: str, kernels: Mapping[str, Callable[..., Any]]) -> str:
-    """The name of a generated module, which hashes everything that is compiled into it.
+class Compile(Enum):
+    """When programs are compiled: as PINJOINT_COMPILE says."""
 
-    numba's own cache would notice neither edits of functions that a cached one calls, nor another processor.
+    NEVER = "never"  # everything is interpreted
+    SOON = ""  # what is short is interpreted; who runs for long compiles, or loads, the program in between
+    ELSEWHERE = "elsewhere"  # other processes compile; this one loads what they made when it is told to
+    ALWAYS = "always"  # before the first step
+
+
+def _asked() -> Compile:
+    said = os.environ.get(VARIABLE, "")
+    try:
+        return Compile(said)
+    except ValueError:
+        raise ValueError(f"{VARIABLE} is '{said}'; set it to never or always, or leave it out.") from None
+
+
+VARIABLE = "PINJOINT_COMPILE"
+LOADING = 0.2  # s of interpreting after which it is sooner to load the compiled program
+LONGEST_CALL = 0.05  # s, interpreted
+BEFORE_COMPILING = 0.5  # s of interpreting, for each that compiling is expected to take
+SECONDS_PER_BYTE = (
+    2e-4  # of the interpreter's code, that compiling takes; for a machine that has compiled nothing yet
+)
+
+UNCOMPILED: list[str] = []  # sentences: what could not be compiled, and why
+LOG = logging.getLogger("pinjoint.compiler")
+
+
+class Choice:
+    """Which form programs of this process run in; a window changes it to ELSEWHERE."""
+
+    compile = _asked()
+
+
+# --- modules ---------------------------------------------------------------------------------------
+
+
+class GeneratedModule:
+    """Generated source, with the kernels that it calls by name, in two forms: plain Python and machine code.
+
+    Both compute the same bits, so that one may follow the other between any two calls. functions: what Python may
+    call, by name, as declared. spent: time that interpreting took in this process (s). portion: of what there is to do,
+    such as steps, for one interpreted call, so that another form may soon follow.
     """
-    import numba
-    from numba.core.registry import cpu_target
 
-    from systems.kernels import PLAIN
+    def __init__(
+        self,
+        name: str,
+        contents: Callable[[], tuple[str, Mapping[str, Callable[..., Any]]]],
+        warm_up: Callable[[], object] = lambda: None,
+    ) -> None:
+        """name: of what it is for, which a process that compiles is given. contents: returns source and kernels; the
+        call imports them. warm_up: calls all functions; needed where types are not declared.
+        """
+        self.name = name
+        self.spent = 0.0
+        self._contents = contents
+        self.warm_up = warm_up
+        self._form: Any = None
+        self.portion = 1
+        self._compiled = False
+        self._patience = 0.0
+        self._last = 0.0
 
-    processor = repr(cpu_target.target_context.codegen().magic_tuple())
-    meaning = _meaning_of(kernels[name] for name in sorted(kernels))
-    about = source, meaning, numba.__version__, sys.version, processor, f"plain: {PLAIN}", f"layout: {_LAYOUT}"
-    return "pinjoint_program_" + hashlib.sha256("\n".join(about).encode()).hexdigest()[:24]
+    @cached_property
+    def _source_and_kernels(self) -> tuple[str, Mapping[str, Callable[..., Any]]]:
+        return self._contents()
 
+    @property
+    def source(self) -> str:
+        """The Python that it consists of."""
+        return self._source_and_kernels[0]
 
-@dataclass(frozen=True)
-class CompiledUnit:
-    """A generated module that is the same for every model: the drawing, or kernels of collisions.
-
-    name: the name that a compiling process is given. contents: returns the source, and the kernels by their names in
-    the source; the call imports them. warm_up: calls all functions, so that numba compiles or loads them; not needed
-    where types are declared.
-    """
-
-    name: str
-    contents: Callable[[], tuple[str, Mapping[str, Callable[..., Any]]]]
-    warm_up: Callable[[], None] = lambda: None
+    @cached_property
+    def key(self) -> str:
+        """The name of the module in the cache, which hashes everything that is compiled into it."""
+        return _key_of(*self._source_and_kernels)
 
     @cached_property
     def module(self) -> ModuleType:
-        """The module; what was not called yet may still have to be compiled."""
-        return compile_module(*self.contents())
+        """The module, executed."""
+        source, kernels = self._source_and_kernels
+        shown = f"<{self.name} {hashlib.sha256(source.encode()).hexdigest()[:16]}>"
+        linecache.cache[shown] = len(source), None, source.splitlines(keepends=True), shown  # for tracebacks
+        module = ModuleType(shown)
+        vars(module).update(kernels)
+        exec(compile(source, shown, "exec"), vars(module))
+        return module
 
-    @cached_property
-    def _module_name(self) -> str:
-        return _name_of(*self.contents())
+    @property
+    def functions(self) -> dict[str, Kernel]:
+        """What Python may call."""
+        made = vars(self.module).items()
+        return {n: k for n, k in made if isinstance(k, Kernel) and k.use in (Use.KEPT, Use.ENTRY)}
+
+    @property
+    def form(self) -> Any:
+        """The functions by name, in the form that they run in now."""
+        if self._form is None:
+            if Choice.compile is Compile.ALWAYS:
+                self.load()
+            else:
+                self._form = self._interpreted()
+        elif self.spent > self._patience and not self._compiled:
+            self._lose_patience()
+        return self._form
+
+    @property
+    def is_loaded(self) -> bool:
+        """True if machine code runs."""
+        return self._compiled
+
+    def _interpreted(self) -> SimpleNamespace:
+        def timed(function: Callable[..., Any]) -> Callable[..., Any]:
+            def called(*given: Any) -> Any:
+                began = time.perf_counter()
+                try:
+                    return function(*given)
+                finally:
+                    self._last = time.perf_counter() - began
+                    self.spent += self._last
+
+            return called
+
+        self._patience = LOADING
+        return SimpleNamespace(**{n: timed(f.interpreted) for n, f in self.functions.items()})
+
+    def did(self, work: int) -> None:
+        """Note how much the last call did, interpreted, so that the next one takes about LONGEST_CALL."""
+        share = LONGEST_CALL / max(self._last, 1e-6)
+        self.portion = max(int(work * min(share, 8.0)), 1)
+
+    def _lose_patience(self) -> None:
+        """Load the compiled form, or compile it, if that is worth it by now."""
+        if Choice.compile is not Compile.SOON:
+            self._patience = math.inf
+            return
+        self._patience = 0.0 if self.is_compiled() else BEFORE_COMPILING * self.expected_seconds()
+        if self.spent > self._patience:
+            try:
+                self.load()
+            except Exception as error:
+                self._patience = math.inf
+                _tell(f"{self.name} goes on interpreted, and slower: it cannot be compiled ({error}).")
 
     def is_compiled(self) -> bool:
-        """True if it need only be loaded."""
-        return _is_noted(self._module_name)
+        """True if another process, or an earlier one, has compiled all of it."""
+        return self._compiled or _note_of(self.key).exists()
 
-    def load(self) -> ModuleType:
-        """The module with all its functions ready; compiled first, if nobody has."""
-        if self._module_name not in _compiled:
-            self.warm_up()
-            note_compiled(self.module)
-        return self.module
+    def expected_seconds(self) -> float:
+        """How long compiling it will take, by what that took before on this machine."""
+        return _seconds_per_byte() * self._size
+
+    @property
+    def _size(self) -> int:
+        """Bytes of the interpreter's code of all that is compiled."""
+        reached = _reached_from([*self.functions.values(), *self._source_and_kernels[1].values()])
+        return sum(len(plain_function(f).__code__.co_code) for f in reached if not isinstance(f, type))
+
+    def load(self) -> Any:
+        """Go on with machine code from now on: compiled first if nobody has."""
+        if not self._compiled:
+            from systems.machine_code import adopt
+
+            before, known, began = self._form, self.is_compiled(), time.perf_counter()
+            adopt(self.module, self.key, _reached_from(self._source_and_kernels[1].values()))
+            self._form = SimpleNamespace(**{name: f.machine for name, f in self.functions.items()})
+            self._compiled = True
+            try:
+                self.warm_up()
+            except BaseException:
+                self._form, self._compiled = before, False
+                raise
+            _keep_note(self.key, None if known else (time.perf_counter() - began, self._size))
+        return self._form
+
+
+def _tell(sentence: str) -> None:
+    if sentence not in UNCOMPILED:
+        UNCOMPILED.append(sentence)
+        LOG.warning(sentence)
+
+
+_modules: dict[Any, GeneratedModule] = {}  # by source and kernels
+
+
+def generated(
+    name: str,
+    source: str,
+    kernels: Mapping[str, Callable[..., Any]],
+    warm_up: Callable[[], object] = lambda: None,
+) -> GeneratedModule:
+    """The module with this source, the same one each time. The `warm_up` of the latest call counts."""
+    identity = source, *((called, id(kernel)) for called, kernel in sorted(kernels.items()))
+    module = _modules.setdefault(identity, GeneratedModule(name, lambda: (source, kernels)))
+    module.warm_up = warm_up
+    return module
 
 
 def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str, Callable[..., Any]]]:
@@ -156,41 +288,69 @@ def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str
     lines = [
         '"""Entries to kernels. Generated; safe to delete."""',
         "from systems.kernels import kept",
-        'entry = kept(error_model="numpy", _nrt=False)',
+        "entry = kept(_nrt=False)",
     ]
     for name, kernel in kernels.items():
-        arguments = ", ".join(inspect.signature(getattr(kernel, "py_func", kernel)).parameters)
+        arguments = ", ".join(inspect.signature(plain_function(kernel)).parameters)
         lines += ["", "", "@entry", f"def {name}({arguments}):", f"    return kernel_{name}({arguments})"]
     return "\n".join([*lines, ""]), {f"kernel_{name}": kernel for name, kernel in kernels.items()}
 
 
-def load_compiler() -> None:
-    """Import and start up the compiler, which takes longer than loading a compiled module."""
-    from numba import njit
-
-    njit("int64(int64)")(lambda number: number)
+# --- on disk ---------------------------------------------------------------------------------------
 
 
-def is_compiled(source: str, kernels: Mapping[str, Callable[..., Any]]) -> bool:
-    """True if another process, or an earlier one, has compiled all of this module."""
-    return _is_noted(_name_of(source, kernels))
+def _key_of(source: str, kernels: Mapping[str, Callable[..., Any]]) -> str:
+    """numba's own cache would notice neither edits of functions that a cached one calls, nor another processor."""
+    meaning = _meaning_of(kernels[name] for name in sorted(kernels))
+    about = source, meaning, *_circumstances(), f"plain: {PLAIN}", f"layout: {_LAYOUT}"
+    return "pinjoint_program_" + hashlib.sha256("\n".join(about).encode()).hexdigest()[:24]
 
 
-def _is_noted(name: str) -> bool:
-    return name in _compiled or (cache.folder() / f"{name}.done").exists()
+@once
+def _circumstances() -> tuple[str, ...]:
+    """What else machine code depends on: compiler, interpreter, and processor, as far as is known without the compiler."""
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8", errors="replace") as file:
+            lines = file.read(8192).splitlines()
+        processor = [line for line in lines if line.startswith(("model name", "flags", "Features"))][:2]
+    except OSError:
+        processor = [platform.processor()]
+    try:
+        compiler = importlib.metadata.version("numba")
+    except importlib.metadata.PackageNotFoundError:
+        compiler = ""
+    return compiler, sys.version, platform.machine(), *processor
+
+
+def _note_of(key: str) -> Path:
+    """A file that is there once all of a module is compiled and kept: it says how long that took, and how much it was."""
+    return cache.folder() / f"{key}.done"
+
+
+def _keep_note(key: str, cost: tuple[float, int] | None) -> None:
+    """Note that all of a module is compiled, and when it was last used."""
+    if not cache.TROUBLE:
+        with contextlib.suppress(OSError):
+            if cost is None:
+                _note_of(key).touch()
+            else:
+                _note_of(key).write_text(f"{cost[0]:.3f} s, {cost[1]} bytes", encoding="ascii")
+
+
+@once
+def _seconds_per_byte() -> float:
+    """What compiling took on this machine; without experience, what it took where this was written."""
+    seconds, size = 0.0, 0
+    for path in cache.folder().glob("*.done"):
+        with contextlib.suppress(OSError, ValueError):
+            took, of = path.read_text(encoding="ascii").removesuffix(" bytes").split(" s, ")
+            seconds, size = seconds + float(took), size + int(of)
+    return seconds / size if size else SECONDS_PER_BYTE
 
 
 def is_blank() -> bool:
     """True if nothing at all is compiled yet: the program is started for the first time."""
     return next(cache.folder().glob("*.done"), None) is None
-
-
-def note_compiled(module: ModuleType) -> None:
-    """Note on disk that all of a module is compiled and kept, and when it was last used."""
-    _compiled.add(module.__name__)
-    if not cache.TROUBLE:
-        with contextlib.suppress(OSError):
-            (cache.folder() / f"{module.__name__}.done").touch()
 
 
 def forget_unused(days: float = 60.0) -> None:

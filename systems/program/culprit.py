@@ -10,6 +10,7 @@ import numpy as np
 from components.model import Model
 from components.snapshot import Snapshot
 from systems.base import REVIEW_INTERVAL, Mod, StepSystem
+from systems.kernels import plain_function
 from systems.program.binding import ProgramError, bind
 from systems.program.near_pairs import pairs_within
 from systems.program.program import MOTION, Program
@@ -100,5 +101,5 @@ def _element(system: StepSystem, model: Model, row: int) -> str:
 def _place(system: StepSystem, model: Model) -> str:
     """The file and the line in which its kernel begins."""
     function: Callable[..., Any] = bind(system, model).function
-    code = getattr(function, "py_func", function).__code__
+    code = plain_function(function).__code__
     return f" ({'/'.join(code.co_filename.split('/')[-2:])}, line {code.co_firstlineno})"

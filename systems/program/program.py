@@ -17,9 +17,10 @@ from components.load import load_breaks, loads_end
 from components.model import Model
 from systems.base import Event, Integrator, StepSystem, StopReason
 from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
+from systems.physics.kernels import conserved
 from systems.program.binding import Bound, bind, explain
 from systems.program.block_writer import BlockWriter
-from systems.program.compiler import compile_module, is_compiled, note_compiled
+from systems.program.compiler import GeneratedModule, generated
 from systems.program.controlled_writer import ControlledWriter
 from systems.program.near_pairs import NearPairs
 from systems.program.writer import STATE, VERY_MANY, Writer, form_of, sides_of
@@ -51,17 +52,21 @@ def _writer(model: Model, systems: Sequence[StepSystem], integrator: Integrator,
 def has_program(model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str = "") -> bool:
     """True if the program of this plan, in the form that suits the model or another, need only be loaded."""
     writer = _writer(model, systems, integrator, form or form_of(model, integrator, systems))
-    return is_compiled(writer.source(), writer.names)
+    return _module(writer).is_compiled()
+
+
+def _module(writer: Writer) -> GeneratedModule:
+    return generated("the step program", writer.source(), writer.names)
 
 
 class Program:
-    """A compiled step program, bound to the columns of one model.
+    """A step program, bound to the columns of one model.
 
     source: the whole program as plain Python; to understand a step, read that of a small model first.
     measures: entries of Measure, of the state last observed.
     follows_state: forces follow from nothing but the state, loads apart, so that what is at rest stays at rest.
-    module: the compiled functions. tolerance: of each step; 0 where the error is not controlled.
-    compile_seconds: time that writing and compiling it took, or loading it from the cache.
+    module: its functions. tolerance: of each step; 0 where the error is not controlled.
+    compile_seconds: time that writing it took, and compiling it, or loading it from the cache, if that was done at once.
     """
 
     def __init__(self, model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> None:
@@ -70,25 +75,29 @@ class Program:
         self.systems = tuple(system for system in systems if system.kernel)
         self.integrator = integrator
         self._writer = _writer(model, systems, integrator, form)
-        self.module = compile_module(self._writer.source(), self._writer.names)
+        self.module = _module(self._writer)
         self.measures = np.zeros(len(Measure))
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self._state_revision = -1
         self.bind()
-        self._compile()
+        self._call_all()
         self.compile_seconds = time.perf_counter() - started
 
-    def _compile(self) -> None:
-        """Call every function once, which makes numba compile it, or load it from the cache."""
+    def load(self) -> None:
+        """Go on with machine code from now on: compiled first if nobody has."""
+        self.module.warm_up = self._call_all
+        self.module.load()
+
+    def _call_all(self) -> None:
+        """Call every function once, which makes numba compile it, or load it from the cache, if it is to be compiled."""
         try:
             self.advance(0)
             self.observe()
             if self._writer.commits:  # with no rods: a commit changes history
                 state = [self._arrays[name][:0] for name in STATE]
-                self.module.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
+                self.module.form.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
         except Exception as error:  # numba raises many kinds
             raise explain(self._writer.kernels, self.integrator, self.model, error) from error
-        note_compiled(self.module)
 
     def _of_no_rods(self) -> list[Column]:
         whole = {"pair_reach": np.array([0.0, math.inf])}  # of no pairs there is no list
@@ -225,7 +234,7 @@ class Program:
     def _after(self, first: str, entry: str, **given: Any) -> tuple[Any, ...]:
         """The arguments of a compiled function, bound by name, between its parameter `first` and the columns."""
         known = self._arrays | given
-        names = list(inspect.signature(getattr(self.module, entry).py_func).parameters)
+        names = list(inspect.signature(self.module.functions[entry]).parameters)
         return tuple(known[name] for name in names[names.index(first) + 1 : -len(self._columns)])
 
     def _bind_arguments(self) -> None:
@@ -248,6 +257,19 @@ class Program:
         An integrator that controls its steps takes none that would end after `until` (s), and one that would
         pass `landing` (s) is cut to end there; for others the steps are clock.step_size long.
         """
+        if self.module.is_loaded:
+            return self._take(steps, until, landing)
+        total = 0
+        while True:  # portions: machine code may follow
+            some = min(steps - total, self.module.portion)
+            taken, reason = self._take(some, until, landing)
+            self.module.did(taken)
+            total += taken
+            if taken < some or total == steps or reason is not StopReason.DONE:
+                return total, reason
+
+    def _take(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
+        """Take up to `steps` steps, in one call."""
         if self._sides and not self._is_fresh:
             for b, sides in self._sides:
                 sides[:] = self._sides_of(b)
@@ -262,7 +284,7 @@ class Program:
         total, since = self._counts.tolist()
         chosen = (self.tolerance, limit or math.inf) if controlled else (size,)
         bounds = (float(until), float(landing)) if controlled else ()
-        taken, reason = self.module.advance(
+        taken, reason = self.module.form.advance(
             steps,
             self._is_fresh,
             total,
@@ -309,21 +331,20 @@ class Program:
         if self._writer.commits:
             time = float(self._control[0])
             outside = self._after("dt", "commit", account=np.zeros(len(ACCOUNT)))
-            self.module.commit(time, 0.0, *outside, *self._columns)
+            self.module.form.commit(time, 0.0, *outside, *self._columns)
             self._mark_changes()
 
     def observe(self) -> None:
         """Bring the derived columns of rods and particles, and the measures, up to date."""
         time, size = self._control[:2].tolist()
-        self.module.observe(time, size, *self._observed, *self._columns)
+        self.module.form.observe(time, size, *self._observed, *self._columns)
         for table, names in OBSERVED.items():
             self.model.tables[table].mark(names, Role.DERIVED)
 
     def conserved_energy(self) -> float:
         """The energy that the integrator conserves, less the work done so far (J), in the state last observed."""
-        conserved = self.module.conserved.py_func  # by itself it would have to be compiled in every process
-        with np.errstate(over="ignore", invalid="ignore"):  # of a state that is about to be given up
-            return float(conserved(self.measures, self._account, float(self._control[1]), self.module.SHADOW))
+        guard = float(self.integrator.guard)
+        return float(conserved(self.measures, self._account, float(self._control[1]), guard))
 
 
 def _by_table_and_role(model: Model, written: Iterable[str]) -> list[tuple[str, list[str], Role]]:

@@ -17,6 +17,7 @@ from components.field import Vector
 from components.model import Model
 from systems.base import StepSystem
 from systems.program.binding import Bound, StepRole, bind, by_role, written_row
+from systems.program.compiler import generated
 from systems.program.loops import RodLoop
 from systems.program.near_pairs import pairs_within
 from systems.program.pasting import fragment
@@ -118,16 +119,16 @@ def _as_tuples(value: Any) -> Any:
 
 def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..., float]:
     """A compiled function of these columns that calls the kernel for each row and adds up what it gives."""
-    from numba import njit
-
     names = [f"c{index}" for index in range(len(columns))]
-    scope: dict[str, Any] = {"kernel": bound.function}
+    kernels: dict[str, Any] = {"kernel": bound.function}
     arguments = [written_row(n, "i", c.shape[1:]) for n, c in zip(names, columns, strict=True)]
     if bound.each == "loads":
-        scope["values"] = bound.arrays[f"{bound.prefix}_values"]
+        kernels["values"] = bound.arrays[f"{bound.prefix}_values"]
         arguments.insert(1, "values")
     pair = bound.each in ("particles", "pairs", "")
     lines = [
+        "from systems.kernels import kept",
+        "@kept()",
         f"def loop({', '.join(names)}):",
         "    total = 0.0",
         f"    for i in range({CALLS}):",
@@ -135,9 +136,7 @@ def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..
         f"        total += {'made[0] + made[1]' if pair else 'made'}",
         "    return total",
     ]
-    exec("\n".join(lines), scope)
-    loop: Callable[..., float] = njit(error_model="numpy")(scope["loop"])
-    return loop
+    return generated("the timing of a kernel", "\n".join(lines), kernels).functions["loop"].machine
 
 
 def _seconds(loop: Callable[..., float], columns: Sequence[NDArray[Any]]) -> float:

@@ -15,7 +15,9 @@ from components.model import Model
 from components.rod import is_warm
 from systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
 from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
+from systems.kernels import plain_function
 from systems.physics.automatic import SMALL
+from systems.physics.kernels import conserved, judge
 from systems.program.binding import (
     HISTORIES,
     PROVIDED,
@@ -122,11 +124,6 @@ class Writer:
     """
 
     def __init__(self, model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> None:
-        from systems.physics.kernels import (  # imports numba, when a program is built, not before
-            conserved,
-            judge,
-        )
-
         self.model = model
         self.form = form
         self.integrator = integrator
@@ -620,5 +617,5 @@ def _literal(value: Any) -> str:
 
 
 def _origin(function: Any) -> str:
-    plain = getattr(function, "py_func", function)
+    plain = plain_function(function)
     return f"{plain.__module__}.{plain.__qualname__}"

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.program.compiler import CompiledUnit
+from systems.program.compiler import GeneratedModule
+from systems.render import kernels
 from systems.render.coverage import BLOCK
 from systems.render.marks import Bars, Discs, Strokes
 
@@ -34,9 +35,9 @@ class Raster:
     Pixels are (rows, columns); a clip is left, top, right, bottom. Colours are pixels of the surface.
     """
 
-    def __init__(self, kernels: Any) -> None:
-        """kernels: a module with those of kernels.py, compiled."""
-        self._kernels = kernels
+    def __init__(self, compiled: Any) -> None:
+        """compiled: those of kernels.py."""
+        self._kernels = compiled
         self._prepare((0, 0))
 
     def _prepare(self, shape: tuple[int, int]) -> None:
@@ -87,13 +88,11 @@ def load_raster() -> Raster:
 
 
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
-    from systems.render import kernels  # imports numba
-
     lines = ["from systems.kernels import kept", ""]
     for name, signature in SIGNATURES.items():
-        parameters = ", ".join(inspect.signature(getattr(kernels, name).py_func).parameters)
+        parameters = ", ".join(inspect.signature(getattr(kernels, name)).parameters)
         lines += [
-            f'@kept("{signature}", error_model="numpy")',
+            f'@kept("{signature}")',
             f"def {name}({parameters}):",
             f"    {name}_kernel({parameters})",
             "",
@@ -101,4 +100,4 @@ def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     return "\n".join(lines), {f"{name}_kernel": getattr(kernels, name) for name in SIGNATURES}
 
 
-RASTER = CompiledUnit("raster", _contents)
+RASTER = GeneratedModule("raster", _contents)

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pymunk  # here, so that a missing peer is told before anything is measured
 
-from systems.collision.free.compiled import engine
 from systems.collision.free.discs import Discs
 from tests.reference.scenes_of_discs import GRAVITY, Scene, gas, packed, stacked
 
@@ -21,7 +20,7 @@ Row = dict[str, Any]
 
 
 def _ours(scene: Scene, seconds: float, **rest: Any) -> tuple[float, Discs]:
-    discs = engine()(**scene, **rest)
+    discs = Discs(**scene, **rest)
     discs.advance(0.0)
     started = time.process_time()
     discs.advance(seconds)
@@ -86,7 +85,7 @@ def growth(*, quick: bool) -> list[Row]:
     rows = []
     for count in (500, 5_000, 50_000):
         scene = gas(count, 0.1)
-        discs = engine()(**scene)
+        discs = Discs(**scene)
         discs.advance(0.0)
         best = np.inf
         for turn in range(1, 3 if quick else 6):
@@ -105,7 +104,7 @@ def memory() -> list[Row]:
     """Memory (MB) of the process, and what 50 000 discs of a gas add to it on their way."""
     scene = gas(50_000, 0.1)
     before = _resident()
-    discs = engine()(**scene)
+    discs = Discs(**scene)
     discs.advance(0.2)
     return [{"discs": 50_000, "process_MB": before, "discs_MB": _resident() - before}]
 

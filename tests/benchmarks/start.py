@@ -19,7 +19,7 @@ from typing import Any
 
 from game import Session
 from game.preparation import AHEAD
-from systems.collision.driven.stepper import DRIVEN
+from systems.collision.driven.compiled import DRIVEN
 from systems.program.writer import form_of
 
 Row = dict[str, Any]

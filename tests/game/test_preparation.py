@@ -27,7 +27,7 @@ from game.session import Session
 from systems import cache
 from systems.collision.driven import compiled as driven_kernels
 from systems.input import pygame_input
-from systems.program.compiler import CompiledUnit, forget_unused
+from systems.program.compiler import GeneratedModule, forget_unused
 from systems.program.program import _writer
 from systems.program.writer import FEW, form_of
 
@@ -53,7 +53,7 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
     found = Compiler()
     monkeypatch.setattr(preparation, "_started", found.start)
     monkeypatch.setattr(preparation, "has_program", lambda *plan: False)
-    monkeypatch.setattr(CompiledUnit, "is_compiled", lambda unit: False)
+    monkeypatch.setattr(GeneratedModule, "is_compiled", lambda unit: False)
     monkeypatch.setattr(preparation, "is_blank", lambda: False)
     monkeypatch.setattr(preparation, "AHEAD", ())
     return found
@@ -125,9 +125,9 @@ def test_a_model_in_which_nothing_is_loose_does_not_wait_for_what_may_rest_on_it
 def test_what_other_models_may_need_comes_when_nothing_else_is_compiled(
     monkeypatch: pytest.MonkeyPatch, app: App, compiler: Compiler
 ) -> None:
-    units = tuple((CompiledUnit(name, lambda: ("", {})),) for name in ("one", "two", "three"))
+    units = tuple((GeneratedModule(name, lambda: ("", {})),) for name in ("one", "two", "three"))
     monkeypatch.setattr(preparation, "AHEAD", units)
-    monkeypatch.setattr(CompiledUnit, "is_compiled", lambda unit: unit.name == "two")
+    monkeypatch.setattr(GeneratedModule, "is_compiled", lambda unit: unit.name == "two")
     frames(app, 2)
     assert len(compiler.jobs) == 1
     compiler.status = 0
@@ -233,7 +233,7 @@ def test_what_another_process_compiles_is_what_the_model_needs(name: str, warmth
 def test_free_particles_have_their_program_loaded_too(
     app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(CompiledUnit, "is_compiled", lambda unit: True)
+    monkeypatch.setattr(GeneratedModule, "is_compiled", lambda unit: True)
     app.session.adopt(models.load("collision_i"))
     compiler.status = 0
     frames(app, 3)
@@ -244,7 +244,7 @@ def test_what_free_particles_need_is_compiled_by_two_processes_at_once(
     app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     compiled = set[str]()
-    monkeypatch.setattr(CompiledUnit, "is_compiled", lambda unit: unit.name in compiled)
+    monkeypatch.setattr(GeneratedModule, "is_compiled", lambda unit: unit.name in compiled)
     app.session.adopt(models.load("collision_i"))
     frames(app, 2)
     assert compiler.jobs[1:] == [("fly",), ("open_horizon",)]
@@ -260,7 +260,7 @@ def test_what_free_particles_need_is_compiled_by_two_processes_at_once(
 def test_what_piles_need_is_waited_for_once_something_pulls(
     app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(CompiledUnit, "is_compiled", lambda unit: unit.name != "take_steps")
+    monkeypatch.setattr(GeneratedModule, "is_compiled", lambda unit: unit.name != "take_steps")
     app.session.adopt(models.load("collision_i"))
     app.session.press("space")
     frames(app, 4)
@@ -351,10 +351,10 @@ def test_another_process_compiles_what_this_one_loads(tmp_path: Path) -> None:
 
 SMALL = """
 from numba import njit
-from systems.program.compiler import compile_module
+from systems.program.compiler import generated
 double = njit(lambda x: 2.0 * x)
 source = "from systems.kernels import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
-print(compile_module(source, {"kernel": double}).answer(21.0))
+print(generated("test", source, {"kernel": double}).load().answer(21.0))
 """
 
 
@@ -401,7 +401,7 @@ def test_a_folder_of_somebody_else_is_not_used(tmp_path: Path, monkeypatch: pyte
 
 
 PARTS = """
-from systems.collision.free.compiled import EVENTS, PILES, HORIZONS, engine
+from systems.collision.free.discs import EVENTS, PILES, HORIZONS, engine
 
 engine()
 print(*(unit.is_compiled() for unit in (EVENTS, HORIZONS, PILES)))

@@ -106,11 +106,11 @@ def compiled_program(folder: Path, chance: random.Random) -> None:
     cache.folder = lambda: folder  # type: ignore[assignment]
     compiler._modules.clear()
     names = {"kernel": kernel}
-    assert compiler.compile_module(SOURCE, names).answer(21.0) == 42.0
+    assert compiler.generated("test", SOURCE, names).load().answer(21.0) == 42.0
     for path in folder.glob("*.code"):
         spoil(path, chance)
     compiler._modules.clear()
-    assert compiler.compile_module(SOURCE, names).answer(21.0) == 42.0
+    assert compiler.generated("test", SOURCE, names).load().answer(21.0) == 42.0
 
 
 def settings(folder: Path, chance: random.Random) -> None:

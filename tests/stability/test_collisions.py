@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from systems.collision.columns import Reason
 from systems.collision.driven.compiled import kernels
-from systems.collision.free.compiled import engine
 from systems.collision.free.discs import Discs
 from systems.collision.kernels.pile import begin_steps
 from systems.collision.overlaps import part
@@ -29,7 +28,7 @@ RADIUS = 0.05
 
 
 def fly(scene: Scene, until: float, **rest: object) -> Discs:
-    discs = engine()(**scene, **rest)
+    discs = Discs(**scene, **rest)
     reason, impacts = discs.advance(until, MOST_EVENTS)
     assert reason is Reason.DONE
     for numbers in (*discs.state_at(until), impacts.time, impacts.impulse, impacts.loss):
@@ -78,7 +77,7 @@ def test_a_pile_at_rest_is_in_equilibrium(count: int, columns: int) -> None:
 def test_a_pile_comes_to_rest_without_a_jump() -> None:
     """In 2 ms no disc goes farther than its speed takes it, but for the last fortieth of a radius to where it lies."""
     scene, interval = stacked(120, 10), 2e-3
-    discs = engine()(**scene, acceleration=DOWN, restitution=0.3)
+    discs = Discs(**scene, acceleration=DOWN, restitution=0.3)
     before, speed = discs.state_at(0.0)[0], 0.0
     for k in range(1, 3000):
         discs.advance(k * interval, MOST_EVENTS)
@@ -103,7 +102,7 @@ def test_discs_that_fly_apart_in_a_step_have_been_pushed() -> None:
         "radius": np.full(2 * rows, RADIUS),
         "inverse_mass": np.ones((2 * rows, 2)),
     }
-    discs = engine()(**scene, acceleration=DOWN, restitution=restitution)
+    discs = Discs(**scene, acceleration=DOWN, restitution=restitution)
     begin_steps.py_func(discs.numbers, discs.counts)
     _, impacts = discs.advance(0.1)
     assert len(impacts.time) == rows
@@ -156,7 +155,7 @@ def test_heaps_of_any_kind_never_sink_in(seed: int, restitution: float) -> None:
 
 def test_energy_of_a_falling_pile_only_decreases() -> None:
     scene = stacked(40, 6)
-    discs = engine()(**scene, acceleration=DOWN, restitution=0.5)
+    discs = Discs(**scene, acceleration=DOWN, restitution=0.5)
     mass = 1 / scene["inverse_mass"][:40, 0]
     before = np.inf
     for time in np.linspace(0, 3, 31)[1:]:

@@ -17,7 +17,7 @@ from systems.program import compiler
 SOURCE = """
 from systems.kernels import kept
 
-@kept(error_model="numpy")
+@kept()
 def answer(x):
     return kernel(x)
 """
@@ -66,7 +66,7 @@ def kernel(x):  # type: ignore[no-untyped-def]
 def answer(monkeypatch: pytest.MonkeyPatch) -> float:
     """What the compiled module answers that a new process would load."""
     monkeypatch.setattr(compiler, "_modules", {})
-    return float(compiler.compile_module(SOURCE, {"kernel": kernel}).answer(21.0))
+    return float(compiler.generated("test", SOURCE, {"kernel": kernel}).load().answer(21.0))
 
 
 def test_what_was_written_is_read(folder: Path) -> None:
@@ -141,7 +141,7 @@ def test_a_cache_that_numba_keeps_of_a_kernel_is_not_trusted(
         kept.write_bytes(damage(kept.read_bytes()))
     exec(compile(OWN, path, "exec"), names)
     monkeypatch.setattr(compiler, "_modules", {})
-    assert compiler.compile_module(SOURCE, {"kernel": names["kernel"]}).answer(21.0) == 42.0
+    assert compiler.generated("test", SOURCE, {"kernel": names["kernel"]}).load().answer(21.0) == 42.0
 
 
 FULL = """
@@ -151,10 +151,10 @@ import signal
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))  # every write to a file fails
 from numba import njit
-from systems.program.compiler import compile_module
+from systems.program.compiler import generated
 
 source = "from systems.kernels import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
-module = compile_module(source, {"kernel": njit(lambda x: 2 * x)})
+module = generated("test", source, {"kernel": njit(lambda x: 2 * x)})
 print(module.answer(21.0), module.answer(21))
 """
 

@@ -10,7 +10,6 @@ from game import Session
 from game.documents import models
 from game.included.collisions import panels
 from systems.collision.columns import Reason
-from systems.collision.free.compiled import engine
 from systems.collision.free.discs import Discs
 from tests.reference import closed_forms
 from tests.reference.scenes_of_discs import deepest
@@ -20,7 +19,7 @@ def discs_of(name: str) -> Discs:
     """The particles of a bundled model without rods, as discs."""
     model = models.load(name)
     particles = model.particles
-    return engine()(
+    return Discs(
         particles.position,
         particles.velocity,
         particles.radius,

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from numba import njit
 
 from systems.collision.columns import Reason
-from systems.collision.free.compiled import engine
 from systems.collision.free.discs import Discs, ImpactColumns
 from systems.collision.kernels.time_of_impact import INFINITY, first_approach
 from tests.reference import closed_forms, collisions
@@ -21,7 +20,7 @@ RADIUS = 0.05  # m
 
 def fly(scene: Scene, until: float, **rest: object) -> tuple[Discs, ImpactColumns]:
     """Let a scene happen up to a time."""
-    discs = engine()(**scene, **rest)
+    discs = Discs(**scene, **rest)
     reason, impacts = discs.advance(until)
     assert reason is Reason.DONE
     return discs, impacts
@@ -344,7 +343,7 @@ def test_sliding_off_a_ball(start: float) -> None:
     reach = 2 * RADIUS
     scene = dropped(0.0)
     scene["position"][1] = reach * math.sin(start), reach * math.cos(start)
-    discs = engine()(**scene, acceleration=DOWN, restitution=0.5)
+    discs = Discs(**scene, acceleration=DOWN, restitution=0.5)
     for _ in range(1000):  # one step of the contact at a time
         discs.advance(10.0, 1)
         if not discs.contact_forces()[1].any():
@@ -460,7 +459,7 @@ def test_random_scenes_as_the_reference_has_them(case: tuple[collisions.Scene, f
     growth = collisions.amplification(scene, duration)
     if growth > 1e4:  # there even the order is a matter of chance
         return
-    discs = engine()(
+    discs = Discs(
         scene.position,
         scene.velocity * (scene.inverse_mass > 0),
         scene.radius,
@@ -487,7 +486,7 @@ def test_when_one_looks_does_not_matter() -> None:
     """Many short advances and one long one give the same bits, for gases and for piles."""
     for scene, rest in ((gas(60, 0.3), {}), (stacked(40, 6), {"acceleration": DOWN, "restitution": 0.3})):
         at_once, _ = fly(scene, 1.0, **rest)
-        in_steps = engine()(**scene, **rest)
+        in_steps = Discs(**scene, **rest)
         for time in np.linspace(0, 1, 61)[1:]:
             in_steps.advance(float(time))
         for one, other in zip(at_once.state_at(1.0), in_steps.state_at(1.0), strict=True):
@@ -498,11 +497,11 @@ def test_a_pile_goes_on_from_its_paths_bit_for_bit() -> None:
     rest = {"acceleration": DOWN, "restitution": 0.3}
     scene = stacked(40, 6)
     through, _ = fly(scene, 0.6, **rest)
-    resumed = engine()(**scene, **rest)
+    resumed = Discs(**scene, **rest)
     for time in (0.2, 0.4, 0.47, 0.6):
         resumed.advance(time)
         state = resumed.state()
-        resumed = engine()(**scene, **rest, time=time)
+        resumed = Discs(**scene, **rest, time=time)
         resumed.resume(state)
     assert through.counts[9] == resumed.counts[9] == 1  # it steps
     for time in (0.6, 3.0):

@@ -11,7 +11,6 @@ from numba import njit
 
 from components.obstacles import Obstacles
 from systems.collision.columns import Reason
-from systems.collision.free.compiled import engine
 from systems.collision.free.discs import Discs, ImpactColumns
 from systems.collision.kernels.time_of_impact import INFINITY, first_touch
 from tests.reference import collisions
@@ -52,7 +51,7 @@ def fly(
     count = len(position)
     inverse = np.repeat(1 / np.array(masses or [1.0] * count)[:, None], 2, axis=1)
     down = np.tile([0.0, -pull], (count, 1))
-    discs = engine()(
+    discs = Discs(
         position,
         velocity,
         np.full(count, radius),
@@ -160,7 +159,7 @@ def test_slowly_over_an_edge_it_turns_until_it_leaves() -> None:
     table = obstacles(((-1.0, 0.0), (0.0, 0.0)), restitution=0.0)
     start, speed = (-0.01, RADIUS), 1e-4
     discs, _ = fly([start], [(speed, 0)], table, 100.0, pull=GRAVITY, restitution=0.0)
-    trace = engine()(
+    trace = Discs(
         [start], [(speed, 0)], [RADIUS], [[1, 1]], acceleration=[[0, -GRAVITY]], restitution=0, obstacles=table
     )
     left = None
@@ -189,7 +188,7 @@ def test_over_an_edge_it_leaves_once_whatever_stands_below(
     edge = obstacles(((-1.0, 0.0), (0.0, 0.0)), ((0.0, 0.0), (0.1, -3.0)), restitution=restitution)
     if walls == 1:
         edge = obstacles(((-1.0, 0.0), (0.0, 0.0)), restitution=restitution)
-    discs = engine()(
+    discs = Discs(
         [(-0.01, RADIUS)],
         [(speed, 0)],
         [RADIUS],
@@ -308,7 +307,7 @@ def test_discs_that_slide_into_a_groove_do_not_sink_in(count: int, seed: int) ->
     rng = np.random.default_rng(seed)
     start = np.column_stack([rng.uniform(-0.7, 0.7, count), 1.0 + 0.12 * np.arange(count)])
     groove, down = obstacles(((-1.0, 1.0), (0.0, 0.0)), ((1.0, 1.0), (0.0, 0.0)), restitution=0.5), GRAVITY
-    discs = engine()(
+    discs = Discs(
         start,
         np.zeros((count, 2)),
         np.full(count, 0.04),
@@ -340,7 +339,7 @@ def test_a_run_that_is_resumed_goes_on_bit_for_bit() -> None:
     whole, _ = fly(start, velocity, walls, 3.0, pull=GRAVITY, restitution=0.9)
     half, _ = fly(start, velocity, walls, 1.5, pull=GRAVITY, restitution=0.9)
     moved, speeds = half.state_at(1.5)
-    resumed = engine()(
+    resumed = Discs(
         start,
         speeds,
         np.full(3, RADIUS),

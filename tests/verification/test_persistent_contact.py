@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from game import Session
-from systems.collision.free.compiled import engine
+from systems.collision.free.discs import Discs
 from tests.reference import persistent_contact
 from tests.reference.scenes_of_discs import GRAVITY, Scene, stacked
 
@@ -38,7 +38,7 @@ def expected() -> np.ndarray:
 
 def test_a_heap_that_gives_way_moves_as_the_reference_does(expected: np.ndarray) -> None:
     """Its discs turn around one another in steps of 0.0156; that leaves some 1e-5 of a radius."""
-    discs = engine()(**heap(), acceleration=DOWN, restitution=0.0)
+    discs = Discs(**heap(), acceleration=DOWN, restitution=0.0)
     discs.advance(UNTIL)
     np.testing.assert_allclose(discs.state_at(UNTIL)[0], expected, atol=2e-5 * RADIUS)
 
@@ -76,7 +76,7 @@ def test_motion_in_contact_within_steps_is_of_first_order(expected: np.ndarray, 
 def test_contacts_of_a_resting_pile_push_as_statics_demands(count: int, columns: int, seed: int) -> None:
     """The forces that hold each disc's weight are the only ones, contact by contact; nothing sinks in by 1e-6."""
     scene = stacked(count, columns, seed)
-    discs = engine()(**scene, acceleration=DOWN, restitution=0.3)
+    discs = Discs(**scene, acceleration=DOWN, restitution=0.3)
     discs.advance(8.0)
     assert discs.at_rest
     place = scene["position"] + discs.state_at(8.0)[0]

@@ -1,8 +1,6 @@
 """Magnets: poles q that repel each other by k q₁ q₂ (1/r² − 1/c²), or attract if their signs differ, up to c = 1 m."""
 
-from numba import njit
-
-from game.api import App, Component, Field, Law, Model, Particle
+from game.api import App, Component, Field, Law, Model, Particle, compiled
 
 
 class Magnet(Component):
@@ -10,7 +8,7 @@ class Magnet(Component):
     pole: Field[float] = Field(doc="Two of 1 would repel each other with 1 N at 1 m if they reached farther.")
 
 
-@njit(error_model="numpy")
+@compiled
 def force(apart, particles_magnets_pole):
     x, y = apart
     squared = x * x + y * y
@@ -18,7 +16,7 @@ def force(apart, particles_magnets_pole):
     return -size * x, -size * y
 
 
-@njit(error_model="numpy")
+@compiled
 def energy(apart, particles_magnets_pole):
     distance = (apart[0] * apart[0] + apart[1] * apart[1]) ** 0.5
     return 0.001 * particles_magnets_pole[0] * particles_magnets_pole[1] * (1.0 / distance + distance - 2.0)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from numba import njit
-
-from game.api import App, Component, Field, Law, Model, Rod
+from game.api import App, Component, Field, Law, Model, Rod, compiled
 
 
 class Material(Component):
@@ -12,7 +10,7 @@ class Material(Component):
     cubic: Field[float] = Field(title="cubic stiffness", minimum=0.0, doc="β in N = EA (ε + β ε³).")
 
 
-@njit(error_model="numpy")
+@compiled
 def cubic(elongation, rods_rest_length, rods_stiffness, rods_stiffening_cubic):
     """What comes on top of EA ε (kN)."""
     strain = elongation / rods_rest_length

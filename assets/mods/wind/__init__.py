@@ -4,9 +4,19 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
-from game.api import App, Component, Context, Environment, Field, Law, Model, Particle, Readout, Vector
+from game.api import (
+    App,
+    Component,
+    Context,
+    Environment,
+    Field,
+    Law,
+    Model,
+    Particle,
+    Readout,
+    Vector,
+    compiled,
+)
 
 DENSITY = 1.2  # kg/m³, of air
 
@@ -21,7 +31,7 @@ class Sail(Component):
     area: Field[float] = Field("m²", minimum=0.0, title="sail area", doc="Drag coefficient × area in the wind.")
 
 
-@njit(error_model="numpy")
+@compiled
 def push(environment_wind_velocity, particles_wind_area, particles_velocity):
     x = environment_wind_velocity[0] - particles_velocity[0]
     y = environment_wind_velocity[1] - particles_velocity[1]

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
-from types import ModuleType
 from typing import Any
 
-from systems.program.compiler import compile_module, entries_to
+from systems.program.compiler import GeneratedModule, entries_to
 
 
-def contents() -> tuple[str, dict[str, Callable[..., Any]]]:
+def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     """The source, and the kernels by the names that it calls them."""
     from systems.collision.kernels import complementarity, driven, overlap, pairs
 
@@ -28,7 +26,9 @@ def contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     )
 
 
-@cache
-def kernels() -> ModuleType:
-    """The kernels by name; compiled at the first call of each, or loaded from the cache."""
-    return compile_module(*contents())
+DRIVEN = GeneratedModule("driven_collisions", _contents)
+
+
+def kernels() -> Any:
+    """The kernels by name, in the form that they run in now."""
+    return DRIVEN.form

@@ -19,7 +19,7 @@ from components.particle import Particle
 from components.snapshot import Snapshot
 from systems.base import StopReason
 from systems.collision.columns import PairKind
-from systems.collision.driven.compiled import contents
+from systems.collision.driven.compiled import DRIVEN
 from systems.collision.driven.contacts import ContactStepper, complementary
 from systems.collision.driven.crowds import ContactProblem, CrowdStepper
 from systems.collision.driven.impact import TOUCHING_GAP, ImpactResolver
@@ -28,7 +28,6 @@ from systems.collision.driven.trial import TrialStep
 from systems.collision.impacts import Impacts
 from systems.collision.overlaps import part_overlaps
 from systems.collision.system import persistent_contacts
-from systems.program.compiler import CompiledUnit
 from systems.program.program import Program
 
 FEWEST_CLEAR_STEPS = 4  # a time without impacts that is shorter is not worth a search for it
@@ -224,4 +223,4 @@ def _warm_up() -> None:
     ImpactResolver(model, Impacts(model), near).resolve(before)
 
 
-DRIVEN = CompiledUnit("driven_collisions", contents, _warm_up)
+DRIVEN.warm_up = _warm_up

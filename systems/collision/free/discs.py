@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,7 @@ from systems.collision.columns import (
     Report,
 )
 from systems.collision.system import REST_HEIGHT
+from systems.program.compiler import GeneratedModule, entries_to
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
 REPORTED_AT_ONCE = 4096  # impacts; fetched before more are reported
@@ -63,14 +65,7 @@ class ImpactColumns:
 
 
 class Discs:
-    """Discs that fly, collide and rest on one another.
-
-    fly, take_steps, open_horizon: the compiled kernels that advance them; a subclass has them (free/compiled.py).
-    """
-
-    fly: Callable[..., Reason]
-    take_steps: Callable[..., Reason]
-    open_horizon: Callable[..., Reason]
+    """Discs that fly, collide and rest on one another."""
 
     def __init__(
         self,
@@ -173,12 +168,25 @@ class Discs:
         queue, group, pile = self.queue, self.group, self.pile
         numbers, counts = self.numbers, self.counts
         if counts[Count.STEPPING]:
-            return self.take_steps(until, most_events, rows, grid, constraints, pile, report, numbers, counts)
+            arrays = rows, grid, constraints, pile, report, numbers, counts
+            return self._in_portions(PILES, "take_steps", until, most_events, *arrays)
         if counts[Count.RENEW]:
-            reason = self.open_horizon(rows, grid, constraints, queue, numbers, counts)
+            reason = Reason(HORIZONS.form.open_horizon(rows, grid, constraints, queue, numbers, counts))
             if reason is not Reason.DONE:
                 return reason
-        return self.fly(until, most_events, rows, grid, constraints, queue, group, report, numbers, counts)
+        arrays = rows, grid, constraints, queue, group, report, numbers, counts  # type: ignore[assignment]
+        return self._in_portions(EVENTS, "fly", until, most_events, *arrays)
+
+    def _in_portions(
+        self, module: GeneratedModule, name: str, until: float, most_events: int, *arrays: Any
+    ) -> Reason:
+        """Call a kernel; interpreted, it does a portion."""
+        if module.is_loaded:
+            return Reason(getattr(module.form, name)(until, most_events, *arrays))
+        before, most = int(self.counts[Count.EVENTS]), min(most_events, module.portion)
+        reason = Reason(getattr(module.form, name)(until, most, *arrays))
+        module.did(int(self.counts[Count.EVENTS]) - before)
+        return reason
 
     def _make_room(self, reason: Reason) -> None:
         n = len(self.rows)
@@ -347,3 +355,33 @@ def _shared_ends(others: Obstacles) -> Floats:
     shared = (owner[spot.ravel()] < rows).reshape(2, -1)
     found: Floats = SHARED_START * shared[0] + SHARED_END * shared[1]
     return found
+
+
+# --- the kernels ----------------------------------------------------------------------------------
+
+
+def _contents(name: str) -> tuple[str, dict[str, Callable[..., Any]]]:
+    from systems.collision.kernels import flight, horizon
+
+    return entries_to({name: horizon.open_horizon if name == "open_horizon" else getattr(flight, name)})
+
+
+def _warm_up(name: str) -> None:
+    discs = Discs([[0.0, 0.0]], [[0.0, 0.0]], [1.0], [[1.0, 1.0]])
+    if name == "open_horizon":
+        HORIZONS.form.open_horizon(
+            discs.rows, discs.grid, discs.constraints, discs.queue, discs.numbers, discs.counts
+        )
+    else:
+        steps = name == "take_steps"
+        discs.counts[Count.RENEW], discs.counts[Count.STEPPING] = 0, steps
+        discs.advance(discs.now - float(steps))  # before the first step of a pile
+
+
+def _module(name: str) -> GeneratedModule:
+    return GeneratedModule(name, partial(_contents, name), partial(_warm_up, name))
+
+
+# Each a module of its own, so that two processes can compile two at once: EVENTS lets events happen, HORIZONS finds the
+# impacts to come, PILES takes the steps of piles, which only a hand that pulls, or gravity, forms.
+EVENTS, HORIZONS, PILES = _module("fly"), _module("open_horizon"), _module("take_steps")

@@ -19,7 +19,6 @@ from components.model import Model
 from components.obstacles import obstacles
 from systems.base import REVIEW_INTERVAL, Event, StopReason
 from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc, Reason
-from systems.collision.free.compiled import EVENTS, HORIZONS, PILES, engine
 from systems.collision.free.discs import Discs
 from systems.collision.impacts import MOST_KEPT, Impacts
 from systems.entries import Measure
@@ -59,10 +58,6 @@ class Flight:
         self.unbalanced = np.zeros((model.particles.count, 2))
         self._impacts = impacts
         self._pull = pull
-        for unit in (EVENTS, HORIZONS):
-            unit.load()
-        if PILES.is_compiled():
-            PILES.load()  # now, so that an edit that needs it does not wait
         self.bind()
         self.compile_seconds = time.perf_counter() - started
 
@@ -88,8 +83,6 @@ class Flight:
 
     def bind(self) -> None:
         """The document changed: paths are found anew."""
-        if may_pile(self.model, self._pull is not None):
-            PILES.load()
         self._flying: Discs | None = None
         self._state_revision = -1
 
@@ -102,7 +95,7 @@ class Flight:
         """The flying discs, in the present state of the model."""
         if not self._fresh:
             particles, clock = self.model.particles, self.model.clock
-            self._flying = engine()(
+            self._flying = Discs(
                 particles.position,
                 particles.velocity,
                 particles.radius,

@@ -8,8 +8,8 @@ import pytest
 
 from components.collision_state import PersistentContacts
 from game import Session
+from systems.collision.driven.compiled import DRIVEN
 from systems.collision.driven.neighbours import NeighbourList
-from systems.collision.driven.stepper import DRIVEN
 from systems.collision.system import persistent_contacts
 from systems.edit.pull import hand_on
 

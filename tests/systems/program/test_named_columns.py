@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from systems.kernels import compiled
-from systems.program.compiler import compile_module
+from systems.program.compiler import generated
 
 SOURCE = """
 from systems.kernels import kept
@@ -35,6 +35,6 @@ def test_a_column_with_another_number_is_compiled_anew(tmp_path: Path, monkeypat
     for number in (1, 2):
         names = {"Column": IntEnum("Column", {"FIRST": 0, "SECOND": number}), "__name__": __name__}
         kernel = compiled(FunctionType(second.__code__, names))
-        answers.append(compile_module(SOURCE, {"kernel": kernel}).second(np.array([0.5, 1.5, 2.5])))
+        answers.append(generated("test", SOURCE, {"kernel": kernel}).load().second(np.array([0.5, 1.5, 2.5])))
     assert answers == [1.5, 2.5]
     assert len(list(tmp_path.glob("pinjoint_program_*.code"))) == 2

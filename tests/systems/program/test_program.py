@@ -18,7 +18,7 @@ from systems.base import Commit, Law
 from systems.kernels import compiled
 from systems.program import loops, writer
 from systems.program.binding import ProgramError
-from systems.program.compiler import compile_module
+from systems.program.compiler import generated
 from tests.reference import bits
 from tests.reference.elements import Model
 from tests.reference.models import model, oscillator, particle, rod, square
@@ -533,7 +533,7 @@ def test_an_edited_kernel_is_noticed_in_what_it_calls_too(
             assert spec.loader is not None
             monkeypatch.setitem(sys.modules, name, importlib.util.module_from_spec(spec))
             spec.loader.exec_module(sys.modules[name])
-        program = compile_module(SOURCE, {"kernel": sys.modules["edited_kernel"].kernel})
+        program = generated("test", SOURCE, {"kernel": sys.modules["edited_kernel"].kernel}).load()
         answers.append(program.answer(10.0))
     assert answers == [20.0, 50.0]
     assert len(list(tmp_path.glob("pinjoint_program_*.code"))) == 2
@@ -549,5 +549,5 @@ def test_a_kernel_that_moved_to_another_module_is_compiled_anew(
         assert spec is not None
         module = importlib.util.module_from_spec(spec)
         exec(CALLEE.replace("twice", "kernel"), vars(module))
-        assert compile_module(SOURCE, {"kernel": vars(module)["kernel"]}).answer(10.0) == 20.0
+        assert generated("test", SOURCE, {"kernel": vars(module)["kernel"]}).load().answer(10.0) == 20.0
     assert len(list(tmp_path.glob("pinjoint_program_*.code"))) == 2

@@ -1,0 +1,500 @@
+"""The plain form of kernels: Python that computes the same bits as their machine code, without a compiler.
+
+A kernel's source is rewritten, function by function, with all that it calls. Arrays become nested lists, which Python
+reads five times as fast, when a kernel is entered, and are put back when it returns. What differs from the arithmetic
+of machine code is replaced:
+
+    x / 0                 is infinite or not a number, and raises nothing; so with roots, powers, sines, …
+    x ** 2                is x * x; other whole exponents are products too
+    math.hypot, np.sin    are those of the C library
+    a[i, j]               is a[i][j], and a.shape[0] is len(a)
+    Enum.MEMBER, CONSTANT are the numbers that they stand for
+"""
+
+from __future__ import annotations
+
+import ast
+import copy
+import linecache
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from enum import IntEnum
+from functools import cache
+from itertools import count
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from systems.kernels import plain_function
+
+Interpreted = Callable[..., Any]
+
+# --- arithmetic ------------------------------------------------------------------------------------
+
+_NAN, _INFINITE, _LEAST = math.nan, math.inf, -(2**63)
+
+
+def _quotient(x: float, y: float) -> float:
+    """x / y where y is 0."""
+    if x == 0.0 or x != x:
+        return _NAN
+    return math.copysign(_INFINITE, x) * math.copysign(1.0, y)
+
+
+def _power(x: float, y: float) -> float:
+    """pow() of the C library."""
+    try:
+        return math.pow(x, y)
+    except OverflowError:
+        return -_INFINITE if x < 0.0 and y % 2.0 == 1.0 else _INFINITE
+    except ValueError:
+        if x == 0.0:
+            return math.copysign(_INFINITE, x) if y % 2.0 == 1.0 else _INFINITE
+        return _NAN
+
+
+def _whole_power(x: float, n: int) -> float:
+    """x to a constant whole power, by repeated squaring, as compiled."""
+    left, result, square = abs(n), 1.0, x
+    while left:
+        if left & 1:
+            result = result * square
+        left >>= 1
+        square = square * square
+    if n >= 0:
+        return result
+    return 1.0 / result if result else _quotient(1.0, result)
+
+
+def _sqrt(x: float) -> float:
+    return math.sqrt(x) if x >= 0.0 else _NAN
+
+
+def _hypot(x: float, y: float) -> float:
+    """hypot() of the C library, by which Python takes the magnitude of complex numbers; its own differs in last bits."""
+    try:
+        return abs(complex(x, y))
+    except OverflowError:
+        return _INFINITE
+
+
+def _quiet(function: Callable[..., float], overflow: float = _INFINITE) -> Callable[..., float]:
+    """A function of the C library that raises nothing."""
+
+    def computed(*given: float) -> float:
+        try:
+            return function(*given)
+        except ValueError:
+            return _NAN
+        except OverflowError:
+            return overflow
+
+    return computed
+
+
+def _log(x: float) -> float:
+    return math.log(x) if x > 0.0 else -_INFINITE if x == 0.0 else _NAN
+
+
+def _whole(rounding: Callable[[float], int]) -> Callable[[float], int]:
+    """A whole number, as machine code converts it: the least one for what has none."""
+
+    def converted(x: float) -> int:
+        return rounding(x) if -9.3e18 < x < 9.3e18 else _LEAST
+
+    return converted
+
+
+def _same_sign(x: float, y: float) -> float:
+    return math.copysign(x, y)
+
+
+def _zeros(shape: Any, *_: Any) -> list[Any]:
+    if isinstance(shape, tuple) and len(shape) > 1:
+        return [_zeros(shape[1:]) for _ in range(shape[0])]
+    return [0.0] * (shape[0] if isinstance(shape, tuple) else shape)
+
+
+def _fill(row: list[Any], span: slice, value: Any) -> None:
+    for k in range(*span.indices(len(row))):
+        row[k] = value
+
+
+def _sum(rows: list[Any], column: int) -> float:
+    total = 0.0
+    for row in rows:
+        total += row[column]
+    return total
+
+
+_SAME = {
+    name: getattr(math, name) for name in ("copysign", "frexp", "fabs", "isnan", "isinf", "isfinite", "atan")
+}
+_RAISING = (
+    "sin",
+    "cos",
+    "tan",
+    "asin",
+    "acos",
+    "sinh",
+    "cosh",
+    "tanh",
+    "asinh",
+    "acosh",
+    "atanh",
+    "fmod",
+    "expm1",
+)
+_IN_C: dict[str, Any] = {
+    **_SAME,
+    **{name: _quiet(getattr(math, name)) for name in (*_RAISING, "exp", "ldexp", "atan2", "erf")},
+    "sqrt": _sqrt,
+    "hypot": _hypot,
+    "log": _log,
+    "pow": _power,
+    "floor": _whole(math.floor),
+    "ceil": _whole(math.ceil),
+    "trunc": _whole(math.trunc),
+    "nextafter": math.nextafter,
+}
+_NUMPY = {
+    "abs": abs, "absolute": abs, "arctan": math.atan, "arctan2": _IN_C["atan2"], "arcsin": _IN_C["asin"],
+    "arccos": _IN_C["acos"], "sign": lambda x: float((x > 0.0) - (x < 0.0)) if x == x else _NAN, "power": _power,
+    "minimum": lambda a, b: a if a <= b or a != a else b, "maximum": lambda a, b: a if a >= b or a != a else b,
+    "float64": float, "int64": int, "intp": int, "bool_": bool, "zeros": _zeros, "empty": _zeros,
+}  # fmt: skip
+
+
+def _like_machine_code(value: Any, name: str) -> Any:
+    """What stands for math.name or np.name."""
+    if value is math:
+        return _IN_C.get(name, getattr(math, name))
+    if name in _NUMPY:
+        return _NUMPY[name]
+    if name in ("floor", "ceil", "trunc"):
+        return lambda x: float(_IN_C[name](x)) if math.isfinite(x) else x
+    return _IN_C.get(name, getattr(np, name))
+
+
+# --- rewriting -------------------------------------------------------------------------------------
+
+_NUMBER = (bool, int, float)
+
+
+class _Part:
+    """A slice of a list, which like that of an array shares its entries."""
+
+    def __init__(self, whole: Any, start: int | None, stop: int | None) -> None:
+        self._whole = whole
+        self._start, self._stop, _ = slice(start, stop).indices(len(whole))
+
+    def __len__(self) -> int:
+        return max(self._stop - self._start, 0)
+
+    def __getitem__(self, k: int) -> Any:
+        return self._whole[self._start + k]
+
+    def __setitem__(self, k: int, value: Any) -> None:
+        self._whole[self._start + k] = value
+
+
+_TEMPORARY = "t{}__"  # names that end like this are found in no kernel
+_HELPERS = {
+    "quotient__": _quotient,
+    "power__": _power,
+    "whole_power__": _whole_power,
+    "root__": math.sqrt,
+    "whole__": _whole(int),
+    "fill__": _fill,
+    "part__": _Part,
+    "sum__": _sum,
+}
+
+
+class _Rewriting(ast.NodeTransformer):
+    """Rewrites one function. `outside` looks up the names that it takes from outside."""
+
+    def __init__(self, outside: Mapping[str, Any], own: set[str]) -> None:
+        self.taken: dict[str, Any] = {}  # what the rewritten function takes from outside, by new names
+        self._outside = outside
+        self._own = own
+        self._temporaries = count()
+
+    # names and constants
+
+    def _value(self, node: ast.AST) -> Any:
+        """What a name from outside, or an attribute of one, is; None for everything else."""
+        if isinstance(node, ast.Name) and node.id not in self._own:
+            return self._outside.get(node.id)
+        if isinstance(node, ast.Attribute):
+            owner = self._value(node.value)
+            if isinstance(owner, ModuleType) or (isinstance(owner, type) and issubclass(owner, IntEnum)):
+                return getattr(owner, node.attr, None)
+        return None
+
+    def _known(self, node: ast.Name | ast.Attribute) -> ast.expr | None:
+        value = self._value(node)
+        if isinstance(value, np.generic):
+            value = value.item()
+        if isinstance(value, _NUMBER):
+            return ast.copy_location(ast.Constant(_plain(value)), node)
+        return None
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        if not isinstance(node.ctx, ast.Load) or node.id in self._own:
+            return node
+        known = self._known(node)
+        if known is None and node.id in self._outside:
+            self.taken[node.id] = self._outside[node.id]
+        return known or node
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
+        known = self._known(node)
+        if known is not None:
+            return known
+        owner = self._value(node.value)
+        if owner is math or owner is np:
+            name = f"{owner.__name__}_{node.attr}__"
+            self.taken[name] = _like_machine_code(owner, node.attr)
+            return ast.copy_location(ast.Name(name, ast.Load()), node)
+        if isinstance(owner, ModuleType):
+            name = f"{owner.__name__.replace('.', '_')}_{node.attr}__"
+            self.taken[name] = getattr(owner, node.attr)
+            return ast.copy_location(ast.Name(name, ast.Load()), node)
+        self.generic_visit(node)
+        return node.value if node.attr == "value" else node  # of an enumeration, which is a number here
+
+    # arithmetic
+
+    def _twice(self, node: ast.expr) -> tuple[ast.expr, ast.expr]:
+        """A value that is used twice: an expression that computes it, and one for the second use."""
+        if isinstance(node, ast.Name | ast.Constant):
+            return node, node
+        name = _TEMPORARY.format(next(self._temporaries))
+        return ast.NamedExpr(ast.Name(name, ast.Store()), node), ast.Name(name, ast.Load())
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
+        self.generic_visit(node)
+        if isinstance(node.op, ast.Div):
+            return self._divided(node)
+        return self._raised(node) if isinstance(node.op, ast.Pow) else node
+
+    def _divided(self, node: ast.BinOp) -> ast.expr:
+        if isinstance(node.right, ast.Constant) and node.right.value != 0:
+            return node
+        first, second = self._twice(node.right)
+        divided, otherwise = ast.BinOp(node.left, ast.Div(), second), _call("quotient__", node.left, second)
+        return ast.copy_location(ast.IfExp(first, divided, otherwise), node)
+
+    def _raised(self, node: ast.BinOp) -> ast.expr:
+        exponent = _constant(node.right)
+        if isinstance(exponent, int) and exponent == 2:
+            first, second = self._twice(node.left)
+            return ast.copy_location(ast.BinOp(first, ast.Mult(), second), node)
+        whole = isinstance(exponent, int) and not isinstance(_constant(node.left), int)
+        return ast.copy_location(_call("whole_power__" if whole else "power__", node.left, node.right), node)
+
+    def visit_AugAssign(self, node: ast.AugAssign) -> ast.stmt:
+        if not isinstance(node.op, ast.Div | ast.Pow):
+            self.generic_visit(node)
+            return node
+        read = copy.deepcopy(node.target)
+        read.ctx = ast.Load()
+        assigned = ast.Assign([node.target], ast.BinOp(read, node.op, node.value))
+        rewritten: ast.stmt = self.visit(ast.fix_missing_locations(ast.copy_location(assigned, node)))
+        return rewritten
+
+    def visit_Call(self, node: ast.Call) -> ast.expr:
+        called = self._value(node.func)
+        if called is math.sqrt or called is np.sqrt:
+            first, second = self._twice(self.visit(node.args[0]))
+            computed = ast.IfExp(_at_least_zero(first), _call("root__", second), ast.Constant(_NAN))
+            return ast.copy_location(computed, node)
+        name = node.func.id if isinstance(node.func, ast.Name) and node.func.id not in self._outside else ""
+        if name in ("min", "max") and len(node.args) == 2:
+            return self._least_or_most(node, ast.Lt() if name == "min" else ast.Gt())
+        if isinstance(node.func, ast.Attribute) and node.func.attr == "sum":
+            column = node.func.value  # a[:, k]
+            if isinstance(column, ast.Subscript) and isinstance(column.slice, ast.Tuple):
+                rows, place = self.visit(column.value), self.visit(column.slice.elts[1])
+                return ast.copy_location(_call("sum__", rows, place), node)
+        self.generic_visit(node)
+        if name == "int" and len(node.args) == 1:
+            node.func = ast.Name("whole__", ast.Load())
+        return node
+
+    def _least_or_most(self, node: ast.Call, better: ast.cmpop) -> ast.expr:
+        """The second argument where it is better, else the first; numbers that are none never are."""
+        (early, a), (first, b) = (self._twice(self.visit(argument)) for argument in node.args)
+        return ast.copy_location(ast.IfExp(ast.Compare(first, [better], [early]), b, a), node)
+
+    def visit_Compare(self, node: ast.Compare) -> ast.expr:
+        self.generic_visit(node)
+        if isinstance(node.ops[0], ast.In | ast.NotIn) and isinstance(node.comparators[0], ast.Tuple):
+            first, second = self._twice(node.left)
+            tests: list[ast.expr] = [
+                ast.Compare(second if k else first, [ast.Eq()], [entry])
+                for k, entry in enumerate(node.comparators[0].elts)
+            ]
+            found: ast.expr = ast.BoolOp(ast.Or(), tests) if len(tests) > 1 else tests[0]
+            if isinstance(node.ops[0], ast.NotIn):
+                found = ast.UnaryOp(ast.Not(), found)
+            return ast.copy_location(found, node)
+        return node
+
+    # arrays, which are lists
+
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
+        if isinstance(node.value, ast.Attribute) and node.value.attr == "shape":
+            depth = _constant(node.slice)
+            if isinstance(depth, int):
+                row = self.visit(node.value.value)
+                for _ in range(depth):
+                    row = ast.Subscript(row, ast.Constant(0), ast.Load())
+                return ast.copy_location(_call("len", row), node)
+        if isinstance(node.slice, ast.Slice):
+            self.generic_visit(node)
+            ends = [part or ast.Constant(None) for part in (node.slice.lower, node.slice.upper)]
+            return ast.copy_location(_call("part__", node.value, *ends), node)
+        if isinstance(node.slice, ast.Tuple):
+            *outer, last = (self.visit(index) for index in node.slice.elts)
+            row = self.visit(node.value)
+            for index in outer:
+                row = ast.Subscript(row, index, ast.Load())
+            return ast.copy_location(ast.Subscript(row, last, node.ctx), node)
+        self.generic_visit(node)
+        return node
+
+    def visit_Assign(self, node: ast.Assign) -> ast.stmt:
+        (target,) = node.targets if len(node.targets) == 1 else (None,)
+        if isinstance(target, ast.Subscript) and isinstance(target.slice, ast.Slice):
+            span = target.slice
+            ends = [part or ast.Constant(None) for part in (span.lower, span.upper, span.step)]
+            filled = ast.Expr(_call("fill__", target.value, _call("slice", *ends), node.value))
+            rewritten: ast.stmt = self.visit(ast.fix_missing_locations(ast.copy_location(filled, node)))
+            return rewritten
+        self.generic_visit(node)
+        return node
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
+        node.decorator_list, node.returns = [], None
+        for argument in (*node.args.posonlyargs, *node.args.args):
+            argument.annotation = None
+        node.body = [self.visit(statement) for statement in node.body]
+        return node
+
+
+def _plain(value: Any) -> Any:
+    return int(value) if isinstance(value, IntEnum) else value
+
+
+def _constant(node: ast.expr) -> Any:
+    if isinstance(node, ast.Constant):
+        return node.value
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        value = _constant(node.operand)
+        return -value if isinstance(value, int | float) else None
+    return None
+
+
+def _call(name: str, *arguments: ast.expr) -> ast.Call:
+    return ast.Call(ast.Name(name, ast.Load()), list(arguments), [])
+
+
+def _at_least_zero(node: ast.expr) -> ast.expr:
+    return ast.Compare(node, [ast.GtE()], [ast.Constant(0.0)])
+
+
+# --- functions -------------------------------------------------------------------------------------
+
+_rewritten: dict[Any, Interpreted] = {}  # by the function that was declared
+
+
+def in_lists(function: Callable[..., Any]) -> Interpreted:
+    """A kernel, and all that it calls, rewritten: it takes nested lists in place of arrays.
+
+    Raises OSError where its source is not known.
+    """
+    plain = plain_function(function)
+    if plain not in _rewritten:
+        code, outside = plain.__code__, _outside(plain)
+        node = _definition(plain)
+        rewriting = _Rewriting(outside, {*code.co_varnames, *code.co_cellvars})
+        module = ast.Module([ast.fix_missing_locations(rewriting.visit(node))], [])
+        scope: dict[str, Any] = dict(_HELPERS)
+        exec(compile(module, plain.__code__.co_filename, "exec"), scope)
+        _rewritten[plain] = scope[plain.__name__]
+        for name, value in rewriting.taken.items():
+            scope[name] = _in_scope(value)
+    return _rewritten[plain]
+
+
+def _in_scope(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return in_lists(value) if hasattr(value, "py_func") else value
+
+
+def _outside(plain: Any) -> Any:
+    if not plain.__closure__:
+        return plain.__globals__
+    enclosed = zip(plain.__code__.co_freevars, plain.__closure__, strict=True)
+    return {**plain.__globals__, **{name: cell.cell_contents for name, cell in enclosed}}
+
+
+@cache
+def _definitions(file: str) -> dict[int, ast.FunctionDef]:
+    """All functions in a file, by the line on which they, or their decorators, begin."""
+    lines = linecache.getlines(file)
+    if not lines:
+        raise OSError(f"There is no source of {file}.")
+    functions = _functions(ast.parse("".join(lines)).body)
+    return {min([f.lineno, *(d.lineno for d in f.decorator_list)]): f for f in functions}
+
+
+def _functions(body: Iterable[ast.stmt]) -> Iterator[ast.FunctionDef]:
+    for node in body:
+        if isinstance(node, ast.FunctionDef):
+            yield node
+        yield from _functions(part for part in ast.iter_child_nodes(node) if isinstance(part, ast.stmt))
+
+
+def _definition(plain: Any) -> ast.FunctionDef:
+    """The definition of a function, to be changed."""
+    code = plain.__code__
+    try:
+        node = _definitions(code.co_filename)[code.co_firstlineno]
+    except KeyError:
+        raise OSError(f"There is no source of {plain.__qualname__} in {code.co_filename}.") from None
+    return copy.deepcopy(node) if "<locals>" in plain.__qualname__ else node  # others are defined once
+
+
+# --- arrays in, arrays out -------------------------------------------------------------------------
+
+
+def interpreted(function: Callable[..., Any]) -> Interpreted:
+    """A kernel as Python calls it: with arrays, or named tuples of arrays, of which it may change the entries."""
+    rewritten = in_lists(function)
+
+    def called(*given: Any) -> Any:
+        lists: dict[int, tuple[Any, Any]] = {}
+        try:
+            return rewritten(*[_listed(argument, lists) for argument in given])
+        finally:
+            for array, values in lists.values():
+                if array.flags.writeable and array.size:
+                    array[...] = values
+
+    return called
+
+
+def _listed(argument: Any, lists: dict[int, tuple[Any, Any]]) -> Any:
+    if isinstance(argument, np.ndarray):
+        if id(argument) not in lists:
+            lists[id(argument)] = argument, argument.tolist()
+        return lists[id(argument)][1]
+    if isinstance(argument, tuple):
+        entries = [_listed(entry, lists) for entry in argument]
+        return type(argument)(*entries) if hasattr(argument, "_fields") else tuple(entries)
+    return argument.item() if isinstance(argument, np.generic) else argument

@@ -1,0 +1,296 @@
+"""Machine code of kernels, by numba, and the quick way to compile large programs of them.
+
+Plain numba optimises each part with everything that it calls, and makes machine code of it, although only the entry
+is called from Python. Here a part is only translated to LLVM code; the entry is linked with its parts, then optimised
+and compiled as a whole, in a fraction of the time. Only the entry's parts call one another, so that arguments which a
+part does not use are dropped: an array has nine, which would cost steps of a few rods a third of their time.
+
+This uses inner classes of numba (below `dispatcher_of`). With the environment variable PINJOINT_PLAIN_NUMBA=1 all
+kernels are compiled by numba's own `njit` with the same options: programs compute the same bits and take longer to
+compile.
+"""
+
+# mypy: allow-untyped-calls
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import sys
+from collections.abc import Callable, Iterable
+from types import ModuleType
+from typing import Any
+
+# A vector library computes sines and powers that differ from those of Python in the last bit; read as numba is loaded.
+os.environ.setdefault("NUMBA_DISABLE_INTEL_SVML", "1")
+
+import numba
+from numba import njit
+from numba.core.caching import NullCache
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler, CompileResult
+from numba.core.compiler_machinery import PassManager
+from numba.core.registry import CPUDispatcher, cpu_target
+from numba.core.serialize import dumps
+from numba.core.typed_passes import InlineOverloads, NopythonRewrites
+from numba.core.types import Function, unliteral
+from numba.core.typing.context import Context
+from numba.core.untyped_passes import (
+    FindLiterallyCalls,
+    InlineClosureLikes,
+    InlineInlinables,
+    LiteralPropagationSubPipelinePass,
+    LiteralUnroll,
+    MakeFunctionToJitFunction,
+    WithLifting,
+)
+from numba.extending import typeof_impl
+
+from systems import cache
+from systems.kernels import PLAIN, Kernel, Use
+
+_PROCESSOR = repr(cpu_target.target_context.codegen().magic_tuple())
+
+
+_NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_FURTHER: dict[Use, dict[str, Any]] = {
+    Use.BY_ITSELF: {"no_cfunc_wrapper": True},
+    Use.PART: _NO_WRAPPERS,
+    Use.SHARED: {**_NO_WRAPPERS, "parallel": True},
+    Use.KEPT: {},
+    Use.ENTRY: {},
+}
+
+
+def dispatcher_of(kernel: Kernel) -> Any:
+    """What numba makes of a kernel: it compiles itself when it is called, or when what calls it is compiled."""
+    options, function = _FURTHER[kernel.use] | kernel.targetoptions, kernel.py_func
+    if kernel.use is Use.PART and not PLAIN:
+        chosen = {"nopython": True, "boundscheck": None, **options}
+        return _Part(function, locals={}, targetoptions=chosen, pipeline_class=_PartCompiler)
+    if kernel.use is Use.ENTRY and not PLAIN:
+        options["pipeline_class"] = _EntryCompiler
+    dispatcher: Any = njit(**options)(function)
+    if kernel.use in (Use.KEPT, Use.ENTRY) and _is_compiled(dispatcher):
+        dispatcher._cache = _MachineCode(function)
+    if kernel.signature and _is_compiled(dispatcher):
+        dispatcher.compile(kernel.signature)
+        dispatcher.disable_compile()
+    return dispatcher
+
+
+@typeof_impl.register(Kernel)
+def _type_of(kernel: Kernel, context: Any) -> Any:
+    """Functions that numba compiles call a kernel as what it makes of it."""
+    return numba.typeof(kernel.machine)
+
+
+def adopt(module: ModuleType, name: str, kernels: Iterable[Any]) -> None:
+    """Let what is compiled of a module, which has this name in the cache, be found there; `kernels` are those it calls.
+
+    A kernel of a mod with `cache=True` is compiled with its program only: numba trusts what it finds on disk.
+    """
+    for kernel in kernels:
+        if _is_compiled(kernel):
+            kernel._cache = NullCache()
+    module.__name__ = name
+    sys.modules[name] = module  # what is cached looks the module up by its name
+    for function in vars(module).values():
+        if isinstance(function, Kernel) and function.py_func.__globals__ is vars(module):
+            function.py_func.__module__ = name
+    if "prange" in vars(module):
+        vars(module)["prange"] = numba.prange
+
+
+def _is_compiled(function: Any) -> bool:
+    """False where NUMBA_DISABLE_JIT has functions interpreted."""
+    return isinstance(function, CPUDispatcher)
+
+
+class _MachineCode(NullCache):
+    """Where numba looks for the machine code of a function, and leaves it.
+
+    Its own cache on disk trusts what it finds. The name of the function's module hashes all that the code follows
+    from, but for the types of the arguments.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._function = function
+
+    def _name(self, signature: Any) -> str:
+        types = hashlib.sha256(f"{signature!r} {_PROCESSOR}".encode()).hexdigest()[:16]
+        return f"{self._function.__module__}.{self._function.__name__}-{types}.code"
+
+    def load_overload(self, signature: Any, target: Any) -> Any:
+        """What was compiled for these types; None if it is to be compiled."""
+        target.refresh()
+        content = cache.read(self._name(signature))
+        if content is None:
+            return None
+        try:
+            return CompileResult._rebuild(target, *pickle.loads(content))
+        except Exception:  # such as a module that is gone
+            return None
+
+    def save_overload(self, signature: Any, result: Any) -> None:
+        """Keep what was compiled, unless it holds addresses of this process."""
+        if not result.library.has_dynamic_globals:
+            cache.write(self._name(signature), dumps(result._reduce()))
+
+
+# --- what numba knows of types -------------------------------------------------------------------
+
+# Passes over a function that look for what kernels do not have: `with`, closures and comprehensions, functions
+# inlined before their types are known, loops over tuples of different types, expressions of whole arrays.
+UNUSED = (
+    WithLifting,
+    InlineClosureLikes,
+    MakeFunctionToJitFunction,
+    InlineInlinables,
+    FindLiterallyCalls,
+    LiteralUnroll,
+    LiteralPropagationSubPipelinePass,
+    InlineOverloads,
+    NopythonRewrites,
+)
+
+
+class _Typing(Context):
+    """numba's context of types, with a memory of what calls return.
+
+    For every `a + b` numba asks a dozen candidates. A large program has some six thousand such operations, of which
+    a few hundred differ in types.
+    """
+
+    def __init__(self, known: Context) -> None:
+        self.__dict__ = known.__dict__
+        self._found: dict[Any, Any] = {}
+
+    def resolve_function_type(self, function: Any, given: Any, named: Any) -> Any:
+        """The signature of a function for arguments of these types."""
+        known = self._lookup_global(function) or function
+        if named or not isinstance(known, Function):
+            return super().resolve_function_type(function, given, named)
+        key = known, tuple(given)
+        if key not in self._found:
+            found = super().resolve_function_type(function, given, named)
+            if found is None:
+                return None
+            self._found[key] = found
+        return self._found[key]
+
+
+class _LeanCompiler(Compiler):
+    """numba's compiler with that memory and without the passes that kernels have no use for."""
+
+    _typing = _Typing(cpu_target.typing_context)
+
+    def __init__(self, _: Any, *rest: Any) -> None:
+        super().__init__(self._typing, *rest)
+
+    def define_pipelines(self) -> list[PassManager]:
+        """The usual passes, less the unused ones."""
+        (usual,) = super().define_pipelines()
+        lean = PassManager(usual.pipeline_name)
+        for kind, purpose in usual.passes:
+            if kind not in UNUSED:
+                lean.add_pass(kind, purpose)
+        lean.finalize()
+        return [lean]
+
+
+# --- parts ---------------------------------------------------------------------------------------
+
+
+class _PartCode(JITCodeLibrary):
+    """LLVM code of a part and a list of the libraries that it calls. It is linked into others, and never run."""
+
+    def finalize(self) -> None:
+        """End construction without optimising: the entry that links this part optimises it."""
+        if hasattr(
+            self, "_reload_init"
+        ):  # newer versions of numba: functions to call when cached code is loaded
+            for called in self._linking_libraries:
+                self._reload_init.update(called._reload_init)
+        self._finalized = True
+
+    def _get_module_for_linking(self) -> Any:
+        """The part and all that it calls, each once.
+
+        Their functions are "linkonce_odr": where several parts bring the same function, the linker keeps one.
+        """
+        self._ensure_finalized()
+        if self._shared_module is None:
+            self._shared_module = self._final_module.clone()
+            for called in self._called({}):
+                is_part = isinstance(called, _PartCode)
+                module = called._final_module if is_part else called._get_module_for_linking()
+                self._shared_module.link_in(module, preserve=True)
+            for function in self._shared_module.functions:
+                if not function.is_declaration and function.linkage.name == "external":
+                    function.linkage = "linkonce_odr"
+        return self._shared_module
+
+    def _called(self, found: dict[Any, None]) -> dict[Any, None]:
+        """All libraries that it calls, directly or not, in the order of the calls."""
+        for called in self._linking_libraries:
+            if called not in found:
+                found[called] = None
+                if isinstance(called, _PartCode):
+                    called._called(found)
+        return found
+
+    def _optimize_functions(self, module: Any) -> None:
+        module.data_layout = self._codegen._data_layout
+
+    @property
+    def codegen(self) -> _PartCode:
+        """The receiver of set_env(), which numba's compiler looks up here."""
+        return self
+
+    def set_env(self, name: str, environment: Any) -> None:
+        """Do nothing: only machine code has an environment, to raise exceptions with, and parts raise none."""
+
+
+class _PartCompiler(_LeanCompiler):
+    """Compiles a part as far as LLVM code."""
+
+    def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
+        super().__init__(typing, target, library or _PartCode(target.codegen(), "part"), *rest)
+
+
+class _Part(CPUDispatcher):
+    """What the name of a part stands for."""
+
+    def get_call_template(self, given: Any, named: Any) -> Any:
+        """The same version for the constant 3 as for any other integer."""
+        plain = {name: unliteral(kind) for name, kind in named.items()}
+        return super().get_call_template(tuple(unliteral(kind) for kind in given), plain)
+
+    def __call__(self, *given: Any, **named: Any) -> Any:
+        """Raise TypeError: a part has no machine code of its own."""
+        raise TypeError(f"{self.py_func.__qualname__} is a part of programs: call it from a compiled function.")
+
+
+# --- entries -------------------------------------------------------------------------------------
+
+
+class _EntryCode(JITCodeLibrary):
+    """Code of an entry; its parts become internal, so that the optimiser may change how they are called."""
+
+    def _optimize_final_module(self) -> None:
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage.name == "linkonce_odr":
+                function.linkage = "internal"
+        super()._optimize_final_module()
+
+
+class _EntryCompiler(_LeanCompiler):
+    """Compiles an entry with its parts to machine code that can be cached."""
+
+    def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
+        if library is None:
+            library = _EntryCode(target.codegen(), "entry")
+            library.enable_object_caching()
+        super().__init__(typing, target, library, *rest)
