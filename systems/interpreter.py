@@ -17,11 +17,11 @@ import ast
 import copy
 import linecache
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from enum import IntEnum
 from functools import cache
 from itertools import count
-from types import ModuleType
+from types import CodeType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -424,7 +424,7 @@ def in_lists(function: Callable[..., Any]) -> Interpreted:
         module = ast.Module([ast.fix_missing_locations(rewriting.visit(node))], [])
         scope: dict[str, Any] = dict(_HELPERS)
         exec(compile(module, plain.__code__.co_filename, "exec"), scope)
-        _rewritten[plain] = scope[plain.__name__]
+        _rewritten[plain] = scope[node.name]
         for name, value in rewriting.taken.items():
             scope[name] = _in_scope(value)
     return _rewritten[plain]
@@ -443,31 +443,45 @@ def _outside(plain: Any) -> Any:
     return {**plain.__globals__, **{name: cell.cell_contents for name, cell in enclosed}}
 
 
+_Defined = ast.FunctionDef | ast.Lambda
+
+
 @cache
-def _definitions(file: str) -> dict[int, ast.FunctionDef]:
+def _definitions(file: str) -> dict[int, list[_Defined]]:
     """All functions in a file, by the line on which they, or their decorators, begin."""
     lines = linecache.getlines(file)
     if not lines:
         raise OSError(f"There is no source of {file}.")
-    functions = _functions(ast.parse("".join(lines)).body)
-    return {min([f.lineno, *(d.lineno for d in f.decorator_list)]): f for f in functions}
-
-
-def _functions(body: Iterable[ast.stmt]) -> Iterator[ast.FunctionDef]:
-    for node in body:
+    found: dict[int, list[_Defined]] = {}
+    for node in ast.walk(ast.parse("".join(lines))):
         if isinstance(node, ast.FunctionDef):
-            yield node
-        yield from _functions(part for part in ast.iter_child_nodes(node) if isinstance(part, ast.stmt))
+            found.setdefault(min([node.lineno, *(d.lineno for d in node.decorator_list)]), []).append(node)
+        elif isinstance(node, ast.Lambda):
+            found.setdefault(node.lineno, []).append(node)
+    return found
 
 
 def _definition(plain: Any) -> ast.FunctionDef:
     """The definition of a function, to be changed."""
-    code = plain.__code__
-    try:
-        node = _definitions(code.co_filename)[code.co_firstlineno]
-    except KeyError:
-        raise OSError(f"There is no source of {plain.__qualname__} in {code.co_filename}.") from None
-    return copy.deepcopy(node) if "<locals>" in plain.__qualname__ else node  # others are defined once
+    code, kind = plain.__code__, ast.Lambda if plain.__name__ == "<lambda>" else ast.FunctionDef
+    there = [d for d in _definitions(code.co_filename).get(code.co_firstlineno, ()) if isinstance(d, kind)]
+    if len(there) > 1:
+        there = [d for d in there if _compiles_to(code, d)]
+    if not there:
+        raise OSError(f"There is no source of {plain.__qualname__} in {code.co_filename}.")
+    node = copy.deepcopy(there[0]) if "<locals>" in plain.__qualname__ else there[0]  # others are defined once
+    if isinstance(node, ast.Lambda):
+        body: list[ast.stmt] = [ast.Return(node.body)]
+        return ast.copy_location(ast.FunctionDef("lambda__", node.args, body, []), node)
+    return node
+
+
+def _compiles_to(code: CodeType, node: _Defined) -> bool:
+    """True if this is the function, of several on one line."""
+    if not isinstance(node, ast.Lambda):
+        return node.name == code.co_name
+    made = compile(ast.fix_missing_locations(ast.Expression(node)), "", "eval").co_consts[0]
+    return bool(made.co_code == code.co_code and made.co_consts == code.co_consts)
 
 
 # --- arrays in, arrays out -------------------------------------------------------------------------

@@ -60,7 +60,8 @@ class Kernel:
         """The compiled form; what calls it first has it compiled, or loaded from the cache."""
         from systems.machine_code import dispatcher_of
 
-        return dispatcher_of(self)
+        dispatcher: Callable[..., Any] = dispatcher_of(self)
+        return dispatcher
 
     def __call__(self, *given: Any) -> Any:
         """Compute, interpreted."""

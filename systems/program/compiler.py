@@ -186,7 +186,7 @@ class GeneratedModule:
             if Choice.compile is Compile.ALWAYS:
                 self.load()
             else:
-                self._form = self._interpreted()
+                self._begin_interpreted()
         elif self.spent > self._patience and not self._compiled:
             self._lose_patience()
         return self._form
@@ -196,7 +196,16 @@ class GeneratedModule:
         """True if machine code runs."""
         return self._compiled
 
-    def _interpreted(self) -> SimpleNamespace:
+    def _begin_interpreted(self) -> None:
+        """Use the interpreted form; where the source of a kernel is not known, machine code."""
+        try:
+            interpreted = {name: function.interpreted for name, function in self.functions.items()}
+        except OSError as error:
+            if Choice.compile is Compile.NEVER:
+                raise OSError(f"{self.name} cannot be interpreted: {error}") from error
+            self.load()
+            return
+
         def timed(function: Callable[..., Any]) -> Callable[..., Any]:
             def called(*given: Any) -> Any:
                 began = time.perf_counter()
@@ -209,7 +218,7 @@ class GeneratedModule:
             return called
 
         self._patience = LOADING
-        return SimpleNamespace(**{n: timed(f.interpreted) for n, f in self.functions.items()})
+        self._form = SimpleNamespace(**{name: timed(function) for name, function in interpreted.items()})
 
     def did(self, work: int) -> None:
         """Note how much the last call did, interpreted, so that the next one takes about LONGEST_CALL."""
