@@ -38,9 +38,10 @@ class BatchProgram:
         self.threads = threads
         self._columns = program.columns
         functions = program.module.functions
-        self._entries = {
-            name: functions[name] for name in ("advance", "observe", "commit") if name in functions
-        }
+        self._entries: dict[str, Callable[..., Any]] = {}
+        for name in ("advance", "observe", "commit"):
+            if name in functions:
+                self._entries[name] = functions[name]
         self.has_history = "commit" in self._entries
         self._scratch_shapes = program.scratch
         self._parameters = {

@@ -15,6 +15,7 @@ import math
 import os
 import platform
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from enum import Enum, IntEnum
@@ -254,20 +255,24 @@ class GeneratedModule:
 
     def load(self) -> Any:
         """Go on with machine code from now on: compiled first if nobody has."""
-        if not self._compiled:
-            from systems.machine_code import adopt
-
-            before, known, began = self._form, self.is_compiled(), time.perf_counter()
-            adopt(self.module, self.key, _reached_from(self._source_and_kernels[1].values()))
-            self._form = SimpleNamespace(**{name: f.machine for name, f in self.functions.items()})
-            self._compiled = True
-            try:
-                self.warm_up()
-            except BaseException:
-                self._form, self._compiled = before, False
-                raise
-            _keep_note(self.key, None if known else (time.perf_counter() - began, self._size))
+        with _loading:
+            if not self._compiled:
+                self._load()
         return self._form
+
+    def _load(self) -> None:
+        from systems.machine_code import adopt
+
+        before, known, began = self._form, self.is_compiled(), time.perf_counter()
+        adopt(self.module, self.key, _reached_from(self._source_and_kernels[1].values()))
+        self._form = SimpleNamespace(**{name: f.machine for name, f in self.functions.items()})
+        self._compiled = True
+        try:
+            self.warm_up()
+        except BaseException:
+            self._form, self._compiled = before, False
+            raise
+        _keep_note(self.key, None if known else (time.perf_counter() - began, self._size))
 
 
 def _tell(sentence: str) -> None:
@@ -276,20 +281,14 @@ def _tell(sentence: str) -> None:
         LOG.warning(sentence)
 
 
+_loading = threading.RLock()
 _modules: dict[Any, GeneratedModule] = {}  # by source and kernels
 
 
-def generated(
-    name: str,
-    source: str,
-    kernels: Mapping[str, Callable[..., Any]],
-    warm_up: Callable[[], object] = lambda: None,
-) -> GeneratedModule:
-    """The module with this source, the same one each time. The `warm_up` of the latest call counts."""
+def generated(name: str, source: str, kernels: Mapping[str, Callable[..., Any]]) -> GeneratedModule:
+    """The module with this source, the same one each time."""
     identity = source, *((called, id(kernel)) for called, kernel in sorted(kernels.items()))
-    module = _modules.setdefault(identity, GeneratedModule(name, lambda: (source, kernels)))
-    module.warm_up = warm_up
-    return module
+    return _modules.setdefault(identity, GeneratedModule(name, lambda: (source, kernels)))
 
 
 def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str, Callable[..., Any]]]:

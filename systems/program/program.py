@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 import time
+import weakref
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -80,12 +81,13 @@ class Program:
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self._state_revision = -1
         self.bind()
+        present = weakref.ref(self)  # the module lives longer
+        self.module.warm_up = lambda: program._call_all() if (program := present()) is not None else None
         self._call_all()
         self.compile_seconds = time.perf_counter() - started
 
     def load(self) -> None:
         """Go on with machine code from now on: compiled first if nobody has."""
-        self.module.warm_up = self._call_all
         self.module.load()
 
     def _call_all(self) -> None:

@@ -460,7 +460,7 @@ class WideArray(OwnArray):
         (law(of_mass, each="particles", reads=("particles.mass",)), "must return a pair, the force"),
         (law(of_mass, reads=("particles.mass",)), "for each of the rods and cannot take particles_mass"),
         (law(failing), "does not compile"),
-        (law(plain), "not compiled; put `@njit`"),
+        (law(plain), "not compiled; put `@compiled`"),
         (law("systems.nowhere:law"), "cannot be found"),
         (law("systems.physics.kernels:nothing"), "cannot be found"),
         (law(heated, each="rod"), "choose one of rods, particles, pairs, loads"),
