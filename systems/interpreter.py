@@ -32,7 +32,8 @@ Interpreted = Callable[..., Any]
 
 # --- arithmetic ------------------------------------------------------------------------------------
 
-_NAN, _INFINITE, _LEAST = math.nan, math.inf, -(2**63)
+_NAN, _INFINITE = math.nan, math.inf
+_LEAST, _MOST = -(2**63), 9.2e18  # whole numbers of machine code
 
 
 def _quotient(x: float, y: float) -> float:
@@ -101,7 +102,7 @@ def _whole(rounding: Callable[[float], int]) -> Callable[[float], int]:
     """A whole number, as machine code converts it: the least one for what has none."""
 
     def converted(x: float) -> int:
-        return rounding(x) if -9.3e18 < x < 9.3e18 else _LEAST
+        return rounding(x) if -_MOST < x < _MOST else _LEAST
 
     return converted
 
@@ -205,6 +206,7 @@ _HELPERS = {
     "power__": _power,
     "whole_power__": _whole_power,
     "root__": math.sqrt,
+    "floor__": math.floor,
     "whole__": _whole(int),
     "fill__": _fill,
     "part__": _Part,
@@ -311,6 +313,8 @@ class _Rewriting(ast.NodeTransformer):
             first, second = self._twice(self.visit(node.args[0]))
             computed = ast.IfExp(_at_least_zero(first), _call("root__", second), ast.Constant(_NAN))
             return ast.copy_location(computed, node)
+        if called is math.floor and len(node.args) == 1:
+            return self._floor(node)
         name = node.func.id if isinstance(node.func, ast.Name) and node.func.id not in self._outside else ""
         if name in ("min", "max") and len(node.args) == 2:
             return self._least_or_most(node, ast.Lt() if name == "min" else ast.Gt())
@@ -323,6 +327,12 @@ class _Rewriting(ast.NodeTransformer):
         if name == "int" and len(node.args) == 1:
             node.func = ast.Name("whole__", ast.Load())
         return node
+
+    def _floor(self, node: ast.Call) -> ast.expr:
+        """As _whole(), without a call."""
+        first, second = self._twice(self.visit(node.args[0]))
+        within = ast.Compare(ast.Constant(-_MOST), [ast.Lt(), ast.Lt()], [first, ast.Constant(_MOST)])
+        return ast.copy_location(ast.IfExp(within, _call("floor__", second), ast.Constant(_LEAST)), node)
 
     def _least_or_most(self, node: ast.Call, better: ast.cmpop) -> ast.expr:
         """The second argument where it is better, else the first; numbers that are none never are."""

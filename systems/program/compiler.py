@@ -103,6 +103,7 @@ def _asked() -> Compile:
 
 VARIABLE = "PINJOINT_COMPILE"
 LOADING = 0.2  # s of interpreting after which it is sooner to load the compiled program
+LARGE = 300  # rods or discs from which on one step, interpreted, takes as long as a picture
 LONGEST_CALL = 0.05  # s, interpreted
 BEFORE_COMPILING = 0.5  # s of interpreting, for each that compiling is expected to take
 SECONDS_PER_BYTE = (
@@ -192,6 +193,19 @@ class GeneratedModule:
             self._lose_patience()
         return self._form
 
+    def begin(self, elements: int) -> None:
+        """Choose the form for a model of so many elements: a large one would not get far interpreted."""
+        if elements > LARGE and Choice.compile is Compile.SOON:
+            self.load_or_tell()
+
+    def load_or_tell(self) -> None:
+        """Go on with machine code, or else interpreted, and tell why."""
+        try:
+            self.load()
+        except Exception as error:  # numba raises many kinds
+            self._patience = math.inf
+            _tell(f"{self.name} goes on interpreted, and slower: it cannot be compiled ({error}).")
+
     @property
     def is_loaded(self) -> bool:
         """True if machine code runs."""
@@ -233,11 +247,7 @@ class GeneratedModule:
             return
         self._patience = 0.0 if self.is_compiled() else BEFORE_COMPILING * self.expected_seconds()
         if self.spent > self._patience:
-            try:
-                self.load()
-            except Exception as error:
-                self._patience = math.inf
-                _tell(f"{self.name} goes on interpreted, and slower: it cannot be compiled ({error}).")
+            self.load_or_tell()
 
     def is_compiled(self) -> bool:
         """True if another process, or an earlier one, has compiled all of it."""

@@ -83,7 +83,9 @@ class Program:
         self.bind()
         present = weakref.ref(self)  # the module lives longer
         self.module.warm_up = lambda: program._call_all() if (program := present()) is not None else None
-        self._call_all()
+        self.module.begin(self._rows("rods"))
+        if not self.module.is_loaded:
+            self._call_all()
         self.compile_seconds = time.perf_counter() - started
 
     def load(self) -> None:

@@ -41,7 +41,7 @@ from systems.collision.system import REST_HEIGHT
 from systems.program.compiler import GeneratedModule, entries_to
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
-REPORTED_AT_ONCE = 4096  # impacts; fetched before more are reported
+REPORTED_AT_ONCE = 512  # impacts; fetched before more are reported
 WORK_AT_ONCE = 2**22  # discs × events, after which a kernel returns, so that Python can heed Ctrl+C
 MORE_PATIENCE = 64  # calm steps between two searches for the equilibrium of a pile
 

@@ -58,6 +58,8 @@ class Flight:
         self.unbalanced = np.zeros((model.particles.count, 2))
         self._impacts = impacts
         self._pull = pull
+        for module in (EVENTS, HORIZONS):
+            module.begin(model.particles.count)
         self.bind()
         self.compile_seconds = time.perf_counter() - started
 
