@@ -19,7 +19,7 @@ from components.model import Model
 from components.obstacles import obstacles
 from systems.base import REVIEW_INTERVAL, Event, StopReason
 from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc, Reason
-from systems.collision.free.discs import Discs
+from systems.collision.free.discs import EVENTS, HORIZONS, Discs
 from systems.collision.impacts import MOST_KEPT, Impacts
 from systems.entries import Measure
 
