@@ -41,7 +41,7 @@ from systems.collision.kernels.time_of_impact import (
     is_shared_end,
     nearest,
     place_noise,
-    relative_motion,
+    relative_state,
     rest_speed,
     touch_speed,
     velocity_at,
@@ -153,7 +153,7 @@ def _dismiss(count, group):
 def _link(i, j, force, touching, discs, group, time):
     """Add a contact to the group; a contact for which there is no room is only counted."""
     if touching < group.links.shape[0]:
-        dx, dy, _, _, _, _ = relative_motion(discs, i, j, time)
+        dx, dy, _, _ = relative_state(discs, i, j, time)
         dx, dy, rounded = nearest(dx, dy, j, discs)
         distance = math.sqrt(dx * dx + dy * dy)
         group.links[touching, 0], group.links[touching, 1] = group.place[i], group.place[j]
@@ -210,7 +210,7 @@ def _is_new(m, b, discs, group):
 @compiled
 def _touch(a, b, discs, constraints, now):
     """True if two discs touch, may collide and have no persistent contact."""
-    dx, dy, _, _, _, _ = relative_motion(discs, a, b, now)
+    dx, dy, _, _ = relative_state(discs, a, b, now)
     if is_shared_end(dx, dy, b, discs):
         return False
     dx, dy, _ = nearest(dx, dy, b, discs)
@@ -227,7 +227,7 @@ def _gather_persistent(m, count, touching, discs, constraints, group, now):
     entry = constraints.first_persistent[a]
     while entry != NONE:
         b = constraints.persistent[entry, Entry.OTHER]
-        dx, dy, _, _, _, _ = relative_motion(discs, a, b, now)
+        dx, dy, _, _ = relative_state(discs, a, b, now)
         if _is_new(m, b, discs, group) and not is_shared_end(dx, dy, b, discs):
             if group.place[b] == NONE:
                 _admit(b, count, discs, group, now)

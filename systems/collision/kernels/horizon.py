@@ -29,6 +29,7 @@ from systems.collision.kernels.time_of_impact import (
     nearest,
     pull_noise,
     relative_motion,
+    relative_state,
     speed_noise,
 )
 
@@ -87,7 +88,7 @@ def _on_bent_paths(time, i, j, start, reach, discs):
     """
     most = LARGEST_CORRECTION * (min(discs[i, Disc.STEP], discs[j, Disc.STEP]) - start)
     for _ in range(MOST_CORRECTIONS):
-        dx, dy, vx, vy, _, _ = relative_motion(discs, i, j, time)
+        dx, dy, vx, vy = relative_state(discs, i, j, time)
         dx, dy, _ = nearest(dx, dy, j, discs)
         distance = math.sqrt(dx * dx + dy * dy)
         rate = (dx * vx + dy * vy) / distance if distance > 0.0 else 0.0

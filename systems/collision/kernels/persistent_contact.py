@@ -27,7 +27,7 @@ from systems.collision.kernels.time_of_impact import (
     is_straight,
     passing,
     place_noise,
-    relative_motion,
+    relative_state,
     speed_noise,
     touch_speed,
 )
@@ -260,7 +260,7 @@ def _stay(c, discs, group, numbers):
     i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
     length = math.hypot(discs[j, Disc.TX], discs[j, Disc.TY])
     tx, ty = discs[j, Disc.TX] / length, discs[j, Disc.TY] / length
-    x, y, _, _, _, _ = relative_motion(discs, i, j, numbers[Number.NOW])
+    x, y, _, _ = relative_state(discs, i, j, numbers[Number.NOW])
     vx, vy = _relative(c, group.other, group)
     ax, ay = _relative(c, group.motion, group)
     return passing(-(x * tx + y * ty), -(vx * tx + vy * ty), -(ax * tx + ay * ty), length, 0.0)

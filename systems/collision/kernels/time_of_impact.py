@@ -55,7 +55,7 @@ def displacement_at(i, discs, time):
 
 @compiled
 def relative_motion(discs, i, j, time):
-    """Position, velocity and acceleration of disc j relative to disc i at a time."""
+    """Position, velocity and acceleration of disc j relative to disc i at a time, on their parabolas."""
     s = time - discs[i, Disc.EPOCH]
     t = time - discs[j, Disc.EPOCH]
     iax, iay, jax, jay = discs[i, Disc.AX], discs[i, Disc.AY], discs[j, Disc.AX], discs[j, Disc.AY]
@@ -66,11 +66,18 @@ def relative_motion(discs, i, j, time):
     dy = (discs[j, Disc.OY] - discs[i, Disc.OY]) + uy
     vx = (jvx + t * jax) - (ivx + s * iax)
     vy = (jvy + t * jay) - (ivy + s * iay)
+    return dx, dy, vx, vy, difference(iax, jax), difference(iay, jay)
+
+
+@compiled
+def relative_state(discs, i, j, time):
+    """Position and velocity of disc j relative to disc i at a time, on their bent paths."""
+    dx, dy, vx, vy, _, _ = relative_motion(discs, i, j, time)
     if discs[i, Disc.STEP] < INFINITY or discs[j, Disc.STEP] < INFINITY:
         ibx, iby, icx, icy = bend(i, discs, time)
         jbx, jby, jcx, jcy = bend(j, discs, time)
         dx, dy, vx, vy = dx + (jbx - ibx), dy + (jby - iby), vx + (jcx - icx), vy + (jcy - icy)
-    return dx, dy, vx, vy, difference(iax, jax), difference(iay, jay)
+    return dx, dy, vx, vy
 
 
 @compiled
