@@ -1,15 +1,21 @@
 """The program: `pinjoint`, or `python -m game`."""
 
+import os
 import sys
 import warnings
 
 from game.interrupts import ended_with, quietly_interrupted
+from game.version import __version__
 
 
 def main() -> int:
     """Run the command line; returns the exit status."""
     if not sys.warnoptions:  # they are for those who write programs; -W shows them
         warnings.simplefilter("ignore")
+    if sys.argv[1:] == ["--version"]:
+        print(f"pinjoint {__version__}")
+        return 0
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the matrices are small, and waiting threads take 0.1 s
     with quietly_interrupted():
         from game.commands import command_line
         from game.commands.progress import told

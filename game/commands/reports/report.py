@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from components.mistake import Mistake
 from components.model import Model
 from components.settings import AUTOMATIC
 from game.commands.output import ResultError
@@ -35,7 +36,7 @@ MOD_FAILED = "mod failed"
 FOUND = ("equilibrium", "at rest", "time reached")  # statuses of a run that found what was asked for
 
 
-class AnalysisError(ValueError):
+class AnalysisError(Mistake, ValueError):
     """An analysis that a model cannot have; the message says why and the remedy."""
 
 
