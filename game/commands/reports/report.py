@@ -26,9 +26,9 @@ from systems.physics.automatic import AFFORDABLE
 from systems.run.measured_error import IN_A_COMMAND
 from systems.run.simulation import Simulation
 from systems.run.watch import watched
+from systems.statics.events import Event, event_record
 
-if TYPE_CHECKING:  # they import scipy
-    from systems.statics.events import Event
+if TYPE_CHECKING:  # it imports scipy
     from systems.statics.settle import StaticState
 
 INTERRUPTED = "interrupted"  # the status of a run that Ctrl+C ended
@@ -206,8 +206,6 @@ def _state(simulation: Simulation) -> State:
 
 
 def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
-    from systems.statics.events import event_record
-
     return [event_record(model, event) for event in events]
 
 
