@@ -375,10 +375,16 @@ class Structure:
         starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
         return kept, slot, (places % self.size).astype(np.int32), starts
 
-    def compatibility(self, response: Response, rows: Rows | slice = slice(None)) -> csc_matrix:
-        """Elongations of (some) rods from the unknowns, (rods, N); its transpose is the equilibrium matrix."""
-        matrix = compatibility(self.ends[rows], response.axis[rows], len(self.position))
-        return matrix[:, self.index].tocsc()
+    def compatibility(self, response: Response) -> csc_matrix:
+        """Elongations of rods from the unknowns, (rods, N); its transpose is the equilibrium matrix."""
+        return compatibility(self.ends, response.axis, len(self.position))[:, self.index].tocsc()
+
+    def elongations(self, response: Response, rows: Rows) -> Array:
+        """Some rows of the compatibility matrix in full, (k, N)."""
+        matrix = np.zeros((len(rows), *self.unknown.shape))
+        for sign, end in zip((-1.0, 1.0), self.ends[rows].T, strict=True):
+            matrix[np.arange(len(rows)), end] = sign * response.axis[rows]
+        return matrix.reshape(len(rows), -1)[:, self.index]
 
 
 def compatibility(ends: Rows, axis: Array, particles: int) -> csc_matrix:
