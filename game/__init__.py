@@ -41,8 +41,9 @@ def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'game' has no attribute '{name}'")
     with quietly_interrupted():
+        import_module("game.included")  # registers what is written as mods are
         return getattr(import_module(_HOMES[name]), name)
 
 
-if not is_program():  # whose commands load what they need
-    import_module("game.included")  # whatever part of the program a script begins with, models can hold all
+if not is_program():  # which loads what it needs
+    __getattr__("Session")  # so that models can hold all, whatever part of the program a script begins with

@@ -21,7 +21,6 @@ from components.suggestions import missing
 from components.table import Table
 from components.view import View
 from components.wording import quoted
-from game import included  # noqa: F401 (registers what is written as mods are)
 from game.documents import models
 from game.documents.open_documents import ModelFile, Source, file_of
 from game.editor.actions import ACTIONS, WHILE_DRAWING

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from game import included  # noqa: F401 (before any mod of others)
 from game.commands import COMMANDS
 from game.commands.arguments import Parser
 from game.documents.library import data_folder
