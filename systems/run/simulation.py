@@ -36,9 +36,10 @@ from systems.schedule import Plan, Schedule
 # Of the clock, as a run begins.
 CHOSEN = ("step_size", "guard_energy", "largest_imbalance", "initial_energy", "potential_reference")
 
+SAME = f"each {REVIEW_INTERVAL} steps lead back to the same state"
 STUCK = (
-    f"Each {REVIEW_INTERVAL} steps lead back to the same state, though forces are not balanced or the integration took"
-    " the motion: what moves alternates, or is lost in rounding. Choose another time step."
+    f"{SAME.capitalize()}, though forces are not balanced or the integration took the motion: what moves alternates,"
+    " or is lost in rounding. Choose another time step."
 )
 
 ENDS = (StopReason.REST, StopReason.DIVERGED)  # of a run
@@ -196,8 +197,8 @@ class Simulation:
 
     def wake(self) -> None:
         """Let the run go on although it was at rest or had diverged, since something acts on the model from outside."""
-        if self.model.clock.rested is not None:
-            self.model.writable("clock.rested")[0] = math.nan
+        if self.model.clock.at_rest:
+            self.model.writable("clock.at_rest")[0] = False
         self.reason, self.message = StopReason.DONE, ""
 
     def _rests_still(self) -> bool:
@@ -217,11 +218,9 @@ class Simulation:
         self.armed, self._account.before_edit = armed, before_edit
         self._sleep.forget()
         self._recovery.forget()
-        rested = self.model.clock.rested if armed else None
-        if rested is None:
-            self.reason, self.message = StopReason.DONE, ""
-        else:
-            self.reason, self.message = StopReason.REST, at_rest_since(rested)
+        self.reason, self.message = StopReason.DONE, ""
+        if armed and self.model.clock.at_rest:
+            self.reason, self.message = StopReason.REST, at_rest_since(self.moved_until)
 
     def start_anew(self) -> None:
         """Begin a new run with a state from before edits."""
@@ -312,8 +311,8 @@ class Simulation:
         """React to the reason for which the stepper returned."""
         self.reason = StopReason.DONE if reason is StopReason.EVENT else reason
         if reason is StopReason.REST:
-            rested = self.model.writable("clock.rested")[0] = self.model.clock.time
-            self.message = at_rest_since(rested)
+            self.model.writable("clock.at_rest")[0] = True
+            self.message = at_rest_since(self.model.clock.time)
         elif reason is StopReason.REVIEW:
             self._review()
         elif self.reason is not StopReason.DONE:
@@ -348,6 +347,9 @@ class Simulation:
             lost, damped = energy.imbalance, energy.dissipated_damping
             if rests_unseen(self.program.measures, lost, damped, clock.energy_scale):
                 self._heed(StopReason.REST)  # all that happened was lost in rounding
+                return
+            if self.step_size.unstable:
+                self.reason, self.message = StopReason.DIVERGED, self._recovery.give_up(SAME)
                 return
             if not self.warning:
                 self.note = STUCK
@@ -533,8 +535,10 @@ class Simulation:
     @property
     def moved_until(self) -> float:
         """The time (s) up to which steps were taken; at rest, time may pass without any."""
-        clock = self.model.clock
-        return clock.time if clock.rested is None else clock.rested
+        clock, departure = self.model.clock, self.model.clock.departure
+        if departure is None or not clock.at_rest:
+            return clock.time
+        return float(departure.state.columns["clock.time"][0])
 
     @property
     def residual(self) -> float:

@@ -58,12 +58,12 @@ def test_undo_comes_back_to_rest_at_once(made: str | Model) -> None:
     session, left = _at_rest(made), _at_rest(made)
     session.particles["B"].force = (1.0, 2.0)
     session.run(time=0.01)
-    assert session.model.clock.rested is None
+    assert not session.model.clock.at_rest
     session.undo()
     session.undo()
     _assert_rests(session, left)
     session.undo()
-    assert session.model.clock.rested is None
+    assert not session.model.clock.at_rest
 
 
 def test_a_restart_does_not_rest() -> None:
@@ -77,7 +77,11 @@ def test_a_restart_does_not_rest() -> None:
 
 @pytest.mark.parametrize(
     ("section", "change"),
-    [("particles", {"force": [0.5, 0.3]}), ("particles", {"velocity": [0.01, 0.0]}), ("rods", {"stiffness": 9e4})],
+    [
+        ("particles", {"force": [0.5, 0.3]}),
+        ("particles", {"velocity": [0.01, 0.0]}),
+        ("rods", {"stiffness": 9e4}),
+    ],
 )
 def test_a_file_changed_by_hand_goes_on(section: str, change: dict[str, Any]) -> None:
     saved = document(_at_rest("isostatic").model)
@@ -86,7 +90,7 @@ def test_a_file_changed_by_hand_goes_on(section: str, change: dict[str, Any]) ->
             element |= change
     session = Session.open(saved)
     assert session.run(steps=1) == "time reached"
-    assert session.model.clock.rested is None
+    assert not session.model.clock.at_rest
 
 
 def test_a_load_added_by_hand_lets_the_run_go_on() -> None:
