@@ -87,6 +87,9 @@ def _checked(method: Callable[..., Any]) -> Callable[..., Any]:
 def _maker(declared: Any) -> Made:
     """What checks values of a type."""
     origin, arguments = get_origin(declared), get_args(declared)
+    meant = getattr(origin or declared, "__value__", None)  # of an alias, as NDArray is since numpy 2.5
+    if meant is not None:
+        return _maker(meant[arguments] if arguments else meant)
     if declared in (Any, object, None) or isinstance(declared, TypeVar):
         return _anything
     if declared in _NUMBERS:
