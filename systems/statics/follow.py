@@ -279,7 +279,7 @@ class Path:
         far = LARGEST_MOVE / max(self.structure.move(tangent.rate, point.response.reach), 1e-300)
         nearest = min(self._until_event(point, tangent), 0.99 * far * self.stretch(tangent))
         trial, failed, shares = min(increment, nearest), False, 0
-        while trial > SMALLEST:
+        while trial > min(SMALLEST, HALF * nearest):
             found = self.attempt(point, tangent, trial)
             if isinstance(found, tuple):
                 return Step(*found, trial, increment if failed else 2.0 * increment)
@@ -453,8 +453,9 @@ class Path:
 
     def _is_on(self, start: Point, piece: Tangent, found: Point) -> bool:
         """True if the rods at a point are on the pieces of their laws that a tangent at the start is on."""
-        difference = found.response.axial_force - self._on_piece(start, piece, found.response).axial_force
-        return largest(difference) <= 4.0 * ROUND_OFF * self.largest_force(found.response)
+        response = found.response
+        difference = np.abs(response.axial_force - self._on_piece(start, piece, response).axial_force)
+        return bool((difference <= 4.0 * ROUND_OFF * self.largest_force(response) + response.round_off).all())
 
     def _new_ends(self, point: Point, found: Point) -> Array:
         """1 or −1 for the rods that have gone beyond the upper or lower end of the piece that they were on, else 0."""
@@ -474,8 +475,9 @@ class Path:
             return 1.0
         structure, branches, new = self.structure, self.branches(point.response), ends != 0.0
         edge, sign = np.where(ends > 0.0, branches.high, branches.low)[new], ends[new]
-        size = np.where(edge == 0.0, self.largest_force(found.response), np.abs(edge))
-        near = AT_LIMIT * size + 4.0 * ROUND_OFF * (structure.stiffness * np.abs(found.response.strain))[new]
+        force = min(self.largest_force(point.response), self.largest_force(found.response))
+        size = np.where(edge == 0.0, force, np.abs(edge))
+        near = AT_LIMIT * size + found.response.round_off[new]
         stiffness = (structure.stiffness / structure.rest_length)[new]
         margin = np.maximum(sign * (edge - branches.force[new]) - 0.5 * near, 0.0)
         linear = sign * stiffness * structure.elongation_rate(dt * tangent.rate, point.response)[new]
