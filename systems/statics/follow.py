@@ -135,13 +135,14 @@ class Path:
 
     # --- directions --------------------------------------------------------------------------------
 
-    def tangent(self, point: Point, onward: Array | None = None, before: Tangent | None = None) -> Tangent:
+    def tangent(self, point: Point, last: Point | None = None, before: Tangent | None = None) -> Tangent:
         """The direction in which the path goes on from a point.
 
-        onward: the last change of the unknowns; before: the tangent there. Of the rods at the end of a piece of
-        their law, those give way whose elongation goes on outward.
+        last: the point before it; before: the tangent there. Of the rods at the end of a piece of their law, those
+        give way whose elongation goes on outward.
         """
         response, branches = point.response, self.branches(point.response)
+        onward = None if last is None else self._onward(last, point)
         limited = branches.outward != 0.0
         kept = before.soft & limited if before is not None else np.zeros_like(limited)
         found = self._direction(response, branches, kept, onward)
@@ -150,6 +151,15 @@ class Path:
         if self.passes_limits and onward is not None:
             return self._onward_tangent(response, branches, kept, onward)
         return self._stable_tangent(response, branches, kept, onward)
+
+    def _onward(self, last: Point, point: Point) -> Array:
+        """What `_goes_on` compares directions with: the last change of the elongations, or of the unknowns.
+
+        The change of places turns long rods, which to first order looks like an elongation that is none.
+        """
+        if self.passes_limits:
+            return point.response.elongation - last.response.elongation
+        return self.structure.gather(point.displacement - last.displacement)
 
     def _onward_tangent(self, response: Response, branches: Branches, guess: Flags, onward: Array) -> Tangent:
         """Of all directions, with a growing or a falling load, the one most like the last."""
@@ -169,10 +179,11 @@ class Path:
                     best, likeness = found, like
         return best
 
-    def _likeness(self, response: Response, branches: Branches, motion: Array, other: Array) -> float:
-        """The cosine of the angle between two motions, as measured by the forces that they cause in elastic rods."""
+    def _likeness(self, response: Response, branches: Branches, motion: Array, onward: Array) -> float:
+        """The cosine of the angle between a motion and changes of elongation, as measured by the forces that they cause
+        in elastic rods."""
         stiffness = np.where(branches.slack, 0.0, self.structure.stiffness / self.structure.rest_length)
-        one, two = (self.structure.elongation_rate(each, response) for each in (motion, other))
+        one, two = self.structure.elongation_rate(motion, response), onward
         size = math.sqrt(float(stiffness @ one**2) * float(stiffness @ two**2))
         return float(stiffness @ (one * two)) / size if size > 0.0 else 0.0
 
@@ -338,8 +349,7 @@ class Path:
         share = self._share(point, tangent, found, dt)
         if share < 1.0:
             return share
-        change = self.structure.gather(found.displacement - point.displacement)
-        return found, self.tangent(found, change, tangent)
+        return found, self.tangent(found, point, tangent)
 
     def _turned_back(self, point: Point, tangent: Tangent, found: Point, following: Tangent) -> bool:
         """True if the path turns back though stability is not lost.
