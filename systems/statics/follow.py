@@ -80,6 +80,17 @@ class Tangent:
 
 
 @dataclass(frozen=True)
+class Change:
+    """From one point to the next: moved, of the unknowns (N,); elongation, of the rods (rods,), in m.
+
+    The latter is not what the former makes to first order, which takes the turning of long rods for more.
+    """
+
+    moved: Array
+    elongation: Array
+
+
+@dataclass(frozen=True)
 class Step:
     """An accepted increment: the point it led to, the tangent there, its size, and the size to try next."""
 
@@ -142,7 +153,7 @@ class Path:
         give way whose elongation goes on outward.
         """
         response, branches = point.response, self.branches(point.response)
-        onward = None if last is None else self._onward(last, point)
+        onward = None if last is None else self._change(last, point)
         limited = branches.outward != 0.0
         kept = before.soft & limited if before is not None else np.zeros_like(limited)
         found = self._direction(response, branches, kept, onward)
@@ -152,16 +163,12 @@ class Path:
             return self._onward_tangent(response, branches, kept, onward)
         return self._stable_tangent(response, branches, kept, onward)
 
-    def _onward(self, last: Point, point: Point) -> Array:
-        """What `_goes_on` compares directions with: the last change of the elongations, or of the unknowns.
+    def _change(self, last: Point, point: Point) -> Change:
+        """From one point to the next."""
+        moved = self.structure.gather(point.displacement - last.displacement)
+        return Change(moved, point.response.elongation - last.response.elongation)
 
-        The change of places turns long rods, which to first order looks like an elongation that is none.
-        """
-        if self.passes_limits:
-            return point.response.elongation - last.response.elongation
-        return self.structure.gather(point.displacement - last.displacement)
-
-    def _onward_tangent(self, response: Response, branches: Branches, guess: Flags, onward: Array) -> Tangent:
+    def _onward_tangent(self, response: Response, branches: Branches, guess: Flags, onward: Change) -> Tangent:
         """Of all directions, with a growing or a falling load, the one most like the last."""
         elastic = self._direction(response, branches, np.zeros_like(guess), onward)
         limited, matrix, growth = self._limits(response, branches, elastic)
@@ -179,16 +186,19 @@ class Path:
                     best, likeness = found, like
         return best
 
-    def _likeness(self, response: Response, branches: Branches, motion: Array, onward: Array) -> float:
-        """The cosine of the angle between a motion and changes of elongation, as measured by the forces that they cause
-        in elastic rods."""
+    def _likeness(self, response: Response, branches: Branches, rate: Array, onward: Change) -> float:
+        """How much a direction goes on like the last change: the cosine of the angle between them, as measured by the
+        forces that they cause in elastic rods, and the cosine as measured by the ways of particles.
+
+        The former tells yielding from unloading, and fails where forces hardly change; the latter where they turn.
+        """
         stiffness = np.where(branches.slack, 0.0, self.structure.stiffness / self.structure.rest_length)
-        one, two = self.structure.elongation_rate(motion, response), onward
-        size = math.sqrt(float(stiffness @ one**2) * float(stiffness @ two**2))
-        return float(stiffness @ (one * two)) / size if size > 0.0 else 0.0
+        elongation = self.structure.elongation_rate(rate, response)
+        by_forces = _cosine(elongation, onward.elongation, stiffness)
+        return by_forces + _cosine(rate, onward.moved, self.structure.weight)
 
     def _stable_tangent(
-        self, response: Response, branches: Branches, guess: Flags, onward: Array | None
+        self, response: Response, branches: Branches, guess: Flags, onward: Change | None
     ) -> Tangent:
         """The direction in which t grows and the equilibria are stable, if there is one."""
         elastic = self._direction(response, branches, np.zeros_like(guess), onward)
@@ -205,7 +215,7 @@ class Path:
         return replace(self._direction(response, branches, growth > 0.0, onward), consistent=False)
 
     def _direction(
-        self, response: Response, branches: Branches, giving: Flags, onward: Array | None
+        self, response: Response, branches: Branches, giving: Flags, onward: Change | None
     ) -> Tangent:
         """The direction if these of the rods at the end of a piece give way."""
         structure = self.structure
@@ -216,11 +226,11 @@ class Path:
         return Tangent(rate, flowing, slack, factor, 1.0 if forward else -1.0)
 
     def _goes_on(
-        self, response: Response, branches: Branches, factor: Factor, rate: Array, onward: Array
+        self, response: Response, branches: Branches, factor: Factor, rate: Array, onward: Change
     ) -> bool:
         """True if a growing load leads onward."""
         if not self.passes_limits:
-            return factor.definite or float(rate @ onward) >= 0.0
+            return factor.definite or float(rate @ onward.moved) >= 0.0
         like = self._likeness(response, branches, rate, onward)
         return like > 0.0 or (like == 0.0 and factor.definite)
 
@@ -263,7 +273,7 @@ class Path:
         return limited, 0.5 * (matrix + matrix.T), growth
 
     def _soften_by_trial(
-        self, response: Response, branches: Branches, soft: Flags, onward: Array | None
+        self, response: Response, branches: Branches, soft: Flags, onward: Change | None
     ) -> Tangent:
         """The tangent by fixed-point iteration of the set of rods that give way: large structures, limit points."""
         for _ in range(ACTIVE_SET_ROUNDS):
@@ -522,3 +532,9 @@ class Path:
                 increment = middle
                 beyond = found[1] if isinstance(found, tuple) else beyond
         return point, tangent, beyond
+
+
+def _cosine(one: Array, other: Array, weight: Array) -> float:
+    """Of the angle between two vectors, with so much weight on each entry; 0 if one of them is 0."""
+    size = math.sqrt(float(weight @ one**2) * float(weight @ other**2))
+    return float(weight @ (one * other)) / size if size > 0.0 else 0.0
