@@ -264,7 +264,8 @@ class Structure:
         """By the sizes of what elastic strains are sums of, which may cancel: displacements, misfits, plastic strains."""
         moved = np.abs(displacement).sum(axis=1)
         summed = (moved[self.ends].sum(axis=1) + np.abs(self.misfit)) / self.rest_length
-        return 4.0 * ROUND_OFF * self.stiffness * (summed + np.abs(plastic_strain))
+        round_off: Array = 4.0 * ROUND_OFF * self.stiffness * (summed + np.abs(plastic_strain))
+        return round_off
 
     def _stretch(self, change: Array) -> tuple[Array, Array, Array]:
         """Changes of length from the original ones, unit vectors and lengths of the rods.
