@@ -36,6 +36,9 @@ SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
 NARROWINGS = 42  # halvings that locate a loss of stability
 FEW_NARROWINGS = 14  # the same in structures larger than EXACT_EVENTS
 ACTIVE_SET_ROUNDS = 12
+WAYS = (
+    1e-12  # weight of ways beside elongations, in energy, where directions are compared: ways decide below 1e-6
+)
 INDIFFERENT = 1e-11  # of the largest rate of elongation: a smaller one is round-off
 
 
@@ -187,15 +190,17 @@ class Path:
         return best
 
     def _likeness(self, response: Response, branches: Branches, rate: Array, onward: Change) -> float:
-        """How much a direction goes on like the last change: the cosine of the angle between them, as measured by the
-        forces that they cause in elastic rods, and the cosine as measured by the ways of particles.
+        """The cosine of the angle between a direction and the last change, as measured by the forces that they cause in
+        elastic rods, and where those hardly change, by the ways of particles.
 
-        The former tells yielding from unloading, and fails where forces hardly change; the latter where they turn.
+        The former tells yielding from unloading, which may turn the ways back.
         """
-        stiffness = np.where(branches.slack, 0.0, self.structure.stiffness / self.structure.rest_length)
         elongation = self.structure.elongation_rate(rate, response)
-        by_forces = _cosine(elongation, onward.elongation, stiffness)
-        return by_forces + _cosine(rate, onward.moved, self.structure.weight)
+        elastic = np.where(branches.slack, 0.0, self.structure.stiffness / self.structure.rest_length)
+        weight = np.concatenate([elastic, WAYS * self.structure.weight])
+        one, other = np.concatenate([elongation, rate]), np.concatenate([onward.elongation, onward.moved])
+        size = math.sqrt(float(weight @ one**2) * float(weight @ other**2))
+        return float(weight @ (one * other)) / size if size > 0.0 else 0.0
 
     def _stable_tangent(
         self, response: Response, branches: Branches, guess: Flags, onward: Change | None
@@ -532,9 +537,3 @@ class Path:
                 increment = middle
                 beyond = found[1] if isinstance(found, tuple) else beyond
         return point, tangent, beyond
-
-
-def _cosine(one: Array, other: Array, weight: Array) -> float:
-    """Of the angle between two vectors, with so much weight on each entry; 0 if one of them is 0."""
-    size = math.sqrt(float(weight @ one**2) * float(weight @ other**2))
-    return float(weight @ (one * other)) / size if size > 0.0 else 0.0
