@@ -29,7 +29,8 @@ def show(context: Context) -> None:
     view.heading = scene.heading
     view.shape = context.document.shapes.shown
     pages = pages_of_help(context) if view.help else []
-    view.keys, view.more_keys = pages[view.help - 1] if pages else [], view.help < len(pages)
+    view.keys = pages[min(view.help, len(pages)) - 1] if pages else []
+    view.more_keys = view.help < len(pages)
     _show_readouts(context)
     view.status = Status(
         time=context.time,
@@ -42,11 +43,9 @@ def show(context: Context) -> None:
 
 
 def pages_of_help(context: Context) -> list[list[tuple[str, str]]]:
-    """Pages of the keys of the active scene; view.help is kept to their number."""
-    scene, view = context.scenes.active, context.view
-    pages = help_pages(help_lines(scene.name), scene.helped(context), view.pixel_ratio)
-    view.help = min(view.help, len(pages))
-    return pages
+    """Pages of the keys of the active scene; where view.help is more than their number, the last one is shown."""
+    scene = context.scenes.active
+    return help_pages(help_lines(scene.name), scene.helped(context), context.view.pixel_ratio)
 
 
 def _show_readouts(context: Context) -> None:

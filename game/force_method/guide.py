@@ -254,7 +254,7 @@ class Guide:
 
 def view_like(view: View) -> View:
     """The view of a set in a window with this view."""
-    return View(all_diagrams=view.all_diagrams, legend=False, pixel_ratio=view.pixel_ratio)
+    return View(all_diagrams=view.all_diagrams, legend=False, pixel_ratio=view.pixel_ratio, fitted=True)
 
 
 def elastic_copy(model: Model) -> Model:

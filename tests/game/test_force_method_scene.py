@@ -285,6 +285,38 @@ def test_the_wheel_zooms_before_the_first_picture_as_after_it() -> None:
     assert cameras[0] == cameras[1]
 
 
+@pytest.mark.parametrize("size", [(240, 900), (320, 240), (1000, 700)])
+def test_pictures_and_time_between_inputs_move_no_camera(size: tuple[int, int]) -> None:
+    cameras = []
+    for drawn in (True, False):
+        session = Session.open("hyperstatic")
+        session.resize(*size)
+        for key in ("k", "t", "wheel up", "t", "i"):
+            session.press(key, (100.0, 120.0))
+            if drawn:
+                session.frame(0.1)
+                assert session.stages
+        scene = session.scenes.active
+        assert isinstance(scene, ForceMethod)
+        cameras.append([(camera.centre, camera.scale) for camera in scene.cameras(session)])
+    assert cameras[0] == cameras[1]
+
+
+def test_what_a_person_looks_at_stays_when_the_message_becomes_shorter() -> None:
+    session = Session.open("hyperstatic")
+    session.resize(240, 900)
+    session.press("k")
+    session.press("wheel up", (100.0, 200.0))
+    scene = session.scenes.active
+    assert isinstance(scene, ForceMethod)
+    before = scene.cameras(session)[0]
+    looked_at, room = (before.centre, before.scale), before.viewport
+    session.press("t")  # says less than the task does
+    after = scene.cameras(session)[0]
+    assert after.viewport != room
+    assert (after.centre, after.scale) == looked_at
+
+
 @pytest.mark.parametrize("size", [(640, 480), (1000, 700), (1920, 1080)])
 def test_a_long_table_is_scrolled_with_the_wheel(size: tuple[int, int]) -> None:
     session = Session.open("tower")

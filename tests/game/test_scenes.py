@@ -341,3 +341,18 @@ def test_escape_puts_the_list_of_keys_away_and_does_nothing_else(keys: tuple[str
     session.press("escape")
     session.update_view()
     assert (session.view.help, session.scene, session.gesture) == (0, scene, gesture)
+
+
+def test_the_page_of_keys_does_not_depend_on_pictures_between_inputs() -> None:
+    pages = []
+    for drawn in (True, False):
+        session = Session.open("isostatic")
+        for size, presses in (((320, 240), 2), ((1920, 1080), 0), ((320, 240), 1)):
+            session.resize(*size)
+            for _ in range(presses):
+                session.press("f1")
+            if drawn:
+                session.update_view()
+        session.update_view()
+        pages.append((session.view.help, session.view.keys))
+    assert pages[0] == pages[1]

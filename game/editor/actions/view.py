@@ -64,7 +64,8 @@ def _next_theme(context: Context, pixel: Vector) -> None:
 @action("toggle help", while_drawing=True)
 def _toggle_help(context: Context, pixel: Vector) -> None:
     """Show the next page of keys; after the last, none."""
-    context.view.help = (context.view.help + 1) % (len(pages_of_help(context)) + 1)
+    count = len(pages_of_help(context))
+    context.view.help = (min(context.view.help, count) + 1) % (count + 1)
 
 
 @action("toggle full screen", while_drawing=True)

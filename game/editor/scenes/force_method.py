@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.model import Model
-from components.view import Page, Status, View, drawn_positions
+from components.view import Page, Status, View
 from game.editor.context import Context, Scene
 from game.force_method import PARTS, words
 from systems.base import Phase, System
@@ -49,7 +49,7 @@ class ForceMethod(Scene):
         self._mechanism: Mechanism | None = None  # the whole structure, if it cannot be solved
         self._page, self._page_of, self._first = Page(), -1, 0
         self._blank = Model()
-        self._places = [View(page=Page(), legend=False) for _ in range(3)]
+        self._places = [View(page=Page(), legend=False, fitted=True) for _ in range(3)]
         self._head, self._foot = View(page=Page(), legend=False), View(page=Page(), legend=False)
 
     @property
@@ -176,8 +176,8 @@ class ForceMethod(Scene):
         shown = []
         for index, viewport in places:
             model, view = stages[index]
-            if view.camera.viewport != viewport or view.pixel_ratio != ratio:
-                _place(view, viewport, ratio)
+            _place(view, viewport, ratio)
+            if view.fitted:
                 _fit(model, view)
             view.caption = captions[index]
             shown.append((model, view))
@@ -190,22 +190,28 @@ class ForceMethod(Scene):
         return [view.camera for _, view in self._lay_out(context)]
 
     def zoom(self, context: Context, factor: float, pixel: Vector) -> None:
-        cameras = self.cameras(context)  # places the foot, too, which no picture may have done yet
+        self.finish()
+        stages = self._lay_out(context)  # places the foot, too, which no picture may have done yet
         if self._foot.camera.viewport.contains(pixel):
             last = max(len(self._page.table) - 2, 0)
             self._first = min(max(self._first + (1 if factor < 1.0 else -1), 0), last)
             return
-        under = next((c.viewport for c in cameras if c.viewport.contains(pixel)), cameras[0].viewport)
-        for camera in cameras:
-            v = camera.viewport
-            camera.zoom(factor, (pixel[0] - under.left + v.left, pixel[1] - under.top + v.top))
+        places = [view.camera.viewport for _, view in stages]
+        under = next((place for place in places if place.contains(pixel)), places[0])
+        for (_, view), v in zip(stages, places, strict=True):
+            view.camera.zoom(factor, (pixel[0] - under.left + v.left, pixel[1] - under.top + v.top))
+            view.fitted = False
 
     def pan(self, context: Context, pixels: Vector) -> None:
-        for camera in self.cameras(context):
-            camera.pan(pixels)
+        self.finish()
+        for _, view in self._lay_out(context):
+            view.camera.pan(pixels)
+            view.fitted = False
 
     def fit(self, context: Context) -> None:
+        self.finish()
         for model, view in self._lay_out(context):
+            view.fitted = True
             _fit(model, view)
 
 
@@ -230,12 +236,15 @@ def _place(view: View, viewport: Viewport, ratio: float) -> None:
 
 
 def _fit(model: Model, view: View) -> None:
-    """Show the whole model below or, in a low place, beside the caption, which grows from part to part."""
+    """Show the whole model below or, in a low place, beside the caption, which grows from part to part.
+
+    Around its original positions, so that the picture does not depend on how far frames have moved it.
+    """
     v, u = view.camera.viewport, view.pixel_ratio
     left, above = (v.width // 3, 0) if _is_low(v) else (0, round(min(CAPTION * u, 0.4 * v.height)))
     below = round(min(SCALE * u, 0.1 * v.height))
     within = Viewport(v.left + left, v.top + above, v.width - left, max(v.height - above - below, 1))
-    view.camera.fit(drawn_positions(model), min(MARGIN, 0.2 * v.height / u), within, u)
+    view.camera.fit(model.particles.position, min(MARGIN, 0.2 * v.height / u), within, u)
 
 
 def _readable(place: Viewport, ratio: float) -> bool:
