@@ -422,14 +422,16 @@ class Context:
             return False
         self.history.end_run()
         self.history.begin_run(single=True)
-        self.get_ready()  # so that there is a checkpoint to step back to
-        if steps >= 0:
-            with self.timeline.recording():
-                self.simulation.advance(steps)
-        else:
-            self.timeline.go_to(max(target, self.timeline.first))
-        self.history.end_run()
-        self._go_on()
+        try:
+            self.get_ready()  # so that there is a checkpoint to step back to
+            if steps >= 0:
+                with self.timeline.recording():
+                    self.simulation.advance(steps)
+            else:
+                self.timeline.go_to(max(target, self.timeline.first))
+        finally:
+            self.history.end_run()
+            self._go_on()
         return bool(self.model.clock.steps == target)
 
     def _go_on(self) -> None:

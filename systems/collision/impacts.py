@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from typing import Any
 
 import numpy as np
@@ -19,13 +20,19 @@ _COLUMNS = ("time", "first", "second", "impulse", "energy_lost", "x", "y")
 Column = NDArray[Any]
 
 
+class TooManyImpacts(Exception):
+    """Steps hold more impacts than anybody waits for; those of the call have not happened."""
+
+
 class Impacts:
     """The impacts of a model's run so far, earliest first; going back in time removes the later ones.
 
     time: s. first, second: rows of the two particles; the rows of obstacles, such as walls, follow those of the
     particles. impulse: N·s along the line of centres. energy_lost: J; of a joint impact, a share. x, y: the point of
-    contact, m. Each is an array.
+    contact, m. Each is an array. most_awaited: of free discs in one call, beyond which it raises TooManyImpacts.
     """
+
+    most_awaited = math.inf
 
     def __init__(self, model: Model) -> None:
         self._model = model

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 from components.field import Vector
 from game.editor.actions.editing import nudge
 from game.editor.context import Action, Context, action
+from systems.collision.impacts import TooManyImpacts
 from systems.edit import Refusal
 
 PACE_STEP = 2.0
 FAR = 0.2  # s shown that one press skips
 MOST_WORK = 1_000_000  # steps × elements of one skip, some 20 ms
+MOST_IMPACTS = 1_000_000  # of free discs that the steps of one press may hold, about a second
 MANY = 2000  # elements; the pace that suits larger models takes too long to find
 
 
@@ -45,8 +49,18 @@ def _far(context: Context) -> int:
 
 
 def _step(context: Context, steps: int) -> None:
-    done = context.step(steps)
-    clock = context.model.clock
+    clock, impacts = context.model.clock, context.impacts
+    impacts.most_awaited = MOST_IMPACTS
+    try:
+        done = context.step(steps)
+    except TooManyImpacts:
+        asked = f"{steps} steps hold" if steps > 1 else "One step holds"
+        raise Refusal(
+            f"{asked} more than {MOST_IMPACTS} impacts. Press Space, which lets time pass slowly enough to see them, or"
+            " choose a smaller time step."
+        ) from None
+    finally:
+        impacts.most_awaited = math.inf
     context.notice = f"Step {clock.steps}, t = {clock.time:.6g} s"
     if not done and steps < 0:
         context.notice += ": as far back as steps go. Ctrl+Z takes back what was done here, R restarts."

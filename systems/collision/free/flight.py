@@ -20,7 +20,7 @@ from components.obstacles import obstacles
 from systems.base import REVIEW_INTERVAL, Event, StopReason
 from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc, Reason
 from systems.collision.free.discs import EVENTS, HORIZONS, Discs, state_on
-from systems.collision.impacts import MOST_KEPT, Impacts
+from systems.collision.impacts import MOST_KEPT, Impacts, TooManyImpacts
 from systems.entries import Measure
 
 EVENTS_AT_ONCE = 2**18  # of which the impacts are gathered
@@ -198,21 +198,36 @@ class Flight:
         return 1, StopReason.DONE
 
     def _fly(self, target: float) -> Discs:
-        """Advance the discs and record the impacts, the last ones where there are too many."""
+        """Advance the discs and record the impacts, the last ones where there are too many.
+
+        Where that is interrupted, or the impacts are more than anybody waits for, nothing has happened.
+        """
+        try:
+            discs, parts, happened = self._gathered(target)
+        except BaseException:
+            self._flying = None
+            raise
+        kept = sum(map(len, parts))
+        if happened:
+            self._impacts.record(np.concatenate(parts), happened - kept)
+            self.model.writable("clock.collisions")[0] = self.model.clock.collisions + happened
+        return discs
+
+    def _gathered(self, target: float) -> tuple[Discs, deque[NDArray[np.float64]], int]:
+        """The discs, advanced; their last impacts, in parts; and how many there were. Raises TooManyImpacts."""
         discs, reason = self.discs, Reason.BUSY
         parts: deque[NDArray[np.float64]] = deque()
         kept = happened = 0
         while reason is Reason.BUSY:
+            if happened > self._impacts.most_awaited:
+                raise TooManyImpacts(happened)
             reason, found = discs.advance(target, EVENTS_AT_ONCE)
             columns = (found.time, found.pairs, found.impulse, found.loss, found.point)
             parts.append(np.column_stack(columns))
             kept, happened = kept + len(found), happened + len(found)
             while kept - len(parts[0]) >= MOST_KEPT:
                 kept -= len(parts.popleft())
-        if happened:
-            self._impacts.record(np.concatenate(parts), happened - kept)
-            self.model.writable("clock.collisions")[0] = self.model.clock.collisions + happened
-        return discs
+        return discs, parts, happened
 
     def _steps_until_rest(self, discs: Discs) -> float:
         """In how many steps a check will find everything at rest; infinite if it moves."""
