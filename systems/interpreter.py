@@ -30,10 +30,15 @@ from systems.kernels import plain_function
 
 Interpreted = Callable[..., Any]
 
+
+class NoPlainForm(Exception):
+    """A kernel that cannot be interpreted; the message says what in it, without a full stop."""
+
+
 # --- arithmetic ------------------------------------------------------------------------------------
 
 _NAN, _INFINITE = math.nan, math.inf
-_LEAST, _MOST = -(2**63), 9.2e18  # whole numbers of machine code
+_LEAST, _MOST = -(2**63), 2.0**63  # whole numbers of machine code: from, and less than
 
 
 def _quotient(x: float, y: float) -> float:
@@ -68,8 +73,37 @@ def _whole_power(x: float, n: int) -> float:
     return 1.0 / result if result else _quotient(1.0, result)
 
 
+def _inverse_power(x: float, n: int) -> float:
+    """x to a constant whole power below 0, which raises ZeroDivisionError as compiled."""
+    return 1.0 / _whole_power(x, -n)
+
+
 def _sqrt(x: float) -> float:
     return math.sqrt(x) if x >= 0.0 else _NAN
+
+
+def _root(x: float) -> float:
+    """x ** 0.5 as compiled: not pow() of the C library, but a root."""
+    return math.sqrt(x + 0.0) if x >= 0.0 else _INFINITE if x == -_INFINITE else _NAN
+
+
+def _floor_divided(x: Any, y: Any) -> Any:
+    if y:
+        return _wrapped(x // y)
+    return 0 if isinstance(y, int) else _quotient(x, y)
+
+
+def _remainder(x: Any, y: Any) -> Any:
+    if y:
+        return x % y
+    return 0 if isinstance(y, int) else _NAN
+
+
+def _wrapped(x: Any) -> Any:
+    """A whole number in 64 bits; floats as they are."""
+    if isinstance(x, float) or _LEAST <= x < _MOST:
+        return x
+    return (x + 2**63) % 2**64 - 2**63
 
 
 def _hypot(x: float, y: float) -> float:
@@ -94,8 +128,20 @@ def _quiet(function: Callable[..., float], overflow: float = _INFINITE) -> Calla
     return computed
 
 
-def _log(x: float) -> float:
-    return math.log(x) if x > 0.0 else -_INFINITE if x == 0.0 else _NAN
+def _logarithm(function: Callable[[float], float], pole: float = 0.0) -> Callable[[float], float]:
+    """A logarithm, with the place where it is infinite."""
+    return lambda x: function(x) if x > pole else -_INFINITE if x == pole else _NAN
+
+
+def _sinh(x: float) -> float:
+    try:
+        return math.sinh(x)
+    except OverflowError:
+        return math.copysign(_INFINITE, x)
+
+
+def _atanh(x: float) -> float:
+    return math.atanh(x) if -1.0 < x < 1.0 else _quotient(x, 0.0) if abs(x) == 1.0 else _NAN
 
 
 def _whole(rounding: Callable[[float], int]) -> Callable[[float], int]:
@@ -105,10 +151,6 @@ def _whole(rounding: Callable[[float], int]) -> Callable[[float], int]:
         return rounding(x) if -_MOST < x < _MOST else _LEAST
 
     return converted
-
-
-def _same_sign(x: float, y: float) -> float:
-    return math.copysign(x, y)
 
 
 def _zeros(shape: Any, *_: Any) -> list[Any]:
@@ -129,6 +171,11 @@ def _sum(rows: list[Any], column: int) -> float:
     return total
 
 
+def _rounded(rounding: Callable[[float], int]) -> Callable[[float], float]:
+    """A rounded float, with the sign that it had."""
+    return lambda x: math.copysign(float(rounding(x)), x) if abs(x) < 2.0**52 else x
+
+
 _SAME = {
     name: getattr(math, name) for name in ("copysign", "frexp", "fabs", "isnan", "isinf", "isfinite", "atan")
 }
@@ -138,21 +185,24 @@ _RAISING = (
     "tan",
     "asin",
     "acos",
-    "sinh",
     "cosh",
     "tanh",
     "asinh",
     "acosh",
-    "atanh",
     "fmod",
+    "degrees",
+    "radians",
     "expm1",
 )
 _IN_C: dict[str, Any] = {
     **_SAME,
-    **{name: _quiet(getattr(math, name)) for name in (*_RAISING, "exp", "ldexp", "atan2", "erf")},
+    **{name: _quiet(getattr(math, name)) for name in (*_RAISING, "exp", "exp2", "ldexp", "atan2", "erf")},
     "sqrt": _sqrt,
     "hypot": _hypot,
-    "log": _log,
+    "sinh": _sinh,
+    "atanh": _atanh,
+    **{name: _logarithm(getattr(math, name)) for name in ("log", "log2", "log10")},
+    "log1p": _logarithm(math.log1p, -1.0),
     "pow": _power,
     "floor": _whole(math.floor),
     "ceil": _whole(math.ceil),
@@ -160,8 +210,10 @@ _IN_C: dict[str, Any] = {
     "nextafter": math.nextafter,
 }
 _NUMPY = {
-    "abs": abs, "absolute": abs, "arctan": math.atan, "arctan2": _IN_C["atan2"], "arcsin": _IN_C["asin"],
-    "arccos": _IN_C["acos"], "sign": lambda x: float((x > 0.0) - (x < 0.0)) if x == x else _NAN, "power": _power,
+    "abs": abs, "absolute": abs, "arctan": math.atan, "arctan2": _IN_C["atan2"], "power": _power,
+    **{f"arc{name}": _IN_C[f"a{name}"] for name in ("sin", "cos", "sinh", "cosh", "tanh")},
+    "sign": lambda x: float((x > 0.0) - (x < 0.0)) if x else x, "deg2rad": math.radians, "rad2deg": math.degrees,
+    **{name: _rounded(getattr(math, name)) for name in ("floor", "ceil", "trunc")},
     "minimum": lambda a, b: a if a <= b or a != a else b, "maximum": lambda a, b: a if a >= b or a != a else b,
     "float64": float, "int64": int, "intp": int, "bool_": bool, "zeros": _zeros, "empty": _zeros,
 }  # fmt: skip
@@ -173,8 +225,6 @@ def _like_machine_code(value: Any, name: str) -> Any:
         return _IN_C.get(name, getattr(math, name))
     if name in _NUMPY:
         return _NUMPY[name]
-    if name in ("floor", "ceil", "trunc"):
-        return lambda x: float(_IN_C[name](x)) if math.isfinite(x) else x
     return _IN_C.get(name, getattr(np, name))
 
 
@@ -205,9 +255,19 @@ _HELPERS = {
     "quotient__": _quotient,
     "power__": _power,
     "whole_power__": _whole_power,
+    "inverse_power__": _inverse_power,
+    "exp2__": _IN_C["exp2"],
     "root__": math.sqrt,
+    "half_power__": _root,
     "floor__": math.floor,
     "whole__": _whole(int),
+    "rounded__": _whole(round),
+    "float__": float,
+    "int_power__": pow,
+    "wrapped__": _wrapped,
+    "floor_divided__": _floor_divided,
+    "remainder__": _remainder,
+    "divided__": lambda x, y: (_floor_divided(x, y), _remainder(x, y)),
     "fill__": _fill,
     "part__": _Part,
     "sum__": _sum,
@@ -291,9 +351,15 @@ class _Rewriting(ast.NodeTransformer):
 
     def _raised(self, node: ast.BinOp) -> ast.expr:
         exponent = _constant(node.right)
-        if isinstance(exponent, int) and exponent == 2:
+        if exponent == 2:
             first, second = self._twice(node.left)
             return ast.copy_location(ast.BinOp(first, ast.Mult(), second), node)
+        if exponent == -1.0 and isinstance(exponent, float):
+            return self._divided(ast.copy_location(ast.BinOp(ast.Constant(1.0), ast.Div(), node.left), node))
+        if exponent == 0.5:
+            return ast.copy_location(_call("half_power__", node.left), node)
+        if _constant(node.left) == 2.0 and exponent is None:
+            return ast.copy_location(_call("exp2__", node.right), node)
         whole = isinstance(exponent, int) and not isinstance(_constant(node.left), int)
         return ast.copy_location(_call("whole_power__" if whole else "power__", node.left, node.right), node)
 
@@ -418,26 +484,32 @@ def _at_least_zero(node: ast.expr) -> ast.expr:
 
 # --- functions -------------------------------------------------------------------------------------
 
+FORMS = "plain_forms__"  # in a generated module: plain forms of kernels that it calls, by the names of these
 _rewritten: dict[Any, Interpreted] = {}  # by the function that was declared
 
 
 def in_lists(function: Callable[..., Any]) -> Interpreted:
     """A kernel, and all that it calls, rewritten: it takes nested lists in place of arrays.
 
-    Raises OSError where its source is not known.
+    Raises NoPlainForm where its source is not known.
     """
     plain = plain_function(function)
     if plain not in _rewritten:
-        code, outside = plain.__code__, _outside(plain)
-        node = _definition(plain)
-        rewriting = _Rewriting(outside, {*code.co_varnames, *code.co_cellvars})
-        module = ast.Module([ast.fix_missing_locations(rewriting.visit(node))], [])
-        scope: dict[str, Any] = dict(_HELPERS)
-        exec(compile(module, plain.__code__.co_filename, "exec"), scope)
-        _rewritten[plain] = scope[node.name]
-        for name, value in rewriting.taken.items():
-            scope[name] = _in_scope(value)
+        _rewritten[plain] = rewritten(plain, definition(plain), plain.__globals__.get(FORMS, {}))
     return _rewritten[plain]
+
+
+def rewritten(plain: Any, node: ast.FunctionDef, forms: Mapping[str, Interpreted]) -> Interpreted:
+    """A function of this definition in lists. forms: plain forms of what it calls, as far as they are known."""
+    code, outside = plain.__code__, outside_of(plain)
+    rewriting = _Rewriting(outside, {*code.co_varnames, *code.co_cellvars})
+    module = ast.Module([ast.fix_missing_locations(rewriting.visit(node))], [])
+    scope: dict[str, Any] = {**_HELPERS, **forms}
+    exec(compile(module, code.co_filename, "exec"), scope)
+    for name, value in rewriting.taken.items():
+        scope[name] = forms[name] if name in forms else _in_scope(value)
+    made: Interpreted = scope[node.name]
+    return made
 
 
 def _in_scope(value: Any) -> Any:
@@ -446,7 +518,7 @@ def _in_scope(value: Any) -> Any:
     return in_lists(value) if hasattr(value, "py_func") else value
 
 
-def _outside(plain: Any) -> Any:
+def outside_of(plain: Any) -> Any:
     if not plain.__closure__:
         return plain.__globals__
     enclosed = zip(plain.__code__.co_freevars, plain.__closure__, strict=True)
@@ -461,7 +533,7 @@ def _definitions(file: str) -> dict[int, list[_Defined]]:
     """All functions in a file, by the line on which they, or their decorators, begin."""
     lines = linecache.getlines(file)
     if not lines:
-        raise OSError(f"There is no source of {file}.")
+        raise NoPlainForm(f"there is no source of {file}")
     found: dict[int, list[_Defined]] = {}
     for node in ast.walk(ast.parse("".join(lines))):
         if isinstance(node, ast.FunctionDef):
@@ -471,14 +543,14 @@ def _definitions(file: str) -> dict[int, list[_Defined]]:
     return found
 
 
-def _definition(plain: Any) -> ast.FunctionDef:
+def definition(plain: Any) -> ast.FunctionDef:
     """The definition of a function, to be changed."""
     code, kind = plain.__code__, ast.Lambda if plain.__name__ == "<lambda>" else ast.FunctionDef
     there = [d for d in _definitions(code.co_filename).get(code.co_firstlineno, ()) if isinstance(d, kind)]
     if len(there) > 1:
         there = [d for d in there if _compiles_to(code, d)]
     if not there:
-        raise OSError(f"There is no source of {plain.__qualname__} in {code.co_filename}.")
+        raise NoPlainForm(f"there is no source of {plain.__qualname__} in {code.co_filename}")
     node = copy.deepcopy(there[0]) if "<locals>" in plain.__qualname__ else there[0]  # others are defined once
     if isinstance(node, ast.Lambda):
         body: list[ast.stmt] = [ast.Return(node.body)]
