@@ -19,7 +19,6 @@ import linecache
 import math
 from collections.abc import Callable, Mapping
 from enum import IntEnum
-from functools import cache
 from itertools import count
 from types import CodeType, ModuleType
 from typing import Any
@@ -212,7 +211,7 @@ _IN_C: dict[str, Any] = {
 _NUMPY = {
     "abs": abs, "absolute": abs, "arctan": math.atan, "arctan2": _IN_C["atan2"], "power": _power,
     **{f"arc{name}": _IN_C[f"a{name}"] for name in ("sin", "cos", "sinh", "cosh", "tanh")},
-    "sign": lambda x: float((x > 0.0) - (x < 0.0)) if x else x, "deg2rad": math.radians, "rad2deg": math.degrees,
+    "sign": lambda x: math.copysign(1.0, x) if x and x == x else x, "deg2rad": math.radians, "rad2deg": math.degrees,
     **{name: _rounded(getattr(math, name)) for name in ("floor", "ceil", "trunc")},
     "minimum": lambda a, b: a if a <= b or a != a else b, "maximum": lambda a, b: a if a >= b or a != a else b,
     "float64": float, "int64": int, "intp": int, "bool_": bool, "zeros": _zeros, "empty": _zeros,
@@ -528,9 +527,12 @@ def outside_of(plain: Any) -> Any:
 _Defined = ast.FunctionDef | ast.Lambda
 
 
-@cache
+_parsed: dict[str, dict[int, list[_Defined]]] = {}  # by file, what of it is not rewritten yet
+
+
 def _definitions(file: str) -> dict[int, list[_Defined]]:
     """All functions in a file, by the line on which they, or their decorators, begin."""
+    linecache.checkcache(file)
     lines = linecache.getlines(file)
     if not lines:
         raise NoPlainForm(f"there is no source of {file}")
@@ -544,24 +546,36 @@ def _definitions(file: str) -> dict[int, list[_Defined]]:
 
 
 def definition(plain: Any) -> ast.FunctionDef:
-    """The definition of a function, to be changed."""
-    code, kind = plain.__code__, ast.Lambda if plain.__name__ == "<lambda>" else ast.FunctionDef
-    there = [d for d in _definitions(code.co_filename).get(code.co_firstlineno, ()) if isinstance(d, kind)]
-    if len(there) > 1:
-        there = [d for d in there if _compiles_to(code, d)]
-    if not there:
+    """The definition of a function, to be changed: one that was changed before is read again."""
+    code = plain.__code__
+    node = _taken(code, _parsed.get(code.co_filename, {}))
+    if node is None:
+        _parsed[code.co_filename] = _definitions(code.co_filename)
+        node = _taken(code, _parsed[code.co_filename])
+    if node is None:
         raise NoPlainForm(f"there is no source of {plain.__qualname__} in {code.co_filename}")
-    node = copy.deepcopy(there[0]) if "<locals>" in plain.__qualname__ else there[0]  # others are defined once
     if isinstance(node, ast.Lambda):
         body: list[ast.stmt] = [ast.Return(node.body)]
         return ast.copy_location(ast.FunctionDef("lambda__", node.args, body, []), node)
     return node
 
 
+def _taken(code: CodeType, parsed: dict[int, list[_Defined]]) -> _Defined | None:
+    """The definition of this function, which is taken from those that were parsed; None if it is not there."""
+    there = parsed.get(code.co_firstlineno, [])
+    same = [node for node in there if _compiles_to(code, node)]
+    if not same:
+        return None
+    there.remove(same[0])
+    return same[0]
+
+
 def _compiles_to(code: CodeType, node: _Defined) -> bool:
     """True if this is the function, of several on one line."""
     if not isinstance(node, ast.Lambda):
         return node.name == code.co_name
+    if code.co_name != "<lambda>":
+        return False
     made = compile(ast.fix_missing_locations(ast.Expression(node)), "", "eval").co_consts[0]
     return bool(made.co_code == code.co_code and made.co_consts == code.co_consts)
 

@@ -15,7 +15,7 @@ import ast
 import copy
 import inspect
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, NoReturn
@@ -70,10 +70,8 @@ _FUNCTIONS: Mapping[Any, Mapping[str, tuple[int, str]]] = {  # how many floats e
 
 
 def kind_of_dtype(dtype: Any) -> str:
-    """The kind of an array's numbers. Raises NoPlainForm for those that machine code computes with differently."""
-    if dtype.type not in _OF_TYPES:
-        raise NoPlainForm(f"numbers of the type {dtype}")
-    return _OF_TYPES[dtype.type]
+    """The kind of an array's numbers; the name of their type where machine code computes differently with them."""
+    return _OF_TYPES.get(dtype.type, dtype.name)
 
 
 @dataclass(frozen=True)
@@ -95,6 +93,9 @@ def typed(function: Callable[..., Any], kinds: Sequence[Kind]) -> Typed:
     if key in _begun:
         raise NoPlainForm(f"{plain.__name__} calls itself")
     if key not in _typed:
+        for kind in _parts(tuple(kinds)):
+            if len(kind) != 1:
+                raise NoPlainForm(f"{plain.__name__} is given numbers of the type {kind}")
         _check_options(function, plain)
         _begun.append(key)
         try:
@@ -104,11 +105,40 @@ def typed(function: Callable[..., Any], kinds: Sequence[Kind]) -> Typed:
     return _typed[key]
 
 
+def _parts(kind: Kind) -> Iterator[str]:
+    """The kinds of all numbers in it."""
+    if isinstance(kind, tuple):
+        for part in kind:
+            yield from _parts(part)
+    else:
+        yield kind.kind if isinstance(kind, Array) else kind
+
+
 def _check_options(function: Any, plain: Any) -> None:
     options = getattr(function, "targetoptions", {})
     special = [name for name, value in options.items() if value and name not in _OPTIONS]
     if special or not (isinstance(function, Kernel) or getattr(function, "_can_compile", False)):
         raise NoPlainForm(f"{plain.__name__} is compiled with {', '.join(special) or 'types of its own'}")
+
+
+def _check_unchanged(plain: Any, node: ast.FunctionDef) -> None:
+    """Raise NoPlainForm if the source is not that of the function in memory: its file was edited since."""
+    made = copy.deepcopy(node)
+    made.decorator_list, made.returns = [], None
+    enclosing = [
+        ast.Assign([ast.Name(name, ast.Store())], ast.Constant(None)) for name in plain.__code__.co_freevars
+    ]
+    nothing = ast.arguments([], [], None, [], [], None, [])
+    outer = ast.FunctionDef("outer", nothing, [*enclosing, made], [])
+    module = compile(ast.fix_missing_locations(ast.Module([outer], [])), "", "exec")
+    (code,) = (constant for constant in module.co_consts if hasattr(constant, "co_code"))
+    (inner,) = (constant for constant in code.co_consts if hasattr(constant, "co_code"))
+    if (inner.co_code, inner.co_consts, inner.co_names) != (
+        plain.__code__.co_code,
+        plain.__code__.co_consts,
+        plain.__code__.co_names,
+    ):
+        raise NoPlainForm(f"{plain.__name__} is another one by now in its file")
 
 
 def _low(kind: Kind) -> Kind:
@@ -157,8 +187,10 @@ class _Inference:
 
     def typed(self, kinds: Sequence[Kind]) -> Typed:
         """The function for arguments of these kinds."""
+        read = definition(self._plain)
+        _check_unchanged(self._plain, read)
         while True:
-            node = copy.deepcopy(definition(self._plain))
+            node = copy.deepcopy(read)
             given = node.args
             names = [argument.arg for argument in (*given.posonlyargs, *given.args)]
             if given.vararg or given.kwarg or given.kwonlyargs or len(names) != len(kinds):
@@ -445,7 +477,9 @@ class _Inference:
             return node, "B" if kind.isupper() else "b"
         if isinstance(node.op, ast.Invert) or kind.lower() == "b":
             self._refuse(node, "an operation on bits")
-        return self._whole(node, kind), kind
+        number = _literal(node)
+        made = node if number is None else ast.copy_location(ast.Constant(number), node)
+        return self._whole(made, kind), kind
 
     def _whole(self, node: ast.expr, kind: str) -> ast.expr:
         """A number; whole ones wrap around."""
@@ -467,7 +501,14 @@ class _Inference:
             return _call(helper, left, right), kind
         if not isinstance(node.op, ast.Add | ast.Sub | ast.Mult | ast.Div):
             self._refuse(node, f"an operation '{type(node.op).__name__.lower()}'")
-        return self._whole(ast.BinOp(left, node.op, right), kind), kind
+        made: ast.expr = ast.BinOp(left, node.op, right)
+        if (
+            _literal(left) is not None
+            and _literal(right) is not None
+            and not (isinstance(node.op, ast.Div) and not _literal(right))
+        ):
+            made = ast.Constant(eval(ast.unparse(made)))
+        return self._whole(made, kind), kind
 
     def _power(self, node: ast.BinOp, env: Environment) -> Rewritten:
         return self._power_of(node, self._scalar(node.left, env), self._scalar(node.right, env))

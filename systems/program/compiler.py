@@ -22,13 +22,17 @@ from enum import Enum, IntEnum
 from functools import cache as once
 from functools import cached_property
 from pathlib import Path
-from types import CodeType, ModuleType, SimpleNamespace
+from types import CodeType, MappingProxyType, ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from systems import cache
+from systems.interpreter import FORMS, NoPlainForm
 from systems.kernels import PLAIN, Kernel, Use, plain_function, used_by
+from systems.kinds import Kind, typed
+
+Kinds = tuple[Kind, ...]
 
 
 def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
@@ -136,13 +140,16 @@ class GeneratedModule:
         name: str,
         contents: Callable[[], tuple[str, Mapping[str, Callable[..., Any]]]],
         warm_up: Callable[[], object] = lambda: None,
+        kinds: Mapping[str, Kinds] = MappingProxyType({}),
     ) -> None:
         """name: of what it is for, which a process that compiles is given. contents: returns source and kernels; the
-        call imports them. warm_up: calls all functions; needed where types are not declared.
+        call imports them. warm_up: calls all functions; needed where types are not declared. kinds: of what kernels that
+        others wrote are given, by their names.
         """
         self.name = name
         self.spent = 0.0
         self._contents = contents
+        self._kinds = kinds
         self.warm_up = warm_up
         self._form: Any = None
         self.portion = 1
@@ -212,12 +219,15 @@ class GeneratedModule:
         return self._compiled
 
     def _begin_interpreted(self) -> None:
-        """Use the interpreted form; where the source of a kernel is not known, machine code."""
+        """Use the interpreted form; where a kernel has none, machine code."""
+        kernels = self._source_and_kernels[1]
         try:
+            plain = {called: typed(kernels[called], of).plain for called, of in self._kinds.items()}
+            vars(self.module)[FORMS] = plain
             interpreted = {name: function.interpreted for name, function in self.functions.items()}
-        except OSError as error:
+        except NoPlainForm as error:
             if Choice.compile is Compile.NEVER:
-                raise OSError(f"{self.name} cannot be interpreted: {error}") from error
+                raise NoPlainForm(f"{self.name} cannot be interpreted: {error}") from error
             self.load()
             return
 
@@ -292,13 +302,18 @@ def _tell(sentence: str) -> None:
 
 
 _loading = threading.RLock()
-_modules: dict[Any, GeneratedModule] = {}  # by source and kernels
+_modules: dict[Any, GeneratedModule] = {}  # by source, kernels and kinds
 
 
-def generated(name: str, source: str, kernels: Mapping[str, Callable[..., Any]]) -> GeneratedModule:
-    """The module with this source, the same one each time."""
-    identity = source, *((called, id(kernel)) for called, kernel in sorted(kernels.items()))
-    return _modules.setdefault(identity, GeneratedModule(name, lambda: (source, kernels)))
+def generated(
+    name: str,
+    source: str,
+    kernels: Mapping[str, Callable[..., Any]],
+    kinds: Mapping[str, Kinds] = MappingProxyType({}),
+) -> GeneratedModule:
+    """The module with this source, the same one each time. kinds: of what kernels of others are given, by their names."""
+    called = ((name, id(kernel), kinds.get(name)) for name, kernel in sorted(kernels.items()))
+    return _modules.setdefault((source, *called), GeneratedModule(name, lambda: (source, kernels), kinds=kinds))
 
 
 def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str, Callable[..., Any]]]:

@@ -19,10 +19,11 @@ from components.model import Model
 from systems.base import Event, Integrator, StepSystem, StopReason
 from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
 from systems.physics.kernels import conserved
-from systems.program.binding import Bound, bind, explain
+from systems.program.binding import Bound, bind
 from systems.program.block_writer import BlockWriter
 from systems.program.compiler import GeneratedModule, generated
 from systems.program.controlled_writer import ControlledWriter
+from systems.program.faults import check_results, explain, kinds_of
 from systems.program.near_pairs import NearPairs
 from systems.program.writer import STATE, VERY_MANY, Writer, form_of, sides_of
 
@@ -53,11 +54,12 @@ def _writer(model: Model, systems: Sequence[StepSystem], integrator: Integrator,
 def has_program(model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str = "") -> bool:
     """True if the program of this plan, in the form that suits the model or another, need only be loaded."""
     writer = _writer(model, systems, integrator, form or form_of(model, integrator, systems))
-    return _module(writer).is_compiled()
+    return _module(writer, model).is_compiled()
 
 
-def _module(writer: Writer) -> GeneratedModule:
-    return generated("the step program", writer.source(), writer.names)
+def _module(writer: Writer, model: Model) -> GeneratedModule:
+    kinds = {b.call: kinds_of(b, model) for b in writer.kernels if not b.is_ours}
+    return generated("the step program", writer.source(), writer.names, kinds)
 
 
 class Program:
@@ -76,13 +78,14 @@ class Program:
         self.systems = tuple(system for system in systems if system.kernel)
         self.integrator = integrator
         self._writer = _writer(model, systems, integrator, form)
-        self.module = _module(self._writer)
+        self.module = _module(self._writer, model)
         self.measures = np.zeros(len(Measure))
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self._state_revision = -1
         self.bind()
         present = weakref.ref(self)  # the module lives longer
         self.module.warm_up = lambda: program._call_all() if (program := present()) is not None else None
+        check_results(self._writer.kernels, model)
         self.module.begin(self._rows("rods"))
         if not self.module.is_loaded:
             self._call_all()
@@ -101,7 +104,10 @@ class Program:
                 state = [self._arrays[name][:0] for name in STATE]
                 self.module.form.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
         except Exception as error:  # numba raises many kinds
-            raise explain(self._writer.kernels, self.integrator, self.model, error) from error
+            compiled = self.module.is_loaded
+            raise explain(
+                self._writer.kernels, self.integrator, self.model, error, compiled=compiled
+            ) from error
 
     def _of_no_rods(self) -> list[Column]:
         whole = {"pair_reach": np.array([0.0, math.inf])}  # of no pairs there is no list
