@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from components.model import Model
 from components.particle import Particle
 from components.rod import spawn_rods
-from game.commands.mods import load_as_asked
-from game.session import Session
+from game import Session
+from game.commands.with_mods import load_as_asked
 from systems.base import Integrator, StepSystem
 from systems.collision.driven.compiled import DRIVEN
 from systems.collision.free.discs import EVENTS, HORIZONS, PILES
