@@ -227,6 +227,12 @@ def _like_machine_code(value: Any, name: str) -> Any:
     return _IN_C.get(name, getattr(np, name))
 
 
+def library_of(value: Any) -> Any:
+    """math or numpy, if the value is a function of it; None otherwise."""
+    name = getattr(value, "__name__", "")
+    return next((library for library in (math, np) if name and getattr(library, name, None) is value), None)
+
+
 # --- rewriting -------------------------------------------------------------------------------------
 
 _NUMBER = (bool, int, float)
@@ -514,6 +520,8 @@ def rewritten(plain: Any, node: ast.FunctionDef, forms: Mapping[str, Interpreted
 def _in_scope(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
+    if (library := library_of(value)) is not None:
+        return _like_machine_code(library, value.__name__)
     return in_lists(value) if hasattr(value, "py_func") else value
 
 

@@ -14,15 +14,17 @@ from __future__ import annotations
 import ast
 import copy
 import inspect
+import linecache
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from types import ModuleType
+from functools import lru_cache
+from types import CodeType, ModuleType
 from typing import Any, NoReturn
 
 import numpy as np
 
-from systems.interpreter import NoPlainForm, definition, outside_of, rewritten
+from systems.interpreter import NoPlainForm, definition, library_of, outside_of, rewritten
 from systems.kernels import Kernel, plain_function
 
 NOTHING = ""
@@ -121,24 +123,26 @@ def _check_options(function: Any, plain: Any) -> None:
         raise NoPlainForm(f"{plain.__name__} is compiled with {', '.join(special) or 'types of its own'}")
 
 
-def _check_unchanged(plain: Any, node: ast.FunctionDef) -> None:
+def _check_unchanged(plain: Any) -> None:
     """Raise NoPlainForm if the source is not that of the function in memory: its file was edited since."""
-    made = copy.deepcopy(node)
-    made.decorator_list, made.returns = [], None
-    enclosing = [
-        ast.Assign([ast.Name(name, ast.Store())], ast.Constant(None)) for name in plain.__code__.co_freevars
-    ]
-    nothing = ast.arguments([], [], None, [], [], None, [])
-    outer = ast.FunctionDef("outer", nothing, [*enclosing, made], [])
-    module = compile(ast.fix_missing_locations(ast.Module([outer], [])), "", "exec")
-    (code,) = (constant for constant in module.co_consts if hasattr(constant, "co_code"))
-    (inner,) = (constant for constant in code.co_consts if hasattr(constant, "co_code"))
-    if (inner.co_code, inner.co_consts, inner.co_names) != (
-        plain.__code__.co_code,
-        plain.__code__.co_consts,
-        plain.__code__.co_names,
-    ):
-        raise NoPlainForm(f"{plain.__name__} is another one by now in its file")
+    file = plain.__code__.co_filename
+    if _identity(plain.__code__) not in _functions_in("".join(linecache.getlines(file)), file):
+        raise NoPlainForm(f"{plain.__name__} is another one by now in {file}")
+
+
+def _identity(code: CodeType) -> tuple[Any, ...]:
+    constants = repr([constant for constant in code.co_consts if not isinstance(constant, CodeType)])
+    return code.co_firstlineno, code.co_name, code.co_code, code.co_names, constants
+
+
+@lru_cache(maxsize=8)
+def _functions_in(text: str, file: str) -> frozenset[tuple[Any, ...]]:
+    """What all functions in a file are compiled to."""
+    pending, found = [compile(text, file, "exec", dont_inherit=True)], list[CodeType]()
+    while pending:
+        found.append(pending.pop())
+        pending += [constant for constant in found[-1].co_consts if isinstance(constant, CodeType)]
+    return frozenset(map(_identity, found))
 
 
 def _low(kind: Kind) -> Kind:
@@ -188,7 +192,6 @@ class _Inference:
     def typed(self, kinds: Sequence[Kind]) -> Typed:
         """The function for arguments of these kinds."""
         read = definition(self._plain)
-        _check_unchanged(self._plain, read)
         while True:
             node = copy.deepcopy(read)
             given = node.args
@@ -201,6 +204,7 @@ class _Inference:
                 self._returns(node, NOTHING)
             if self._result == known:
                 break
+        _check_unchanged(self._plain)
         given.defaults = []
         assert self._result is not None
         return Typed(rewritten(self._plain, node, self._called), self._result)
@@ -604,10 +608,8 @@ class _Inference:
             if call is not None and node.args:
                 made: Rewritten = call(node, env)
                 return made
-        if isinstance(node.func, ast.Attribute):
-            library = self._value(node.func.value)
-            if library is math or library is np:
-                return self._of_library(node, library, node.func.attr, env)
+        if (library := library_of(value)) is not None:
+            return self._of_library(node, library, value.__name__, env)
         self._refuse(node, f"a call of '{ast.unparse(node.func):.40}'")
 
     def _of_kernel(self, node: ast.Call, kernel: Any, env: Environment) -> Rewritten:
@@ -627,7 +629,7 @@ class _Inference:
 
     def _of_library(self, node: ast.Call, library: Any, name: str, env: Environment) -> Rewritten:
         """A function of floats."""
-        if library is np and name in ("abs", "absolute", "float64") and len(node.args) == 1:
+        if library is np and name in ("absolute", "float64"):
             return self._call_float(node, env) if name == "float64" else self._call_abs(node, env)
         if library is math and name == "pow" and len(node.args) == 2:
             both = [self._scalar(argument, env) for argument in node.args]
@@ -643,27 +645,32 @@ class _Inference:
         node.args = [self._as(node, value, kind, "f") for value, kind in read]
         return node, result.upper() if all(kind.isupper() for _, kind in read) else result
 
+    def _single(self, node: ast.Call, env: Environment) -> tuple[ast.expr, str]:
+        if len(node.args) != 1:
+            self._refuse(node, f"the arguments of '{ast.unparse(node.func):.40}'")
+        return self._scalar(node.args[0], env)
+
     def _call_abs(self, node: ast.Call, env: Environment) -> Rewritten:
-        (argument,), kind = self._scalars(node.args, env)
+        argument, kind = self._single(node, env)
         if kind.lower() == "b":
             self._refuse(node, "the size of a truth value")
         return self._whole(_call("abs", argument), kind), kind
 
     def _call_float(self, node: ast.Call, env: Environment) -> Rewritten:
-        (argument,), kind = self._scalars(node.args, env)
+        argument, kind = self._single(node, env)
         return _call("float__", argument), "F" if kind.isupper() else "f"
 
     def _call_int(self, node: ast.Call, env: Environment) -> Rewritten:
-        (argument,), kind = self._scalars(node.args, env)
+        argument, kind = self._single(node, env)
         made = argument if kind.lower() == "i" else _call("whole__", argument)
         return made, "I" if kind.isupper() else "i"
 
     def _call_bool(self, node: ast.Call, env: Environment) -> Rewritten:
-        (argument,), kind = self._scalars(node.args, env)
+        argument, kind = self._single(node, env)
         return _call("bool", argument), "B" if kind.isupper() else "b"
 
     def _call_round(self, node: ast.Call, env: Environment) -> Rewritten:
-        (argument,), kind = self._scalars(node.args, env)
+        argument, kind = self._single(node, env)
         if kind.lower() != "f":
             self._refuse(node, "a rounded whole number")
         return _call("rounded__", argument), "I" if kind.isupper() else "i"
