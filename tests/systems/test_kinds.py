@@ -179,7 +179,7 @@ def compound(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
     return st.one_of(
         st.builds(lambda ab, op: f"({ab[0]} {op} {ab[1]})", pairs, operators),
         st.builds(lambda ab, op: f"({ab[0]} {op} {ab[1]})", pairs, operators),
-        st.builds(lambda f, a: f"{f}({a}){')' * f.count('(')}", st.sampled_from(ones.split()), inner),
+        st.builds(lambda f, a: f"({f}({a}){')' * f.count('(')})", st.sampled_from(ones.split()), inner),
         st.builds(lambda ab, f: f"{f}({ab[0]}, {ab[1]})", pairs, st.sampled_from(["min", "max", "math.atan2", "np.hypot"])),
         st.builds(lambda ab, c: f"({ab[0]} if {c} else {ab[1]})", pairs, inner),
         st.builds(lambda a, n: f"({a}) ** {n}", inner, st.sampled_from(["2", "3", "0.5", "-1.0", "1.5", "y", "0"])),
