@@ -88,7 +88,7 @@ def _root(x: float) -> float:
 
 def _floor_divided(x: Any, y: Any) -> Any:
     if y:
-        return _wrapped(x // y)
+        return _in_64_bits(x // y)
     return 0 if isinstance(y, int) else _quotient(x, y)
 
 
@@ -98,19 +98,19 @@ def _remainder(x: Any, y: Any) -> Any:
     return 0 if isinstance(y, int) else _NAN
 
 
-def _wrapped(x: Any) -> Any:
-    """A whole number in 64 bits; floats as they are."""
+def _in_64_bits(x: Any) -> Any:
+    """A whole number, or a float, as it is. Raises OverflowError where nobody knows what machine code computes."""
     if isinstance(x, float) or _LEAST <= x < _MOST:
         return x
-    return (x + 2**63) % 2**64 - 2**63
+    raise OverflowError("a whole number of more than 64 bits")
 
 
 def _hypot(x: float, y: float) -> float:
     """hypot() of the C library, by which Python takes the magnitude of complex numbers; its own differs in last bits."""
     try:
         return abs(complex(x, y))
-    except OverflowError:
-        return _INFINITE
+    except OverflowError:  # which Python also raises for what is no number, after another function overflowed
+        return _INFINITE if x == x and y == y else _NAN
 
 
 def _quiet(function: Callable[..., float], overflow: float = _INFINITE) -> Callable[..., float]:
@@ -269,7 +269,7 @@ _HELPERS = {
     "rounded__": _whole(round),
     "float__": float,
     "int_power__": pow,
-    "wrapped__": _wrapped,
+    "in_64_bits__": _in_64_bits,
     "floor_divided__": _floor_divided,
     "remainder__": _remainder,
     "divided__": lambda x, y: (_floor_divided(x, y), _remainder(x, y)),

@@ -2,7 +2,7 @@
 
 numba decides for every expression whether it is a truth value, a whole number of 64 bits or a float; in Python a
 number only tells as it is computed. Here the same is decided by the same rules, and the plain form of a kernel is given
-what it needs to compute the same bits: conversions where branches meet, whole numbers that wrap around, remainders by 0.
+what it needs to compute the same bits: conversions where branches meet, remainders by 0, errors where whole numbers outgrow 64 bits.
 What these rules do not cover is refused, by name: such a kernel has machine code only.
 
 A kind is "b", "i" or "f", a capital where the compiler may know the number itself, a tuple of kinds, an Array, or ""
@@ -486,8 +486,8 @@ class _Inference:
         return self._whole(made, kind), kind
 
     def _whole(self, node: ast.expr, kind: str) -> ast.expr:
-        """A number; whole ones wrap around."""
-        return node if kind.lower() == "f" or _literal(node) is not None else _call("wrapped__", node)
+        """A number; whole ones of at most 64 bits."""
+        return node if kind.lower() == "f" or _literal(node) is not None else _call("in_64_bits__", node)
 
     def _of_BinOp(self, node: ast.BinOp, env: Environment) -> Rewritten:
         if isinstance(node.op, ast.Pow):
@@ -525,7 +525,7 @@ class _Inference:
         known, number = _literal(x), _literal(y)
         if of_y.lower() == "i" and isinstance(number, int) and known is None:
             if of_x.lower() == "i" and 0 <= number <= MOST_POWER:
-                return _call("wrapped__", _call("int_power__", x, y)), "i"
+                return _call("in_64_bits__", _call("int_power__", x, y)), "i"
             if of_x.lower() == "f" and 0 <= number <= MOST_POWER:
                 return ast.BinOp(x, ast.Pow(), y), "f"
             if of_x.lower() == "f" and -MOST_POWER <= number < 0:
@@ -640,8 +640,9 @@ class _Inference:
             self._refuse(node, f"a call of '{ast.unparse(node.func):.40}'")
         read = [self._scalar(argument, env) for argument in node.args]
         exact = name in (*_TESTS, *_ROUNDING, "sign")  # which numba takes of whole numbers differently
-        if any(kind.lower() == "b" or (exact and kind.lower() == "i") for _, kind in read):
-            self._refuse(node, f"a call of '{name}' with what is no float")
+        for _, kind in read:
+            if kind.lower() == "b" or (exact and kind.lower() == "i") or (name in _ROUNDING and kind == "F"):
+                self._refuse(node, f"a call of '{name}' with a constant, or with what is no float")
         node.args = [self._as(node, value, kind, "f") for value, kind in read]
         return node, result.upper() if all(kind.isupper() for _, kind in read) else result
 
@@ -658,10 +659,16 @@ class _Inference:
 
     def _call_float(self, node: ast.Call, env: Environment) -> Rewritten:
         argument, kind = self._single(node, env)
+        if kind.lower() == "b":
+            self._refuse(node, "a float from a truth value")
         return _call("float__", argument), "F" if kind.isupper() else "f"
 
     def _call_int(self, node: ast.Call, env: Environment) -> Rewritten:
         argument, kind = self._single(node, env)
+        if kind == "F":
+            self._refuse(
+                node, "a whole number from a constant"
+            )  # beyond 64 bits it is whatever the optimiser likes
         made = argument if kind.lower() == "i" else _call("whole__", argument)
         return made, "I" if kind.isupper() else "i"
 
@@ -671,9 +678,9 @@ class _Inference:
 
     def _call_round(self, node: ast.Call, env: Environment) -> Rewritten:
         argument, kind = self._single(node, env)
-        if kind.lower() != "f":
-            self._refuse(node, "a rounded whole number")
-        return _call("rounded__", argument), "I" if kind.isupper() else "i"
+        if kind != "f":
+            self._refuse(node, "a rounded constant or whole number")
+        return _call("rounded__", argument), "i"
 
     def _call_min(self, node: ast.Call, env: Environment) -> Rewritten:
         node.args, kind = self._scalars(node.args, env)

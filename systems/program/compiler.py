@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 
+from components.mistake import Mistake
 from systems import cache
 from systems.interpreter import FORMS, NoPlainForm
 from systems.kernels import PLAIN, Kernel, Use, plain_function, used_by
@@ -102,7 +103,7 @@ def _asked() -> Compile:
     try:
         return Compile(said)
     except ValueError:
-        raise ValueError(f"{VARIABLE} is '{said}'; set it to never or always, or leave it out.") from None
+        raise Mistake(f"{VARIABLE} is '{said}'; set it to never or always, or leave it out.") from None
 
 
 VARIABLE = "PINJOINT_COMPILE"
