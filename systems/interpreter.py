@@ -25,8 +25,6 @@ from typing import Any
 
 import numpy as np
 
-from systems.kernels import plain_function
-
 Interpreted = Callable[..., Any]
 
 
@@ -490,6 +488,13 @@ def _at_least_zero(node: ast.expr) -> ast.expr:
 # --- functions -------------------------------------------------------------------------------------
 
 FORMS = "plain_forms__"  # in a generated module: plain forms of kernels that it calls, by the names of these
+
+
+def plain_function(function: Callable[..., Any]) -> Callable[..., Any]:
+    """What a kernel, or a function that numba's own decorators made, was declared as; other functions as they are."""
+    return getattr(function, "py_func", function)
+
+
 _rewritten: dict[Any, Interpreted] = {}  # by the function that was declared
 
 
@@ -545,7 +550,11 @@ def _definitions(file: str) -> dict[int, list[_Defined]]:
     if not lines:
         raise NoPlainForm(f"there is no source of {file}")
     found: dict[int, list[_Defined]] = {}
-    for node in ast.walk(ast.parse("".join(lines))):
+    try:
+        parsed = ast.parse("".join(lines))
+    except SyntaxError as error:  # it is another text, such as a page with the function in it
+        raise NoPlainForm(f"{file} is no source: {error}") from error
+    for node in ast.walk(parsed):
         if isinstance(node, ast.FunctionDef):
             found.setdefault(min([node.lineno, *(d.lineno for d in node.decorator_list)]), []).append(node)
         elif isinstance(node, ast.Lambda):

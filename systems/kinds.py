@@ -24,8 +24,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from systems.interpreter import NoPlainForm, definition, library_of, outside_of, rewritten
-from systems.kernels import Kernel, plain_function
+from systems.interpreter import NoPlainForm, definition, library_of, outside_of, plain_function, rewritten
 
 NOTHING = ""
 MOST_POWER = 64  # constant whole exponents, by which machine code multiplies
@@ -119,7 +118,7 @@ def _parts(kind: Kind) -> Iterator[str]:
 def _check_options(function: Any, plain: Any) -> None:
     options = getattr(function, "targetoptions", {})
     special = [name for name, value in options.items() if value and name not in _OPTIONS]
-    if special or not (isinstance(function, Kernel) or getattr(function, "_can_compile", False)):
+    if special or not getattr(function, "_can_compile", True):
         raise NoPlainForm(f"{plain.__name__} is compiled with {', '.join(special) or 'types of its own'}")
 
 

@@ -17,7 +17,7 @@ from components.model import Model
 from components.wording import is_identifier
 from systems.base import Commit, Event, Law, StepSystem
 from systems.entries import ACCOUNTS
-from systems.kernels import plain_function
+from systems.interpreter import plain_function
 from systems.program.chance import source_of_chance
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")

@@ -29,8 +29,8 @@ import numpy as np
 
 from components.mistake import Mistake
 from systems import cache
-from systems.interpreter import FORMS, NoPlainForm
-from systems.kernels import PLAIN, Kernel, Use, plain_function, used_by
+from systems.interpreter import FORMS, NoPlainForm, plain_function
+from systems.kernels import PLAIN, Kernel, Use
 from systems.kinds import Kind, typed
 
 Kinds = tuple[Kind, ...]
@@ -51,7 +51,7 @@ def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
             f"{plain.__module__}.{plain.__qualname__}",
             repr(getattr(function, "targetoptions", {})),
             _described(plain.__code__),
-            *(f"{name} = {_constant(value)}" for name, value in sorted(used_by(plain).items())),
+            *(f"{name} = {_constant(value)}" for name, value in sorted(_used_by(plain).items())),
         ]
     return "\n".join(parts)
 
@@ -65,8 +65,19 @@ def _reached_from(functions: Iterable[Callable[..., Any]]) -> Iterator[Callable[
             seen.add(function)
             yield function
             if not isinstance(function, type):
-                used = used_by(plain_function(function))
+                used = _used_by(plain_function(function))
                 pending += [value for _, value in sorted(used.items()) if hasattr(value, "py_func")]
+
+
+def _used_by(plain: Callable[..., Any]) -> dict[str, Any]:
+    """The names that a function takes from outside: closure, globals, and attributes of modules among these."""
+    outside = inspect.getclosurevars(plain)
+    used: dict[str, Any] = {**outside.globals, **outside.nonlocals}
+    for name, value in list(used.items()):
+        if isinstance(value, ModuleType):
+            names = plain.__code__.co_names
+            used |= {f"{name}.{n}": getattr(value, n) for n in names if hasattr(value, n)}
+    return used
 
 
 def _described(code: CodeType) -> str:
@@ -282,11 +293,11 @@ class GeneratedModule:
         return self._form
 
     def _load(self) -> None:
-        from systems.machine_code import adopt
+        from systems.machine_code import adopt, machine_code
 
         before, known, began = self._form, self.is_compiled(), time.perf_counter()
         adopt(self.module, self.key, _reached_from(self._source_and_kernels[1].values()))
-        self._form = SimpleNamespace(**{name: f.machine for name, f in self.functions.items()})
+        self._form = SimpleNamespace(**{name: machine_code(f) for name, f in self.functions.items()})
         self._compiled = True
         try:
             self.warm_up()

@@ -8,8 +8,7 @@ from typing import Any
 
 from components.model import Model
 from systems.base import Integrator
-from systems.interpreter import NoPlainForm
-from systems.kernels import Kernel, plain_function
+from systems.interpreter import NoPlainForm, plain_function
 from systems.kinds import Array, Kind, kind_of_dtype, typed
 from systems.program.binding import PROVIDED, Bound, ProgramError, shape_given
 from systems.program.compiler import Choice, Compile
@@ -131,6 +130,8 @@ def _result_type(b: Bound, model: Model) -> Any:
     from numba import types
     from numba.np.numpy_support import from_dtype
 
+    from systems.machine_code import machine_code
+
     def type_of(parameter: str) -> Any:
         dtype = _dtype_of(b, parameter, model)
         made: Any = types.float64 if dtype is None else from_dtype(dtype)
@@ -140,6 +141,6 @@ def _result_type(b: Bound, model: Model) -> Any:
 
     of_load = (types.float64, types.Array(types.float64, 1, "C", readonly=True), types.uint32)
     signature = of_load if b.each == "loads" else tuple(map(type_of, b.parameters))
-    dispatcher: Any = b.function.machine if isinstance(b.function, Kernel) else b.function
+    dispatcher = machine_code(b.function)
     dispatcher.compile(signature)
     return dispatcher.overloads[signature].signature.return_type
