@@ -1,9 +1,9 @@
 """Kinds of numbers in kernels that others write: which ones machine code would compute with.
 
 numba decides for every expression whether it is a truth value, a whole number of 64 bits or a float; in Python a
-number only tells as it is computed. Here the same is decided by the same rules, and the plain form of a kernel is given
-what it needs to compute the same bits: conversions where branches meet, remainders by 0, errors where whole numbers outgrow 64 bits.
-What these rules do not cover is refused, by name: such a kernel has machine code only.
+number only tells as it is computed. Here the same is decided, by the same rules, and the plain form of a kernel is
+given what it needs to compute the same bits: conversions where branches meet, quotients by 0, errors where whole
+numbers outgrow 64 bits. What these rules do not cover is refused, by name: such a kernel has machine code only.
 
 A kind is "b", "i" or "f", a capital where the compiler may know the number itself, a tuple of kinds, an Array, or ""
 for nothing.
