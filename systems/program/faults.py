@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from components.model import Model
@@ -86,22 +86,44 @@ def explain(
     if isinstance(error, ProgramError):
         return error
     for b in bound:
-        problem = problem_of(b, model) if compiled else _failure_of(b, error)
+        problem = problem_of(b, model) if compiled else failure_of(b, error) if _lines(b, error) else ""
         if problem:
             return ProgramError(problem, b.system)
     does = "does not compile" if compiled else "cannot be interpreted"
     return ProgramError(f"The step program of {integrator.name} {does}: {_brief(error)}", integrator)
 
 
-def _failure_of(b: Bound, error: Exception) -> str:
-    """The error as a sentence if it was raised in this kernel; "" otherwise."""
+def _lines(b: Bound, error: Exception) -> list[int]:
+    """The lines of a kernel in which an error was raised."""
     code = plain_function(b.function).__code__
+    last = max((line for *_, line in code.co_lines() if line), default=0)
     frames = traceback.extract_tb(error.__traceback__)
-    inside = [f.lineno for f in frames if (f.filename, f.name) in ((code.co_filename, code.co_name),)]
-    if not inside:
-        return ""
-    place = f"{'/'.join(code.co_filename.split('/')[-2:])}, line {inside[-1]}"
+    here = [f.lineno for f in frames if f.filename == code.co_filename and f.lineno]
+    return [line for line in here if code.co_firstlineno <= line <= last]
+
+
+def failure_of(b: Bound, error: Exception) -> str:
+    """An error that a kernel raised, as a sentence."""
+    code = plain_function(b.function).__code__
+    line = (_lines(b, error) or [code.co_firstlineno])[-1]
+    place = f"{'/'.join(code.co_filename.split('/')[-2:])}, line {line}"
     return f"The kernel of {b.system.name} failed: {type(error).__name__}: {error} ({place})."
+
+
+def form_of(b: Bound, model: Model) -> Callable[..., Any]:
+    """A kernel as Python calls it with numbers: interpreted, or compiled where it has machine code only."""
+    try:
+        plain = typed(b.function, kinds_of(b, model)).plain
+    except NoPlainForm:
+        if b.is_ours:
+            return b.function
+        if Choice.compile is Compile.NEVER:
+            raise
+        from systems.machine_code import machine_code
+
+        compiled: Callable[..., Any] = machine_code(b.function)
+        return compiled
+    return plain if b.each != "loads" else lambda time, values, first: plain(time, values.tolist(), first)
 
 
 def problem_of(b: Bound, model: Model) -> str:

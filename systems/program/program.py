@@ -19,12 +19,13 @@ from components.model import Model
 from systems.base import Event, Integrator, StepSystem, StopReason
 from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
 from systems.physics.kernels import conserved
-from systems.program.binding import Bound, bind
+from systems.program.binding import Bound, ProgramError, bind
 from systems.program.block_writer import BlockWriter
 from systems.program.compiler import GeneratedModule, generated
 from systems.program.controlled_writer import ControlledWriter
-from systems.program.faults import check_results, explain, kinds_of
+from systems.program.faults import check_results, explain, failure_of, kinds_of
 from systems.program.near_pairs import NearPairs
+from systems.program.reference_laws import in_turn
 from systems.program.writer import STATE, VERY_MANY, Writer, form_of, sides_of
 
 _ORIGIN = ("origin", "step_limit")
@@ -68,6 +69,7 @@ class Program:
     source: the whole program as plain Python; to understand a step, read that of a small model first.
     measures: entries of Measure, of the state last observed.
     follows_state: forces follow from nothing but the state, loads apart, so that what is at rest stays at rest.
+    failure: what a kernel raised in a step, and which, if one did.
     module: its functions. tolerance: of each step; 0 where the error is not controlled.
     compile_seconds: time that writing it took, and compiling it, or loading it from the cache, if that was done at once.
     """
@@ -81,6 +83,7 @@ class Program:
         self.module = _module(self._writer, model)
         self.measures = np.zeros(len(Measure))
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
+        self.failure: ProgramError | None = None
         self._state_revision = -1
         self.bind()
         present = weakref.ref(self)  # the module lives longer
@@ -104,10 +107,21 @@ class Program:
                 state = [self._arrays[name][:0] for name in STATE]
                 self.module.form.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
         except Exception as error:  # numba raises many kinds
-            compiled = self.module.is_loaded
-            raise explain(
-                self._writer.kernels, self.integrator, self.model, error, compiled=compiled
-            ) from error
+            raise self._explained(error) from error
+
+    def _explained(self, error: Exception) -> ProgramError:
+        """Which kernel an error comes from: machine code does not tell, so that they are called one by one."""
+        compiled = self.module.is_loaded
+        found = explain(self._writer.kernels, self.integrator, self.model, error, compiled=compiled)
+        if found.system is not self.integrator:
+            return found
+        try:
+            for _ in in_turn(self.systems, self.model):
+                pass
+        except ProgramError as raised:
+            return raised
+        others = [b for b in self._writer.kernels if not b.is_ours]
+        return ProgramError(failure_of(others[0], error), others[0].system) if len(others) == 1 else found
 
     def _of_no_rods(self) -> list[Column]:
         whole = {"pair_reach": np.array([0.0, math.inf])}  # of no pairs there is no list
@@ -267,6 +281,23 @@ class Program:
         An integrator that controls its steps takes none that would end after `until` (s), and one that would
         pass `landing` (s) is cut to end there; for others the steps are clock.step_size long.
         """
+        try:
+            return self._advance(steps, until, landing)
+        except ProgramError:
+            raise
+        except Exception as error:
+            if all(b.is_ours for b in self._writer.kernels):
+                raise
+            return self._failed(error)
+
+    def _failed(self, error: Exception) -> tuple[int, StopReason]:
+        """End a step in which a kernel raised an error as one that led nowhere, so that the culprit is looked for."""
+        self.failure = self._explained(error)
+        self._arrays["displacement"][...] = math.nan
+        self._mark_changes()
+        return 0, StopReason.DIVERGED
+
+    def _advance(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         if self.module.is_loaded:
             return self._take(steps, until, landing)
         total = 0

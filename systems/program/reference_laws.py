@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from components.field import Vector
 from components.model import Model
 from systems.base import StepSystem
-from systems.program.binding import Bound, StepRole, bind, by_role, written_row
-from systems.program.compiler import generated
+from systems.program.binding import Bound, ProgramError, StepRole, bind, by_role, written_row
+from systems.program.compiler import Choice, Compile, generated
+from systems.program.faults import failure_of, form_of
 from systems.program.loops import RodLoop
 from systems.program.near_pairs import pairs_within
 from systems.program.pasting import fragment
@@ -50,7 +51,11 @@ class KernelRows:
 
     def of(self, bound: Bound) -> Numbers:
         """What the kernel gives for each row, shape (rows, results)."""
-        rows = [np.atleast_1d(bound.function(*arguments)) for arguments in self._arguments(bound)]
+        called = form_of(bound, self.model)
+        try:
+            rows = [np.atleast_1d(called(*arguments)) for arguments in self._arguments(bound)]
+        except Exception as error:
+            raise ProgramError(failure_of(bound, error), bound.system) from error
         return np.array(rows, dtype=np.float64).reshape(len(rows), -1)
 
     def seconds_per_call(self, bound: Bound) -> float:
@@ -136,7 +141,8 @@ def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..
         f"        total += {'made[0] + made[1]' if pair else 'made'}",
         "    return total",
     ]
-    loop: Callable[..., float] = generated("the timing of a kernel", "\n".join(lines), kernels).load().loop
+    module = generated("the timing of a kernel", "\n".join(lines), kernels)
+    loop: Callable[..., float] = (module.form if Choice.compile is Compile.NEVER else module.load()).loop
     return loop
 
 
