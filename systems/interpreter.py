@@ -591,10 +591,9 @@ def _compiles_to(code: CodeType, node: _Defined) -> bool:
     """True if this is the function, of several on one line."""
     if not isinstance(node, ast.Lambda):
         return node.name == code.co_name
-    if code.co_name != "<lambda>":
-        return False
-    made = compile(ast.fix_missing_locations(ast.Expression(node)), "", "eval").co_consts[0]
-    return bool(made.co_code == code.co_code and made.co_consts == code.co_consts)
+    body = node.body
+    place = body.lineno, body.end_lineno, body.col_offset, body.end_col_offset
+    return code.co_name == "<lambda>" and place in code.co_positions()
 
 
 # --- arrays in, arrays out -------------------------------------------------------------------------

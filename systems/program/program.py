@@ -21,7 +21,7 @@ from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, S
 from systems.physics.kernels import conserved
 from systems.program.binding import Bound, ProgramError, bind
 from systems.program.block_writer import BlockWriter
-from systems.program.compiler import GeneratedModule, generated
+from systems.program.compiler import Choice, Compile, GeneratedModule, generated
 from systems.program.controlled_writer import ControlledWriter
 from systems.program.faults import check_results, explain, failure_of, kinds_of
 from systems.program.near_pairs import NearPairs
@@ -84,6 +84,7 @@ class Program:
         self.measures = np.zeros(len(Measure))
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self.failure: ProgramError | None = None
+        self._types: dict[str, Any] = {}
         self._state_revision = -1
         self.bind()
         present = weakref.ref(self)  # the module lives longer
@@ -158,6 +159,7 @@ class Program:
         extra: dict[str, Any] = {}
         for system in self.systems:
             extra.update(bind(system, model).stored_arrays)
+        self._heed_types({name: array.dtype for name, array in extra.items()})
         written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
         extra |= {name: self._storage(path) for name, path in written.items()}
         self._near = NearPairs(model, [b.cutoff for b in self._writer.pairs]) if self._writer.pairs else None
@@ -181,6 +183,12 @@ class Program:
         controls = self.integrator.estimates_error and settings.time_step is None
         self.tolerance = settings.tolerance if controls else 0.0
         self._state_revision = -1
+
+    def _heed_types(self, types: dict[str, Any]) -> None:
+        """Go on compiled where arrays of a system hold numbers of another type than before."""
+        if self._types not in ({}, types) and Choice.compile is not Compile.NEVER:
+            self.load()
+        self._types = types
 
     # --- events ------------------------------------------------------------------------------------
 
@@ -292,7 +300,7 @@ class Program:
 
     def _failed(self, error: Exception) -> tuple[int, StopReason]:
         """End a step in which a kernel raised an error as one that led nowhere, so that the culprit is looked for."""
-        self.failure = self._explained(error)
+        self.failure = self.failure or self._explained(error)
         self._arrays["displacement"][...] = math.nan
         self._mark_changes()
         return 0, StopReason.DIVERGED
@@ -376,8 +384,15 @@ class Program:
             self._mark_changes()
 
     def observe(self) -> None:
-        """Bring the derived columns of rods and particles, and the measures, up to date."""
-        self._observe()
+        """Bring the derived columns of rods and particles, and the measures, up to date, unless a kernel fails."""
+        try:
+            self._observe()
+        except ProgramError:
+            raise
+        except Exception as error:  # the next step fails, too, and then the culprit is looked for
+            if all(b.is_ours for b in self._writer.kernels):
+                raise
+            self.failure = self._explained(error)
 
     def _observe(self) -> None:
         time, size = self._control[:2].tolist()
