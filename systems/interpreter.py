@@ -458,6 +458,7 @@ class _Rewriting(ast.NodeTransformer):
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
         node.decorator_list, node.returns = [], None
+        node.args.defaults = []  # they are taken from the function itself
         for argument in (*node.args.posonlyargs, *node.args.args):
             argument.annotation = None
         node.body = [self.visit(statement) for statement in node.body]
@@ -518,8 +519,9 @@ def rewritten(plain: Any, node: ast.FunctionDef, forms: Mapping[str, Interpreted
     exec(compile(module, code.co_filename, "exec"), scope)
     for name, value in rewriting.taken.items():
         scope[name] = forms[name] if name in forms else _in_scope(value)
-    made: Interpreted = scope[node.name]
-    return made
+    made: Any = scope[node.name]
+    made.__defaults__ = plain.__defaults__
+    return made  # type: ignore[no-any-return]
 
 
 def _in_scope(value: Any) -> Any:
@@ -603,10 +605,11 @@ def interpreted(function: Callable[..., Any]) -> Interpreted:
     """A kernel as Python calls it: with arrays, or named tuples of arrays, of which it may change the entries."""
     rewritten = in_lists(function)
 
-    def called(*given: Any) -> Any:
+    def called(*given: Any, **named: Any) -> Any:
         lists: dict[int, tuple[Any, Any]] = {}
         try:
-            return rewritten(*[_listed(argument, lists) for argument in given])
+            by_name = {name: _listed(argument, lists) for name, argument in named.items()}
+            return rewritten(*[_listed(argument, lists) for argument in given], **by_name)
         finally:
             for array, values in lists.values():
                 if array.flags.writeable and array.size:

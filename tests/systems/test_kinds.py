@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import inspect
 import math
 import struct
 import sys
@@ -273,3 +274,27 @@ def test_what_might_differ_is_refused_by_name(body: str, said: str, tmp_path: Pa
     with pytest.raises(NoPlainForm, match="kernel") as caught:
         typed(made, KINDS)
     assert said in str(caught.value)
+
+
+def test_python_calls_kernels_with_keywords_and_defaults(tmp_path: Path) -> None:
+    squared = imported(tmp_path / "called.py", "").squared
+    assert squared(3.0) == 9.0
+    assert squared(scale=2.0, x=3.0) == 18.0
+
+
+def test_a_file_that_was_edited_since_is_not_interpreted(tmp_path: Path) -> None:
+    made = kernel(tmp_path, "return x")
+    made.py_func.__code__ = made.py_func.__code__.replace(co_consts=(None, 1.0))
+    with pytest.raises(NoPlainForm, match="kernel is another one by now"):
+        typed(made, KINDS)
+
+
+def test_kernels_of_our_own_have_kinds_too() -> None:
+    """All that laws and commits are given are numbers; this is how those of mods would be interpreted."""
+    from systems.physics import kernels
+
+    numbers = {"rods_tension_only": "b", "particles_velocity": ("f", "f")}
+    for name in ("elastic", "axial_damper", "taut_damper", "taut", "slack_branch", "slack_margin", "drag"):
+        declared = getattr(kernels, name)
+        kinds = [numbers.get(p, "f") for p in inspect.signature(declared.py_func).parameters]
+        assert typed(declared, kinds).result in ("f", ("f", "f"))
