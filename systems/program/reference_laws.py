@@ -63,6 +63,8 @@ class KernelRows:
         if not self._count(bound):
             return 0.0
         columns = [np.resize(column, (CALLS, *column.shape[1:])) for column in self._columns(bound)]
+        if bound.each == "loads":
+            columns.append(bound.arrays[f"{bound.prefix}_values"])
         loop = _compiled_loop(bound, columns)
         return min(_seconds(loop, columns) for _ in range(TRIALS)) / CALLS
 
@@ -123,13 +125,11 @@ def _as_tuples(value: Any) -> Any:
 
 
 def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..., float]:
-    """A compiled function of these columns that calls the kernel for each row and adds up what it gives."""
+    """A function of these columns, of loads also their values, that calls the kernel for each row and adds up."""
     names = [f"c{index}" for index in range(len(columns))]
-    kernels: dict[str, Any] = {"kernel": bound.function}
     arguments = [written_row(n, "i", c.shape[1:]) for n, c in zip(names, columns, strict=True)]
     if bound.each == "loads":
-        kernels["values"] = bound.arrays[f"{bound.prefix}_values"]
-        arguments.insert(1, "values")
+        arguments = ["c0[i]", "c2", "c1[i]"]
     pair = bound.each in ("particles", "pairs", "")
     lines = [
         "from systems.kernels import kept",
@@ -141,7 +141,7 @@ def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..
         f"        total += {'made[0] + made[1]' if pair else 'made'}",
         "    return total",
     ]
-    module = generated("the timing of a kernel", "\n".join(lines), kernels)
+    module = generated("the timing of a kernel", "\n".join(lines), {"kernel": bound.function})
     loop: Callable[..., float] = (module.form if Choice.compile is Compile.NEVER else module.load()).loop
     return loop
 
