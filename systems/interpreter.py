@@ -488,7 +488,9 @@ def _at_least_zero(node: ast.expr) -> ast.expr:
 
 # --- functions -------------------------------------------------------------------------------------
 
-FORMS = "plain_forms__"  # in a generated module: plain forms of kernels that it calls, by the names of these
+FORMS = (
+    "plain_forms__"  # in a generated module: returns plain forms of kernels that it calls, by their names there
+)
 
 
 def plain_function(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -506,7 +508,7 @@ def in_lists(function: Callable[..., Any]) -> Interpreted:
     """
     plain = plain_function(function)
     if plain not in _rewritten:
-        _rewritten[plain] = rewritten(plain, definition(plain), plain.__globals__.get(FORMS, {}))
+        _rewritten[plain] = rewritten(plain, definition(plain), plain.__globals__.get(FORMS, dict)())
     return _rewritten[plain]
 
 

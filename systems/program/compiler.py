@@ -191,6 +191,7 @@ class GeneratedModule:
         linecache.cache[shown] = len(source), None, source.splitlines(keepends=True), shown  # for tracebacks
         module = ModuleType(shown)
         vars(module).update(kernels)
+        vars(module)[FORMS] = lambda: {n: typed(kernels[n], kinds).plain for n, kinds in self._kinds.items()}
         exec(compile(source, shown, "exec"), vars(module))
         return module
 
@@ -232,10 +233,7 @@ class GeneratedModule:
 
     def _begin_interpreted(self) -> None:
         """Use the interpreted form; where a kernel has none, machine code."""
-        kernels = self._source_and_kernels[1]
         try:
-            plain = {called: typed(kernels[called], of).plain for called, of in self._kinds.items()}
-            vars(self.module)[FORMS] = plain
             interpreted = {name: function.interpreted for name, function in self.functions.items()}
         except NoPlainForm as error:
             if Choice.compile is Compile.NEVER:

@@ -7,6 +7,8 @@ from typing import Any
 import pytest
 
 from game import Session, mods
+from game.sweeps.batch_program import BatchProgram
+from systems.interpreter import NoPlainForm
 from systems.program.compiler import UNCOMPILED, Choice, Compile
 from tests.mods.conftest import Write
 from tests.mods.test_isolation import TRUSS
@@ -122,6 +124,16 @@ def test_without_a_compiler_it_is_named(opened: Any, kernel: str, arrays: str, s
     assert said in str(caught.value)
     assert "PINJOINT_COMPILE=never" in str(caught.value)
     assert session.run(steps=5) == "time reached"
+
+
+def test_sweeps_of_what_could_differ_are_compiled_at_once(opened: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    session = opened(Compile.SOON, COMPILED[1][0])
+    module = session.simulation.programs.compiled.module
+    monkeypatch.setattr(module, "_compiled", False)
+    variants = BatchProgram(session.simulation.programs.compiled, 1)
+    monkeypatch.setattr(Choice, "compile", Compile.NEVER)
+    with pytest.raises(NoPlainForm, match="is compiled with fastmath"):
+        _ = variants._module.form
 
 
 FAULTS = [
