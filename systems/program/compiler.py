@@ -118,7 +118,9 @@ def _asked() -> Compile:
 
 
 VARIABLE = "PINJOINT_COMPILE"
-LOADING = 0.2  # s of interpreting after which it is sooner to load the compiled program
+STARTING = 0.05  # s of interpreting, of all modules, after which it is worth it to start the compiler up
+LOADING = 0.03  # s of interpreting after which it is sooner to load what is compiled
+SMALL = 50  # rods or discs up to which the interpreted form may well take all steps of a run before another is loaded
 LARGE = 300  # rods or discs from which on one step, interpreted, takes as long as a picture
 LONGEST_CALL = 0.05  # s, interpreted
 BEFORE_COMPILING = 1.0  # s of interpreting, for each that compiling is expected to take
@@ -134,6 +136,7 @@ class Choice:
     """Which form programs of this process run in; a window changes it to ELSEWHERE."""
 
     compile = _asked()
+    spent = 0.0  # s of interpreting, of all modules
 
 
 # --- modules ---------------------------------------------------------------------------------------
@@ -209,13 +212,13 @@ class GeneratedModule:
                 self.load()
             else:
                 self._begin_interpreted()
-        elif self.spent > self._patience and not self._compiled:
+        elif self.spent > self._patience and Choice.spent > STARTING and not self._compiled:
             self._lose_patience()
         return self._form
 
     def begin(self, elements: int) -> None:
-        """Choose the form for a model of so many elements: a large one would not get far interpreted."""
-        if elements > LARGE and Choice.compile is Compile.SOON:
+        """Choose the form for a model of so many elements: one of many would not get far interpreted."""
+        if Choice.compile is Compile.SOON and (elements > LARGE or (elements > SMALL and self.is_compiled())):
             self.load_or_tell()
 
     def load_or_tell(self) -> None:
@@ -249,6 +252,7 @@ class GeneratedModule:
                 finally:
                     self._last = time.thread_time() - began
                     self.spent += self._last
+                    Choice.spent += self._last
 
             return called
 
