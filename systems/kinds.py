@@ -16,6 +16,7 @@ import copy
 import inspect
 import linecache
 import math
+import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -43,6 +44,13 @@ Environment = dict[str, Kind]  # the kinds of local names; of those that have a 
 Rewritten = tuple[Any, Kind]  # an expression and its kind
 
 _OF_TYPES: Mapping[Any, str] = {bool: "b", int: "i", float: "f", np.bool_: "b", np.int64: "i", np.float64: "f"}
+_ARITHMETIC: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
+_COMPARISONS = ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq
 _OPTIONS = (
     *("nopython", "error_model", "boundscheck", "cache", "nogil"),
     *("no_cpython_wrapper", "no_cfunc_wrapper", "_nrt"),
@@ -149,6 +157,13 @@ def _low(kind: Kind) -> Kind:
     if isinstance(kind, tuple):
         return tuple(map(_low, kind))
     return kind.lower() if isinstance(kind, str) else kind
+
+
+def _high(kind: Kind) -> Kind:
+    """The same kind of a number that may be known before."""
+    if isinstance(kind, tuple):
+        return tuple(map(_high, kind))
+    return kind.upper() if isinstance(kind, str) else kind
 
 
 def _joined(a: Kind, b: Kind) -> Kind | None:
@@ -354,6 +369,7 @@ class _Inference:
 
     def _do_For(self, node: ast.For, env: Environment) -> tuple[list[ast.stmt], Environment | None]:
         made = copy.copy(node)
+        self._chosen |= {part.id for part in ast.walk(node.target) if isinstance(part, ast.Name)}
         counts = isinstance(node.iter, ast.Call) and self._is_builtin(node.iter.func, "range")
         if counts:
             assert isinstance(node.iter, ast.Call)
@@ -414,9 +430,11 @@ class _Inference:
 
     def _scalars(self, nodes: Sequence[ast.expr], env: Environment) -> tuple[list[ast.expr], str]:
         """Numbers, made of one kind."""
-        read = [self._scalar(node, env) for node in nodes]
+        return self._unified(nodes[0], [self._scalar(node, env) for node in nodes])
+
+    def _unified(self, node: ast.expr, read: Sequence[tuple[ast.expr, str]]) -> tuple[list[ast.expr], str]:
         common = read[0][1]
-        for node, (_, kind) in zip(nodes, read, strict=True):
+        for _, kind in read:
             joined = _joined(common, kind)
             if not isinstance(joined, str):
                 self._refuse(node, "truth values among numbers")
@@ -470,8 +488,8 @@ class _Inference:
             return self._of_Constant(ast.copy_location(ast.Constant(number), node), {})
         if isinstance(value, tuple) and value and all(type(entry) in (bool, int, float) for entry in value):
             return node, tuple(_OF_TYPES[type(entry)].upper() for entry in value)
-        if isinstance(value, np.ndarray):
-            return node, Array(kind_of_dtype(value.dtype), value.ndim)
+        if isinstance(value, np.ndarray) and value.dtype.type in _OF_TYPES:
+            return node, Array(kind_of_dtype(value.dtype).upper(), value.ndim)
         self._refuse(node, f"'{ast.unparse(node):.40}'")
 
     def _of_UnaryOp(self, node: ast.UnaryOp, env: Environment) -> Rewritten:
@@ -502,16 +520,13 @@ class _Inference:
                 self._refuse(node, "a quotient of truth values")
             helper = "floor_divided__" if isinstance(node.op, ast.FloorDiv) else "remainder__"
             return _call(helper, left, right), kind
-        if not isinstance(node.op, ast.Add | ast.Sub | ast.Mult | ast.Div):
+        if type(node.op) not in _ARITHMETIC:
             self._refuse(node, f"an operation '{type(node.op).__name__.lower()}'")
-        made: ast.expr = ast.BinOp(left, node.op, right)
-        if (
-            _literal(left) is not None
-            and _literal(right) is not None
-            and not (isinstance(node.op, ast.Div) and not _literal(right))
-        ):
-            made = ast.Constant(eval(ast.unparse(made)))
-        return self._whole(made, kind), kind
+        x, y = _literal(left), _literal(right)
+        if x is None or y is None or (y == 0 and isinstance(node.op, ast.Div)):
+            return self._whole(ast.BinOp(left, node.op, right), kind), kind
+        number = _ARITHMETIC[type(node.op)](x, y)  # as Python itself does, before numba comes to see it
+        return self._of_Constant(ast.copy_location(ast.Constant(number), node), env)
 
     def _power(self, node: ast.BinOp, env: Environment) -> Rewritten:
         return self._power_of(node, self._scalar(node.left, env), self._scalar(node.right, env))
@@ -530,7 +545,7 @@ class _Inference:
             if of_x.lower() == "f" and -MOST_POWER <= number < 0:
                 return _call("inverse_power__", x, y), "f"
         elif of_y.lower() == "f" and of_x.lower() in ("i", "f") and (known is None or number is None):
-            exact = known is None or known == 2 or known <= 0 or math.frexp(known)[0] != 0.5
+            exact = known is None or known == 2 or (known > 0 and math.frexp(known)[0] != 0.5)
             varies = of_y.islower() and not self._has_choice(y) and (known is not None or of_x.islower())
             if exact and (number is not None or varies):
                 return ast.BinOp(self._as(node, x, of_x, "f"), ast.Pow(), y), "f"
@@ -544,9 +559,14 @@ class _Inference:
         )
 
     def _of_Compare(self, node: ast.Compare, env: Environment) -> Rewritten:
-        if not all(isinstance(op, ast.Lt | ast.LtE | ast.Gt | ast.GtE | ast.Eq | ast.NotEq) for op in node.ops):
+        if not all(isinstance(op, _COMPARISONS) for op in node.ops):
             self._refuse(node, "a comparison")
-        (node.left, *node.comparators), kind = self._scalars([node.left, *node.comparators], env)
+        read = [self._scalar(value, env) for value in (node.left, *node.comparators)]
+        (node.left, *node.comparators), kind = self._unified(node, read)
+        if (
+            kind == "f" and [of_one for _, of_one in read].count("i") > 1
+        ):  # which numba does not compare as floats
+            self._refuse(node, "a comparison")
         return node, "B" if kind.isupper() else "b"
 
     def _of_BoolOp(self, node: ast.BoolOp, env: Environment) -> Rewritten:
@@ -615,13 +635,14 @@ class _Inference:
         """Of another kernel, for arguments of these kinds."""
         signature = inspect.signature(plain_function(kernel))
         try:
-            bound = signature.bind(*node.args, **{k.arg: k.value for k in node.keywords if k.arg})
+            bound = signature.bind(*node.args, **{k.arg or "": k.value for k in node.keywords})
         except TypeError:
             self._refuse(node, f"the arguments of '{ast.unparse(node.func):.40}'")
         bound.apply_defaults()
         arguments = [a if isinstance(a, ast.expr) else ast.Constant(a) for a in bound.arguments.values()]
         read = [self._read(ast.copy_location(a, node), env) for a in arguments]
-        found = typed(kernel, [kind for _, kind in read])
+        kinds = [_high(kind) if self._has_choice(argument) else kind for argument, kind in read]
+        found = typed(kernel, kinds)
         name = f"kernel{len(self._called)}__"
         self._called[name] = found.plain
         return _call(name, *(argument for argument, _ in read)), found.result
@@ -664,10 +685,8 @@ class _Inference:
 
     def _call_int(self, node: ast.Call, env: Environment) -> Rewritten:
         argument, kind = self._single(node, env)
-        if kind == "F":
-            self._refuse(
-                node, "a whole number from a constant"
-            )  # beyond 64 bits it is whatever the optimiser likes
+        if kind == "F":  # beyond 64 bits it would be whatever the optimiser likes
+            self._refuse(node, "a whole number from a constant")
         made = argument if kind.lower() == "i" else _call("whole__", argument)
         return made, "I" if kind.isupper() else "i"
 
