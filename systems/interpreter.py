@@ -103,6 +103,11 @@ def _in_64_bits(x: Any) -> Any:
     raise OverflowError("a whole number of more than 64 bits")
 
 
+def _checked(rounding: Callable[[float], int]) -> Callable[[float], int]:
+    """A whole number. Raises OverflowError or ValueError for what has none in 64 bits: the optimiser makes up any."""
+    return lambda x: int(_in_64_bits(rounding(x)))
+
+
 def _hypot(x: float, y: float) -> float:
     """hypot() of the C library, by which Python takes the magnitude of complex numbers; its own differs in last bits."""
     try:
@@ -264,7 +269,10 @@ _HELPERS = {
     "half_power__": _root,
     "floor__": math.floor,
     "whole__": _whole(int),
-    "rounded__": _whole(round),
+    **{
+        f"checked_{whole.__name__}__": _checked(whole)
+        for whole in (int, round, math.floor, math.ceil, math.trunc)
+    },
     "float__": float,
     "int_power__": pow,
     "in_64_bits__": _in_64_bits,

@@ -664,6 +664,8 @@ class _Inference:
             if kind.lower() == "b" or (exact and kind.lower() == "i") or (name in _ROUNDING and kind == "F"):
                 self._refuse(node, f"a call of '{name}' with a constant, or with what is no float")
         node.args = [self._as(node, value, kind, "f") for value, kind in read]
+        if result == "i":
+            return _call(f"checked_{name}__", *node.args), "i"
         return node, result.upper() if all(kind.isupper() for _, kind in read) else result
 
     def _single(self, node: ast.Call, env: Environment) -> tuple[ast.expr, str]:
@@ -687,7 +689,7 @@ class _Inference:
         argument, kind = self._single(node, env)
         if kind == "F":  # beyond 64 bits it would be whatever the optimiser likes
             self._refuse(node, "a whole number from a constant")
-        made = argument if kind.lower() == "i" else _call("whole__", argument)
+        made = argument if kind.lower() == "i" else _call("checked_int__", argument)
         return made, "I" if kind.isupper() else "i"
 
     def _call_bool(self, node: ast.Call, env: Environment) -> Rewritten:
@@ -698,7 +700,7 @@ class _Inference:
         argument, kind = self._single(node, env)
         if kind != "f":
             self._refuse(node, "a rounded constant or whole number")
-        return _call("rounded__", argument), "i"
+        return _call("checked_round__", argument), "i"
 
     def _call_min(self, node: ast.Call, env: Environment) -> Rewritten:
         node.args, kind = self._scalars(node.args, env)
