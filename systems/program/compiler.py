@@ -78,7 +78,7 @@ def _constant(value: Any) -> str:
     return repr(value) if plain else type(value).__name__
 
 
-_LAYOUT = 3  # of what is kept on disk: raise it where former files are of no use any more
+_LAYOUT = 4  # of what is kept on disk: raise it where former files are of no use any more
 
 
 # --- which form ------------------------------------------------------------------------------------
@@ -115,9 +115,20 @@ LOG = logging.getLogger("pinjoint.compiler")
 
 
 class Choice:
-    """Which form programs of this process run in; a window changes it to ELSEWHERE."""
+    """Which form programs of this process run in; a window changes it to ELSEWHERE.
+
+    changes: how often a program began, or changed its form, in this process; what steps cost is known until then.
+    deadline: the time (time.perf_counter, s) from which on a step that is interpreted, and can be gone on with, raises
+    Unfinished.
+    """
 
     compile = _asked()
+    changes = 0
+    deadline = math.inf
+
+
+class Unfinished(Exception):
+    """A step takes longer than a frame may: the next advance goes on with it."""
 
 
 # --- modules ---------------------------------------------------------------------------------------
@@ -185,6 +196,7 @@ class GeneratedModule:
     def form(self) -> Any:
         """The functions by name, in the form that they run in now."""
         if self._form is None:
+            Choice.changes += 1
             if Choice.compile is Compile.ALWAYS:
                 self.load()
             else:
@@ -204,7 +216,7 @@ class GeneratedModule:
             self.load()
         except Exception as error:  # numba raises many kinds
             self._patience = math.inf
-            _tell(f"{self.name} goes on interpreted, and slower: it cannot be compiled ({error}).")
+            tell(f"{self.name} goes on interpreted, and slower: it cannot be compiled ({error}).")
 
     @property
     def is_loaded(self) -> bool:
@@ -233,6 +245,7 @@ class GeneratedModule:
             return called
 
         self._patience = LOADING
+        _interpreted.append(self)
         self._form = SimpleNamespace(**{name: timed(function) for name, function in interpreted.items()})
 
     def did(self, work: int) -> None:
@@ -266,32 +279,68 @@ class GeneratedModule:
     def load(self) -> Any:
         """Go on with machine code from now on: compiled first if nobody has."""
         with _loading:
-            if not self._compiled:
-                self._load()
+            if not self.load_kept():
+                self._compile()
         return self._form
 
-    def _load(self) -> None:
+    def load_kept(self) -> bool:
+        """Go on with machine code if another process, or an earlier one, has kept it; False if it has not.
+
+        It calls nothing, so that a thread can load what another one interprets meanwhile.
+        """
+        with _loading:
+            if self._compiled:
+                return True
+            kept = cache.read(_types_of(self.key)) if self.is_compiled() else None
+            if kept is None:
+                return False
+            from systems.machine_code import compile_for
+
+            machine = self._machine()
+            for name, function in vars(machine).items():
+                compile_for(function, kept, name)
+            self._form, self._compiled = machine, True
+            Choice.changes += 1
+            _keep_note(self.key, None)
+            return True
+
+    def _machine(self) -> SimpleNamespace:
+        """The functions, to be compiled when they are called."""
         from systems.machine_code import adopt
 
-        before, known, began = self._form, self.is_compiled(), time.perf_counter()
         adopt(self.module, self.key, _reached_from(self._source_and_kernels[1].values()))
-        self._form = SimpleNamespace(**{name: f.machine for name, f in self.functions.items()})
-        self._compiled = True
+        return SimpleNamespace(**{name: f.machine for name, f in self.functions.items()})
+
+    def _compile(self) -> None:
+        """Compile by calling everything, and keep that."""
+        from systems.machine_code import types_of
+
+        before, began = self._form, time.perf_counter()
+        self._form, self._compiled = self._machine(), True
+        Choice.changes += 1
         try:
             self.warm_up()
         except BaseException:
             self._form, self._compiled = before, False
             raise
-        _keep_note(self.key, None if known else (time.perf_counter() - began, self._size))
+        cache.write(_types_of(self.key), types_of(vars(self._form)))
+        _keep_note(self.key, (time.perf_counter() - began, self._size))
 
 
-def _tell(sentence: str) -> None:
+def tell(sentence: str) -> None:
     if sentence not in UNCOMPILED:
         UNCOMPILED.append(sentence)
         LOG.warning(sentence)
 
 
+def interpreted_here() -> list[GeneratedModule]:
+    """What began interpreted in this process and has no machine code yet, the costliest first."""
+    _interpreted[:] = (module for module in _interpreted if not module.is_loaded)
+    return sorted(_interpreted, key=lambda module: -module.spent)
+
+
 _loading = threading.RLock()
+_interpreted: list[GeneratedModule] = []
 _modules: dict[Any, GeneratedModule] = {}  # by source and kernels
 
 
@@ -345,6 +394,11 @@ def _note_of(key: str) -> Path:
     return cache.folder() / f"{key}.done"
 
 
+def _types_of(key: str) -> str:
+    """The name of the file that says for which types the functions of a module are compiled."""
+    return f"{key}.types"
+
+
 def _keep_note(key: str, cost: tuple[float, int] | None) -> None:
     """Note that all of a module is compiled, and when it was last used."""
     if not cache.TROUBLE:
@@ -364,11 +418,6 @@ def _seconds_per_byte() -> float:
             took, of = path.read_text(encoding="ascii").removesuffix(" bytes").split(" s, ")
             seconds, size = seconds + float(took), size + int(of)
     return seconds / size if size else SECONDS_PER_BYTE
-
-
-def is_blank() -> bool:
-    """True if nothing at all is compiled yet: the program is started for the first time."""
-    return next(cache.folder().glob("*.done"), None) is None
 
 
 def forget_unused(days: float = 60.0) -> None:
