@@ -30,8 +30,8 @@ class Elsewhere:
     def __init__(self) -> None:
         self.ended: dict[Job, str] = {}
         self._needed: Jobs = {}
+        self._soon: Jobs = {}
         self._later: Jobs = {}
-        self._loading: tuple[GeneratedModule, ...] = ()
         self._can_load = True
         self._process: subprocess.Popen[str] | None = None
         self._at_work: list[Job] = []
@@ -44,12 +44,14 @@ class Elsewhere:
         if self._thread.ident is None:
             self._thread.start()
 
-    def ask(self, needed: Jobs, later: Jobs, loading: Sequence[GeneratedModule] = ()) -> None:
-        """Compile what is needed, in order, then what may be needed later.
+    def ask(self, needed: Jobs, soon: Jobs, later: Jobs) -> None:
+        """Compile and load what is needed, in order, then what may be needed soon; and compile what may be later."""
+        self._needed, self._soon, self._later = needed, soon, later
 
-        loading: what to load although nothing has begun it, interpreted.
-        """
-        self._needed, self._later, self._loading = needed, later, tuple(loading)
+    @staticmethod
+    def is_ready(module: GeneratedModule) -> bool:
+        """True if it can be called without being rewritten first."""
+        return module.is_loaded or "rewritten" in vars(module)
 
     def close(self) -> None:
         """Let go of what is still being compiled."""
@@ -70,11 +72,19 @@ class Elsewhere:
             self._compile()
 
     def _load(self) -> None:
-        """Load what is compiled, one program at a time."""
-        for module in (*self._loading, *interpreted_here()) if self._can_load else ():
+        """Load what is compiled, or else rewrite what will be interpreted; one program at a time."""
+        wanted = [module for jobs in (self._needed, self._soon) for module in jobs.values()]
+        for module in (*interpreted_here(), *wanted):
             try:
-                if not module.is_loaded and module.load_kept():
+                if module.is_loaded:
+                    continue
+                if self._can_load and module.is_compiled() and module.load_kept():
                     return
+                if not self.is_ready(module):
+                    module.rewritten  # noqa: B018 (it is kept)
+                    return
+            except OSError:  # there is no source to rewrite
+                continue
             except Exception as error:  # such as a compiler that is damaged
                 self._can_load = False
                 tell(f"{SLOWER}: machine code cannot be loaded ({error}).")
@@ -91,7 +101,7 @@ class Elsewhere:
             self._note_end(process)
             needed = self._left(self._needed)
         self._urgent, self._process = bool(needed), None
-        self._at_work = needed or self._left(self._later)
+        self._at_work = needed or self._left({**self._soon, **self._later})
         if self._at_work and not self._closed.is_set():
             self._process = started(self._at_work, self._urgent)
 

@@ -66,6 +66,7 @@ class Preparation(System):
         self._given_up: set[Job] = set()  # of these: what cannot be compiled at all
         self._said: set[str] = set()
         self._draws_many = False
+        self._seen = -1  # the model's revision in the last frame
         self._structure = -1  # when anything was made or deleted last, as of the last frame
 
     def process(self, frame: Any) -> None:
@@ -78,6 +79,9 @@ class Preparation(System):
         if before == self._structure and self._asked is not Compile.NEVER:  # what was made or deleted is seen first
             self._ask(simulation)
             self._compile_here()
+            seen, self._seen = self._seen, simulation.model.revision
+            if seen == self._seen:
+                self._make_program(simulation)
         self._tell(frame.session)
         self._needed = {}
 
@@ -86,14 +90,22 @@ class Preparation(System):
         needed = dict(self._needed) | dict.fromkeys(_jobs_of(simulation), simulation)
         if self._draws_many:
             needed = {(RASTER.name,): simulation} | needed
-        later = {job: simulation for job in _jobs_later(simulation) if job not in needed}
-        unknown = ((job, by) for job, by in (needed | later).items() if job not in self._modules)
+        soon = {job: simulation for job in _jobs_soon(simulation) if job not in needed}
+        later = {(unit.name,): simulation for unit in AHEAD if (unit.name,) not in needed}
+        unknown = ((job, by) for job, by in (needed | soon | later).items() if job not in self._modules)
         for job, by in islice(unknown, 1):  # finding it takes a part of a frame
             self._modules[job] = _module_of(job, by)
         self._waiting = {job: since for job, since in self._waiting.items() if job in needed}
-        loading = [*self._waiting, *([(RASTER.name,)] if self._draws_many else [])]
-        found = [{job: m for job in jobs if (m := self._modules.get(job))} for jobs in (needed, later, loading)]
-        self.elsewhere.ask(found[0], found[1], list(found[2].values()))
+        self.elsewhere.ask(
+            *({job: m for job in jobs if (m := self._modules.get(job))} for jobs in (needed, soon, later))
+        )
+
+    def _make_program(self, simulation: Simulation) -> None:
+        """Make the program before a key needs it: it is loaded, or rewritten by the thread, so that this is quick."""
+        if not simulation.programs.ready and self.waits_for(simulation) is None:
+            modules = [self._modules.get(job) for job in _jobs_of(simulation)]
+            if all(module is not None and self.elsewhere.is_ready(module) for module in modules):
+                simulation.program  # noqa: B018 (it is made when asked for)
 
     def _compile_here(self) -> None:
         """Compile what something waits for and the other process could not hand over, after a picture that says so."""
@@ -177,15 +189,14 @@ def _jobs_of(simulation: Simulation) -> list[Job]:
     return jobs
 
 
-def _jobs_later(simulation: Simulation) -> Iterator[Job]:
-    """What a simulation may come to need: while a hand pulls, with plasticity, under a load that grows; and all units."""
+def _jobs_soon(simulation: Simulation) -> Iterator[Job]:
+    """What a simulation may come to need: while a hand pulls, with plasticity, under a load that grows."""
     if not simulation.integrator.exact:
         yield _job_with(simulation, {Pull.name})
         if any(isinstance(system, Elasticity) for system in simulation.plan):
             yielding = {ElasticityAfterYielding.name, Strength.name, Yielding.name}
             yield _job_with(simulation, yielding, without=Elasticity.name)
         yield _job_with(simulation, {RAMP})
-    yield from ((unit.name,) for unit in AHEAD)
 
 
 def _job_with(simulation: Simulation, names: set[str], without: str = "") -> Job:

@@ -17,9 +17,9 @@ import ast
 import copy
 import linecache
 import math
+import threading
 from collections.abc import Callable, Mapping
 from enum import IntEnum
-from functools import cache
 from itertools import count
 from types import CodeType, ModuleType
 from typing import Any
@@ -419,6 +419,7 @@ def _at_least_zero(node: ast.expr) -> ast.expr:
 # --- functions -------------------------------------------------------------------------------------
 
 _rewritten: dict[Any, Interpreted] = {}  # by the function that was declared
+_rewriting = threading.RLock()
 
 
 def in_lists(function: Callable[..., Any]) -> Interpreted:
@@ -456,9 +457,12 @@ def _outside(plain: Any) -> Any:
 _Defined = ast.FunctionDef | ast.Lambda
 
 
-@cache
+_parsed: dict[str, dict[int, list[_Defined]]] = {}  # by file, what of it is not rewritten yet
+
+
 def _definitions(file: str) -> dict[int, list[_Defined]]:
     """All functions in a file, by the line on which they, or their decorators, begin."""
+    linecache.checkcache(file)
     lines = linecache.getlines(file)
     if not lines:
         raise OSError(f"There is no source of {file}.")
@@ -472,24 +476,36 @@ def _definitions(file: str) -> dict[int, list[_Defined]]:
 
 
 def _definition(plain: Any) -> ast.FunctionDef:
-    """The definition of a function, to be changed."""
-    code, kind = plain.__code__, ast.Lambda if plain.__name__ == "<lambda>" else ast.FunctionDef
-    there = [d for d in _definitions(code.co_filename).get(code.co_firstlineno, ()) if isinstance(d, kind)]
-    if len(there) > 1:
-        there = [d for d in there if _compiles_to(code, d)]
-    if not there:
+    """The definition of a function, to be changed: one that was changed before is read again."""
+    code = plain.__code__
+    node = _taken(code, _parsed.get(code.co_filename, {}))
+    if node is None:
+        _parsed[code.co_filename] = _definitions(code.co_filename)
+        node = _taken(code, _parsed[code.co_filename])
+    if node is None:
         raise OSError(f"There is no source of {plain.__qualname__} in {code.co_filename}.")
-    node = copy.deepcopy(there[0]) if "<locals>" in plain.__qualname__ else there[0]  # others are defined once
     if isinstance(node, ast.Lambda):
         body: list[ast.stmt] = [ast.Return(node.body)]
         return ast.copy_location(ast.FunctionDef("lambda__", node.args, body, []), node)
     return node
 
 
+def _taken(code: CodeType, parsed: dict[int, list[_Defined]]) -> _Defined | None:
+    """The definition of this function, which is taken from those that were parsed; None if it is not there."""
+    there = parsed.get(code.co_firstlineno, [])
+    same = [node for node in there if _compiles_to(code, node)]
+    if not same:
+        return None
+    there.remove(same[0])
+    return same[0]
+
+
 def _compiles_to(code: CodeType, node: _Defined) -> bool:
     """True if this is the function, of several on one line."""
     if not isinstance(node, ast.Lambda):
         return node.name == code.co_name
+    if code.co_name != "<lambda>":
+        return False
     made = compile(ast.fix_missing_locations(ast.Expression(node)), "", "eval").co_consts[0]
     return bool(made.co_code == code.co_code and made.co_consts == code.co_consts)
 
@@ -499,7 +515,8 @@ def _compiles_to(code: CodeType, node: _Defined) -> bool:
 
 def interpreted(function: Callable[..., Any]) -> Interpreted:
     """A kernel as Python calls it: with arrays, or named tuples of arrays, of which it may change the entries."""
-    rewritten = in_lists(function)
+    with _rewriting:
+        rewritten = in_lists(function)
 
     def called(*given: Any) -> Any:
         lists: dict[int, tuple[Any, Any]] = {}

@@ -33,29 +33,32 @@ TRAVEL = 0.35
 class Disc(IntEnum):
     """Columns of `discs`: one row per disc, its path since its epoch t₀, the time of its last change.
 
-    u(t) = u₀ + v₀ (t − t₀) + a (t − t₀)²/2 is the displacement from the original position o. Obstacles follow the
-    discs: straight pieces that never move, rounded by their radius. Of a pair, an obstacle is the later row. The columns
-    that impact times follow from come first, so that they lie together in memory.
+    With s = t − t₀, u(t) = u₀ + v₀ s + a s²/2 is the displacement from the original position o; in a step h of persistent
+    contact it is bent by s² (s − h) (b + c s), which takes nothing from its ends. Obstacles follow the discs: straight
+    pieces that never move, rounded by their radius. Of a pair, an obstacle is the later row. The columns that time
+    changes come first.
     """
 
     UX, UY = 0, 1  # displacement at the epoch, m
     VX, VY = 2, 3  # velocity at the epoch, m/s
     AX, AY = 4, 5  # acceleration of the path, m/s²
     EPOCH = 6  # s
-    RADIUS = 7  # m
-    OX, OY = 8, 9  # original position, m; of an obstacle, its first end
-    TX, TY = 10, 11  # vector from the first end of an obstacle to the other, m; 0 for discs
-    NOISE = 12  # round-off in the velocity, from the impact or the contacts that caused it, m/s
-    CHANGES = 13  # number of changes of the path so far
-    GX, GY = 14, 15  # acceleration without contact forces, m/s²
-    WX, WY = 16, 17  # inverse mass in each direction, 1/kg; 0 where the disc is held
-    STEP = 18  # time at which the forces in its persistent contacts are due again, s
-    BOUNCE = 19  # restitution of impacts with it
-    SHARED = 20  # ends of an obstacle that an earlier obstacle accounts for: SHARED_START + SHARED_END
+    STEP = 7  # time at which the forces in its persistent contacts are due again, t₀ + h, s; ∞ if they are not
+    NOISE = 8  # round-off in the velocity, from the impact or the contacts that caused it, m/s
+    BX, BY = 9, 10  # how the path bends, m/s³
+    CX, CY = 11, 12  # and how that changes, m/s⁴
+    RADIUS = 13  # m
+    OX, OY = 14, 15  # original position, m; of an obstacle, its first end
+    TX, TY = 16, 17  # vector from the first end of an obstacle to the other, m; 0 for discs
+    CHANGES = 18  # number of changes of the path so far
+    GX, GY = 19, 20  # acceleration without contact forces, m/s²
+    WX, WY = 21, 22  # inverse mass in each direction, 1/kg; 0 where the disc is held
+    BOUNCE = 23  # restitution of impacts with it
+    SHARED = 24  # ends of an obstacle that an earlier obstacle accounts for: SHARED_START + SHARED_END
 
 
-FLIGHT = [Disc.UX, Disc.UY, Disc.VX, Disc.VY, Disc.AX, Disc.AY, Disc.EPOCH, Disc.STEP, Disc.NOISE]
-"""Columns that time changes: those of `FreeFlightState.motion` (components/collision_state.py), in its order."""
+FLIGHT = slice(Disc.UX, Disc.CY + 1)
+"""Columns that time changes: those of `FreeFlightState.motion` (components/collision_state.py)."""
 
 
 class PairKind(IntEnum):
@@ -173,6 +176,7 @@ class Group(NamedTuple):
     N_cᵀ M⁻¹ N_d is the compliance of the contacts under the members' supports.
     motion: what impulses change, shape (n, 2): velocities, m/s, with impulses in N·s; or accelerations, m/s²,
     with forces in N. initial, start, other: copies of other motion.
+    steps: of a step in persistent contact, shape (len(Stage), n, 2).
     noise: rate below which a contact closes by round-off only, shape (1,).
     marks: work space, shape (len(Mark), c). matrix: work space, shape (DIRECT + 1, DIRECT).
     """
@@ -186,6 +190,7 @@ class Group(NamedTuple):
     initial: Floats
     start: Floats
     other: Floats
+    steps: Floats
     noise: Floats
     marks: Integers
     matrix: Floats
@@ -203,6 +208,7 @@ class Group(NamedTuple):
             initial=np.zeros((n, 2)),
             start=np.zeros((n, 2)),
             other=np.zeros((n, 2)),
+            steps=np.zeros((len(Stage), n, 2)),
             noise=np.zeros(1),
             marks=np.zeros((len(Mark), contacts), dtype=np.int64),
             matrix=np.zeros((DIRECT + 1, DIRECT)),
@@ -222,6 +228,15 @@ class Contact(IntEnum):
     ROUND = 8  # 1: the normal turns as the discs move around each other; 0: along a flat side it does not
     PREVIOUS = 9  # impulse before a sweep to and fro
     DIRECTION = 10  # sum of the changes of the impulse by the sweeps so far
+    SX, SY = 11, 12  # vector from the first member to the nearest point of the second at the start of a step, m
+
+
+class Stage(IntEnum):
+    """Parts of `Group.steps`, of each member."""
+
+    BEFORE = 0  # accelerations in the stage before, m/s²
+    BEND = 1  # columns BX, BY of Disc
+    CURVE = 2  # columns CX, CY of Disc
 
 
 class Mark(IntEnum):

@@ -205,6 +205,11 @@ class GeneratedModule:
             self._lose_patience()
         return self._form
 
+    @cached_property
+    def rewritten(self) -> dict[str, Callable[..., Any]]:
+        """The interpreted functions, not timed. Raises OSError where there is no source."""
+        return {name: function.interpreted for name, function in self.functions.items()}
+
     def begin(self, elements: int) -> None:
         """Choose the form for a model of so many elements: a large one would not get far interpreted."""
         if elements > LARGE and Choice.compile is Compile.SOON:
@@ -226,7 +231,7 @@ class GeneratedModule:
     def _begin_interpreted(self) -> None:
         """Use the interpreted form; where the source of a kernel is not known, machine code."""
         try:
-            interpreted = {name: function.interpreted for name, function in self.functions.items()}
+            interpreted = self.rewritten
         except OSError as error:
             if Choice.compile is Compile.NEVER:
                 raise OSError(f"{self.name} cannot be interpreted: {error}") from error

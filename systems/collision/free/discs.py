@@ -255,11 +255,13 @@ class Discs:
         owners, entries = self._persistent_entries()
         pairs = np.column_stack([owners, self.constraints.persistent[entries, Entry.OTHER]])
         pile = np.concatenate([self.counts[PILE_COUNTS], self.numbers[PILE_NUMBERS]])
-        return FreeFlightState(self.rows[: self.count, FLIGHT], pairs, self.constraints.forces[entries], pile)
+        return FreeFlightState(
+            self.rows[: self.count, FLIGHT].copy(), pairs, self.constraints.forces[entries], pile
+        )
 
     def resume(self, state: FreeFlightState) -> None:
         """Go on from the state of other discs with the same properties."""
-        self.rows[: self.count, FLIGHT] = state.motion
+        self.rows[: self.count, : state.motion.shape[1]] = state.motion
         counted = len(PILE_COUNTS)
         self.counts[PILE_COUNTS] = state.pile[:counted]
         self.numbers[PILE_NUMBERS] = state.pile[counted:]
@@ -340,9 +342,25 @@ class Discs:
 
     def state_at(self, time: float) -> tuple[Floats, Floats]:
         """Displacements (m) and velocities (m/s) at a time (s) between the last event and the next."""
-        s = (time - self.rows[: self.count, Disc.EPOCH])[:, None]
-        u, v, a = (self._columns(first) for first in (Disc.UX, Disc.VX, Disc.AX))
-        return u + s * (v + 0.5 * s * a), v + s * a
+        return state_on(self.rows[: self.count], time)
+
+
+def state_on(paths: Floats, time: float) -> tuple[Floats, Floats]:
+    """Displacements (m) and velocities (m/s) at a time (s) on paths that begin with the columns FLIGHT of Disc.
+
+    Paths of earlier programs end before the columns of bends, and have none.
+    """
+    s = (time - paths[:, Disc.EPOCH])[:, None]
+    u, v, a = (paths[:, first : first + 2] for first in (Disc.UX, Disc.VX, Disc.AX))
+    place, velocity = u + s * (v + 0.5 * s * a), v + s * a
+    rows = np.flatnonzero(paths[:, Disc.STEP] < np.inf)
+    if len(rows) and paths.shape[1] >= FLIGHT.stop:
+        s, left = s[rows], (time - paths[rows, Disc.STEP])[:, None]
+        curve = paths[rows, Disc.CX : Disc.CY + 1]
+        bend = paths[rows, Disc.BX : Disc.BY + 1] + s * curve
+        place[rows] += s * s * left * bend
+        velocity[rows] += s * (2.0 * left + s) * bend + s * s * left * curve
+    return place, velocity
 
 
 def _shared_ends(others: Obstacles) -> Floats:

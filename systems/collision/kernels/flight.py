@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from systems.collision.columns import NONE, SPEED_NOISE, Contact, Count, Disc, Entry, Number, Reason
+from systems.collision.columns import NONE, SPEED_NOISE, Contact, Count, Disc, Entry, Number, Reason, Stage
 from systems.collision.kernels import compiled
 from systems.collision.kernels.grid import (
     enclose,
@@ -28,8 +28,8 @@ from systems.collision.kernels.persistent_contact import (
     enter_persistent,
     find_persistent,
     forget_persistent,
+    hold_together,
     is_held,
-    stop_sinking,
     support,
 )
 from systems.collision.kernels.pile import begin_steps, crowded, enter_impact, step
@@ -37,12 +37,14 @@ from systems.collision.kernels.pile_pairs import enter_pushing_pairs
 from systems.collision.kernels.projection import compliance, opening_rate
 from systems.collision.kernels.time_of_impact import (
     INFINITY,
+    displacement_at,
     is_shared_end,
     nearest,
     place_noise,
-    relative_motion,
+    relative_state,
     rest_speed,
     touch_speed,
+    velocity_at,
 )
 
 COINCIDENT = 1e-300  # m; in place of the distance of centres that coincide
@@ -91,7 +93,7 @@ def _next_event(discs, grid, constraints, queue, group, report, numbers, counts)
     drop_first(queue, counts[Count.QUEUED])
     counts[Count.QUEUED] -= 1
     counts[Count.EVENTS] += 1
-    stop_sinking(count, touching, group)
+    hold_together(count, touching, discs, group, numbers)
     respond(count, touching, _restitution(touching, discs, group, numbers), group)
     _report(touching, discs, group, report, numbers, counts)
     _set_noise(count, touching, discs, group)
@@ -138,18 +140,7 @@ def _admit(i, count, discs, group, time):
     group.members[count] = i
     group.place[i] = count
     group.mobility[count, 0], group.mobility[count, 1] = discs[i, Disc.WX], discs[i, Disc.WY]
-    group.motion[count, 0], group.motion[count, 1] = _velocity(i, discs, time)
-
-
-@compiled
-def _velocity(i, discs, time):
-    """Velocity of a disc; at the end of a step in persistent contact, the velocity of RATTLE before its projection."""
-    s = time - discs[i, Disc.EPOCH]
-    vx, vy, ax, ay = discs[i, Disc.VX], discs[i, Disc.VY], discs[i, Disc.AX], discs[i, Disc.AY]
-    moves = vx != 0.0 or vy != 0.0 or ax != 0.0 or ay != 0.0
-    if moves and (ax != discs[i, Disc.GX] or ay != discs[i, Disc.GY]):
-        return vx + 0.5 * s * (ax + discs[i, Disc.GX]), vy + 0.5 * s * (ay + discs[i, Disc.GY])
-    return vx + s * ax, vy + s * ay
+    group.motion[count, 0], group.motion[count, 1] = velocity_at(i, discs, time)
 
 
 @compiled
@@ -162,7 +153,7 @@ def _dismiss(count, group):
 def _link(i, j, force, touching, discs, group, time):
     """Add a contact to the group; a contact for which there is no room is only counted."""
     if touching < group.links.shape[0]:
-        dx, dy, _, _, _, _ = relative_motion(discs, i, j, time)
+        dx, dy, _, _ = relative_state(discs, i, j, time)
         dx, dy, rounded = nearest(dx, dy, j, discs)
         distance = math.sqrt(dx * dx + dy * dy)
         group.links[touching, 0], group.links[touching, 1] = group.place[i], group.place[j]
@@ -172,6 +163,7 @@ def _link(i, j, force, touching, discs, group, time):
             dx = distance = COINCIDENT
         contact[Contact.NX], contact[Contact.NY] = dx / distance, dy / distance
         contact[Contact.DISTANCE] = distance
+        contact[Contact.SX], contact[Contact.SY] = dx, dy
         contact[Contact.BIAS], contact[Contact.FORCE] = 0.0, force
         contact[Contact.COMPLIANCE] = compliance(touching, touching, group)
     return touching + 1
@@ -218,7 +210,7 @@ def _is_new(m, b, discs, group):
 @compiled
 def _touch(a, b, discs, constraints, now):
     """True if two discs touch, may collide and have no persistent contact."""
-    dx, dy, _, _, _, _ = relative_motion(discs, a, b, now)
+    dx, dy, _, _ = relative_state(discs, a, b, now)
     if is_shared_end(dx, dy, b, discs):
         return False
     dx, dy, _ = nearest(dx, dy, b, discs)
@@ -235,7 +227,7 @@ def _gather_persistent(m, count, touching, discs, constraints, group, now):
     entry = constraints.first_persistent[a]
     while entry != NONE:
         b = constraints.persistent[entry, Entry.OTHER]
-        dx, dy, _, _, _, _ = relative_motion(discs, a, b, now)
+        dx, dy, _, _ = relative_state(discs, a, b, now)
         if _is_new(m, b, discs, group) and not is_shared_end(dx, dy, b, discs):
             if group.place[b] == NONE:
                 _admit(b, count, discs, group, now)
@@ -285,9 +277,8 @@ def _report(touching, discs, group, report, numbers, counts):
 @compiled
 def _place(i, contact, discs, time):
     """The point at which a disc touches another in the direction of its contact."""
-    s = time - discs[i, Disc.EPOCH]
-    x = discs[i, Disc.OX] + discs[i, Disc.UX] + s * (discs[i, Disc.VX] + 0.5 * s * discs[i, Disc.AX])
-    y = discs[i, Disc.OY] + discs[i, Disc.UY] + s * (discs[i, Disc.VY] + 0.5 * s * discs[i, Disc.AY])
+    ux, uy = displacement_at(i, discs, time)
+    x, y = discs[i, Disc.OX] + ux, discs[i, Disc.OY] + uy
     return x + discs[i, Disc.RADIUS] * contact[Contact.NX], y + discs[i, Disc.RADIUS] * contact[Contact.NY]
 
 
@@ -337,11 +328,16 @@ def _redirect(count, struck, duration, discs, group, numbers):
         old = old and vy == discs[i, Disc.VY] + s * discs[i, Disc.AY] and ay == discs[i, Disc.AY]
         pushed = ax != discs[i, Disc.GX] or ay != discs[i, Disc.GY]
         pushed = pushed and (vx != 0.0 or vy != 0.0 or ax != 0.0 or ay != 0.0)
+        ux, uy = displacement_at(i, discs, now)
         discs[i, Disc.STEP] = now + duration if pushed else INFINITY
         if is_held(i, discs) or (old and m >= struck and not pushed):
             continue
-        discs[i, Disc.UX] += s * (discs[i, Disc.VX] + 0.5 * s * discs[i, Disc.AX])
-        discs[i, Disc.UY] += s * (discs[i, Disc.VY] + 0.5 * s * discs[i, Disc.AY])
+        discs[i, Disc.UX], discs[i, Disc.UY] = ux, uy
+        for d in range(2):
+            discs[i, Disc.BX + d], discs[i, Disc.CX + d] = 0.0, 0.0
+            if discs[i, Disc.STEP] < INFINITY:
+                discs[i, Disc.BX + d] = group.steps[Stage.BEND, m, d]
+                discs[i, Disc.CX + d] = group.steps[Stage.CURVE, m, d]
         discs[i, Disc.VX], discs[i, Disc.VY], discs[i, Disc.AX], discs[i, Disc.AY] = vx, vy, ax, ay
         discs[i, Disc.EPOCH] = now
         discs[i, Disc.CHANGES] += 1.0

@@ -26,14 +26,18 @@ from systems.collision.kernels.time_of_impact import (
     first_approach,
     first_touch,
     is_straight,
+    nearest,
     pull_noise,
     relative_motion,
+    relative_state,
     speed_noise,
 )
 
 LONGEST_HORIZON, SHORTEST_HORIZON = 2.0**20, 2.0**-200  # s
 BOX_COST = 2.5  # of renewing a disc's box, relative to that of looking at one neighbour (measured)
 MOST_NEIGHBOURS = 64  # per disc; with more, a shorter horizon is opened
+MOST_CORRECTIONS = 3  # of a time of impact, each of which squares its error
+LARGEST_CORRECTION = 1e-3  # of the step of persistent contact
 SAMPLED_DISCS = 128  # discs that decide the size of the grid's cells
 
 
@@ -71,6 +75,26 @@ def next_impact(i, j, discs, constraints, end):
         time = start + first_approach(path, reach, noise, growth, end - start, False)
     if time > end or is_joined(i, j, constraints) or find_persistent(i, j, constraints) != NONE:
         return INFINITY
+    if discs[i, Disc.STEP] < INFINITY or discs[j, Disc.STEP] < INFINITY:
+        return _on_bent_paths(time, i, j, start, reach, discs)
+    return time
+
+
+@compiled
+def _on_bent_paths(time, i, j, start, reach, discs):
+    """The impact on the paths of two discs, one of them in a step of persistent contact, given that on their parabolas.
+
+    By Newton's method. Discs that hardly approach are looked at when their parabolas meet.
+    """
+    most = LARGEST_CORRECTION * (min(discs[i, Disc.STEP], discs[j, Disc.STEP]) - start)
+    for _ in range(MOST_CORRECTIONS):
+        dx, dy, vx, vy = relative_state(discs, i, j, time)
+        dx, dy, _ = nearest(dx, dy, j, discs)
+        distance = math.sqrt(dx * dx + dy * dy)
+        rate = (dx * vx + dy * vy) / distance if distance > 0.0 else 0.0
+        if abs(distance - reach) > -rate * most:
+            return time
+        time = max(time - (distance - reach) / rate, start)
     return time
 
 

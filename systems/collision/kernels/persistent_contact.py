@@ -2,24 +2,32 @@
 
 A contact persists while its force pushes: forces F ≥ 0 and accelerations satisfy, at the contacts whose discs do not
 separate, n·Δa + |Δv|²/d ≥ 0, and F = 0 where it is > 0. Discs that are at rest under these forces stay where they are,
-at no cost. Discs that slide take steps h of RATTLE (Andersen, J. Comput. Phys. 52, 1983) with one-sided constraints:
-constant forces along the normals at the start such that the discs touch at the end of the step,
-    u₁ = u₀ + h v₀ + h²/2 (g + W N F),   gap(u₁) ≥ 0 ⟂ F ≥ 0,
-and velocities v₁ = v₀ + h/2 (g + W N F) + h/2 g + W N₁ p with n₁·Δv₁ ≥ 0 ⟂ p ≥ 0. In between they are on
-parabolas like all others, so that impacts with them are found as exactly.
+at no cost. Discs that slide take steps h of the classical Runge–Kutta method with these accelerations. At the end of a
+step places and velocities are projected, by W N₁ p, onto gap = 0 and n₁·Δv = 0 (Hairer, Wanner, Solving Ordinary
+Differential Equations II, 2nd ed., section VII.2), so that gaps and energy drift by the fifth power of h at most. In
+between, paths are polynomials of the fourth degree through both ends: parabolas, near which impacts are sought, and a bend.
 """
 
 import math
 
-from systems.collision.columns import NONE, Contact, Count, Disc, Entry, Mark, Number
+from systems.collision.columns import NONE, Contact, Count, Disc, Entry, Mark, Number, Stage
 from systems.collision.kernels import compiled
-from systems.collision.kernels.projection import MOST_SWEEPS, begin, copy_motion, opening_rate, project
+from systems.collision.kernels.projection import (
+    MOST_SWEEPS,
+    begin,
+    compliance,
+    copy_motion,
+    opening_rate,
+    project,
+    push_apart,
+    set_noise,
+)
 from systems.collision.kernels.time_of_impact import (
     INFINITY,
     is_straight,
     passing,
     place_noise,
-    relative_motion,
+    relative_state,
     speed_noise,
     touch_speed,
 )
@@ -27,8 +35,6 @@ from systems.collision.kernels.time_of_impact import (
 STILL = 1e-10  # of the speed and acceleration that gravity gives: a slower disc is at rest
 STEP_ANGLE = 0.0156  # by which discs turn around one another in a step; discs sink by its cube / 8 of a radius
 LEAST_SHARE = 1e-4  # of such a step: error of the time at which a flat side or a contact ends
-MOST_CORRECTIONS = 40  # of the forces in a step; 3 are usual
-MOST_VAIN_CORRECTIONS = 5  # consecutive corrections that do not halve the largest gap
 
 
 @compiled
@@ -82,17 +88,31 @@ def enter_persistent(i, j, force, discs, constraints, counts):
 
 
 @compiled
-def stop_sinking(count, touching, group):
+def hold_together(count, touching, discs, group, numbers):
     """Project the velocities in `motion` for the contacts that have persisted until now."""
     active = 0
     for c in range(touching):
         group.contacts[c, Contact.IMPULSE] = 0.0
         if group.contacts[c, Contact.FORCE] > 0.0 and group.contacts[c, Contact.COMPLIANCE] > 0.0:
+            lasted = 0.0
+            for p in range(2):
+                i = group.members[group.links[c, p]]
+                if discs[i, Disc.STEP] < INFINITY:
+                    lasted = numbers[Number.NOW] - discs[i, Disc.EPOCH]
+            _pull_together(c, 0.5 * lasted * group.contacts[c, Contact.FORCE], group)
             group.marks[Mark.ACTIVE, active] = c
             active += 1
     if active > 0:
         begin(count, group)
         project(count, active, 0.0, MOST_SWEEPS, group)
+
+
+@compiled
+def _pull_together(c, impulse, group):
+    """Pull the discs of a contact together, so that a projection, which only pushes, corrects what opens, too."""
+    if impulse > 0.0:
+        push_apart(c, -impulse, group)
+        group.contacts[c, Contact.IMPULSE] = impulse
 
 
 # --- the forces from now on ---------------------------------------------------------------------------------
@@ -112,16 +132,11 @@ def support(count, touching, discs, group, numbers):
         duration = _duration(closed, discs, group, numbers)
         if duration < INFINITY:
             least = LEAST_SHARE * duration
-            met = _meet_at_end(duration, count, closed, discs, group, numbers)
-            while duration > least and (not met or _one_lets_go(closed, group)):  # or they touch again at once
+            while not _take_step(duration, count, closed, discs, group, numbers) and duration > least:
                 duration = max(0.25 * duration, least)
+                for c in range(touching):
+                    _turn(c, 0.0, 0.0, group)
                 closed = _push_now(count, touching, discs, group, numbers)
-                met = _meet_at_end(duration, count, closed, discs, group, numbers)
-            if not met:
-                closed = _push_now(count, touching, discs, group, numbers)
-    for k in range(closed):
-        c = group.marks[Mark.ACTIVE, k]
-        group.contacts[c, Contact.FORCE] = group.contacts[c, Contact.IMPULSE]
     return duration
 
 
@@ -138,16 +153,6 @@ def _push_now(count, touching, discs, group, numbers):
         c = group.marks[Mark.ACTIVE, k]
         group.contacts[c, Contact.FORCE] = group.contacts[c, Contact.IMPULSE]
     return closed
-
-
-@compiled
-def _one_lets_go(closed, group):
-    """True if a contact that pushes at the start of a step has opened at its end."""
-    for k in range(closed):
-        c = group.marks[Mark.ACTIVE, k]
-        if group.contacts[c, Contact.FORCE] > 0.0 and group.contacts[c, Contact.IMPULSE] == 0.0:
-            return True
-    return False
 
 
 @compiled
@@ -255,52 +260,135 @@ def _stay(c, discs, group, numbers):
     i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
     length = math.hypot(discs[j, Disc.TX], discs[j, Disc.TY])
     tx, ty = discs[j, Disc.TX] / length, discs[j, Disc.TY] / length
-    x, y, _, _, _, _ = relative_motion(discs, i, j, numbers[Number.NOW])
+    x, y, _, _ = relative_state(discs, i, j, numbers[Number.NOW])
     vx, vy = _relative(c, group.other, group)
     ax, ay = _relative(c, group.motion, group)
     return passing(-(x * tx + y * ty), -(vx * tx + vy * ty), -(ax * tx + ay * ty), length, 0.0)
 
 
-@compiled
-def _end_gap(c, h, discs, group):
-    """Gap of a contact after a time h with the accelerations in `motion` and the velocities in `other`.
+# --- a step -------------------------------------------------------------------------------------------------
 
-    The nearest point of an obstacle is taken to be on the same end or flat side as at the start.
+
+@compiled
+def _turn(c, h, share, group):
+    """Turn a contact to where its discs are after a time h with the velocities in `other`.
+
+    And with `share` (s²) of the accelerations in BEFORE. The nearest point of an obstacle is taken to be on the same
+    end or flat side as at the start.
     """
+    contact = group.contacts[c]
     vx, vy = _relative(c, group.other, group)
-    ax, ay = _relative(c, group.motion, group)
-    x = group.contacts[c, Contact.NX] * group.contacts[c, Contact.DISTANCE] + h * (vx + 0.5 * h * ax)
-    y = group.contacts[c, Contact.NY] * group.contacts[c, Contact.DISTANCE] + h * (vy + 0.5 * h * ay)
-    i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
-    reach = discs[i, Disc.RADIUS] + discs[j, Disc.RADIUS]
-    if group.contacts[c, Contact.ROUND] == 0.0:
-        return group.contacts[c, Contact.NX] * x + group.contacts[c, Contact.NY] * y - reach
-    return math.sqrt(x * x + y * y) - reach
+    ax, ay = _relative(c, group.steps[Stage.BEFORE], group)
+    x, y = contact[Contact.SX] + h * vx + share * ax, contact[Contact.SY] + h * vy + share * ay
+    if contact[Contact.ROUND] == 0.0:
+        contact[Contact.DISTANCE] = contact[Contact.NX] * x + contact[Contact.NY] * y
+        return
+    distance = math.sqrt(x * x + y * y)
+    contact[Contact.NX], contact[Contact.NY], contact[Contact.DISTANCE] = x / distance, y / distance, distance
+    contact[Contact.COMPLIANCE] = compliance(c, c, group)
 
 
 @compiled
-def _meet_at_end(h, count, closed, discs, group, numbers):
-    """Correct the forces until the closed contacts have, after a time h, the same gap as now, or are open; False if none do.
+def _gap(c, discs, group):
+    """The gap of a contact (m) where it is now, more than where it began: one that was negative by round-off stays so.
 
-    A gap that now is negative by round-off stays so: of discs jammed between others not all can be corrected, and
-    every attempt would push harder.
+    Of discs jammed between others not all can be corrected, and every attempt would push harder.
+    """
+    i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+    began = math.hypot(group.contacts[c, Contact.SX], group.contacts[c, Contact.SY])
+    return group.contacts[c, Contact.DISTANCE] - min(discs[i, Disc.RADIUS] + discs[j, Disc.RADIUS], began)
+
+
+@compiled
+def _take_step(h, count, closed, discs, group, numbers):
+    """Take a step h with the accelerations in `motion`, which become those of the parabolas; sets BEND and CURVE.
+
+    Returns False if h is too long: a contact that pushes lets go, or one that does not push closes.
+    """
+    first, bends, curves = group.initial, group.steps[Stage.BEND], group.steps[Stage.CURVE]
+    copy_motion(group.motion, first, count)
+    for m in range(count):
+        for d in range(2):
+            group.steps[Stage.BEFORE, m, d], bends[m, d], curves[m, d] = 0.0, 0.0, 0.0
+    fits = True
+    for stage in range(1, 4):
+        ahead, weight = (h, 1.0) if stage == 3 else (0.5 * h, 2.0)
+        if not _accelerate(ahead, h, count, closed, discs, group):
+            fits = False
+        for m in range(count):
+            for d in range(2):
+                change = group.motion[m, d] - first[m, d]
+                bends[m, d] += change if stage < 3 else 0.0
+                curves[m, d] += weight * change
+    return _end_step(h, count, closed, discs, group, numbers) and fits
+
+
+@compiled
+def _accelerate(ahead, h, count, closed, discs, group):
+    """Set `motion` to the accelerations at the next stage of a step. Returns False if a contact that has pushed lets go.
+
+    A contact that has not pushed may only do so where it has no gap.
     """
     contacts = group.contacts
-    before, in_vain = INFINITY, 0
-    for _ in range(MOST_CORRECTIONS):
-        met, worst = True, 0.0
-        for k in range(closed):
-            c = group.marks[Mark.ACTIVE, k]
-            gap = _end_gap(c, h, discs, group) - min(_end_gap(c, 0.0, discs, group), 0.0)
-            i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
-            noise = place_noise(discs, i, j, numbers[Number.NOW])
-            if gap < -noise or (gap > noise and contacts[c, Contact.IMPULSE] > 0.0):
-                met, worst = False, max(worst, abs(gap))
-            contacts[c, Contact.BIAS] += 2.0 * gap / (h * h) - opening_rate(c, group.motion, group)
-        in_vain = in_vain + 1 if worst > 0.5 * before else 0
-        if met or in_vain == MOST_VAIN_CORRECTIONS:
-            return met
-        before = worst
-        _pull(count, discs, group)
-        project(count, closed, 0.0, MOST_SWEEPS, group)
-    return False
+    for k in range(closed):
+        c = group.marks[Mark.ACTIVE, k]
+        _turn(c, ahead, 0.5 * ahead * h, group)
+        x, y = _relative(c, group.other, group)
+        ax, ay = _relative(c, group.motion, group)
+        x, y = x + ahead * ax, y + ahead * ay
+        contacts[c, Contact.BIAS] = contacts[c, Contact.ROUND] * (x * x + y * y) / contacts[c, Contact.DISTANCE]
+        if contacts[c, Contact.FORCE] == 0.0:
+            contacts[c, Contact.BIAS] += 2.0 * max(_gap(c, discs, group), 0.0) / (ahead * ahead)
+    copy_motion(group.motion, group.steps[Stage.BEFORE], count)
+    _pull(count, discs, group)
+    project(count, closed, 0.0, MOST_SWEEPS, group)
+    holds = True
+    for k in range(closed):
+        c = group.marks[Mark.ACTIVE, k]
+        if contacts[c, Contact.FORCE] > 0.0 and contacts[c, Contact.IMPULSE] == 0.0:
+            holds = holds and opening_rate(c, group.motion, group) <= 4.0 * group.noise[0]
+    return holds
+
+
+@compiled
+def _end_step(h, count, closed, discs, group, numbers):
+    """Project places and velocities at the end of a step, and set the paths that lead there.
+
+    Returns False if a contact that did not push has closed.
+    """
+    contacts, first, path = group.contacts, group.initial, group.steps[Stage.BEFORE]
+    bends, curves = group.steps[Stage.BEND], group.steps[Stage.CURVE]
+    apart = True
+    for m in range(count):
+        for d in range(2):
+            path[m, d] = first[m, d] + bends[m, d] / 3.0
+            group.motion[m, d] = 0.0
+    for k in range(closed):
+        c = group.marks[Mark.ACTIVE, k]
+        _turn(c, h, 0.5 * h * h, group)
+        i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
+        contacts[c, Contact.BIAS] = _gap(c, discs, group)
+        if contacts[c, Contact.FORCE] == 0.0:
+            apart = apart and contacts[c, Contact.BIAS] >= -place_noise(discs, i, j, numbers[Number.NOW])
+        contacts[c, Contact.FORCE] = contacts[c, Contact.IMPULSE]
+        _pull_together(c, 0.5 * h * h * contacts[c, Contact.FORCE], group)
+    set_noise(count, group)
+    project(count, closed, 0.0, MOST_SWEEPS, group)
+    for m in range(count):
+        for d in range(2):
+            path[m, d] += 2.0 * group.motion[m, d] / (h * h)
+            bends[m, d] = (path[m, d] - first[m, d]) / (2.0 * h)
+            group.motion[m, d] = group.other[m, d] + h * first[m, d] + h * curves[m, d] / 6.0
+    copy_motion(group.motion, first, count)
+    for k in range(closed):
+        c = group.marks[Mark.ACTIVE, k]
+        contacts[c, Contact.BIAS], contacts[c, Contact.IMPULSE] = 0.0, 0.0
+        _pull_together(c, 0.5 * h * contacts[c, Contact.FORCE], group)
+    set_noise(count, group)
+    project(count, closed, 0.0, MOST_SWEEPS, group)
+    for m in range(count):
+        for d in range(2):
+            change = h * curves[m, d] / 6.0 + (group.motion[m, d] - first[m, d]) - 2.0 * h * h * bends[m, d]
+            curves[m, d] = (change / (h * h) - bends[m, d]) / h
+    copy_motion(path, group.motion, count)
+    return apart

@@ -40,7 +40,7 @@ from systems.collision.kernels.pile_solver import (
     start_without_contacts,
     supplies_energy,
 )
-from systems.collision.kernels.time_of_impact import INFINITY, smaller_radius
+from systems.collision.kernels.time_of_impact import INFINITY, displacement_at, smaller_radius, velocity_at
 
 TOLERANCE = 1e-8  # of the smallest radius: depth by which discs sink in a step whose sweeps have settled
 LARGE_PILE, ROUGHNESS = 1000, 4e-3  # contacts above which this share of the fastest travel is allowed, too
@@ -144,11 +144,9 @@ def _pushes(discs, constraints):
 def _begin_paths(discs, pile, numbers):
     """Begin new paths of all discs now."""
     for i in range(discs.shape[0]):
-        s = numbers[Number.NOW] - discs[i, Disc.EPOCH]
-        discs[i, Disc.UX] += s * (discs[i, Disc.VX] + 0.5 * s * discs[i, Disc.AX])
-        discs[i, Disc.UY] += s * (discs[i, Disc.VY] + 0.5 * s * discs[i, Disc.AY])
-        discs[i, Disc.VX] += s * discs[i, Disc.AX]
-        discs[i, Disc.VY] += s * discs[i, Disc.AY]
+        ux, uy = displacement_at(i, discs, numbers[Number.NOW])
+        vx, vy = velocity_at(i, discs, numbers[Number.NOW])
+        discs[i, Disc.UX], discs[i, Disc.UY], discs[i, Disc.VX], discs[i, Disc.VY] = ux, uy, vx, vy
         discs[i, Disc.AX], discs[i, Disc.AY] = discs[i, Disc.GX], discs[i, Disc.GY]
         discs[i, Disc.EPOCH], discs[i, Disc.STEP] = numbers[Number.NOW], INFINITY
         discs[i, Disc.CHANGES] += 1.0

@@ -13,6 +13,7 @@ from systems.collision.kernels.pile_pairs import separation
 from systems.collision.kernels.time_of_impact import rest_speed
 
 MOST_PILE_SWEEPS = 80  # to and fro over the contacts in a step; the next continues from its impulses
+MOST_RELAXED = 40000  # contacts up to which the sweeps over few are more
 ENERGY_ROUND_OFF = 1e-9  # of the energy of motion
 SIDE_BY_SIDE = 8  # contacts next to each other in the order of sweeps are far apart: computed at once
 
@@ -99,7 +100,7 @@ def find_impulses(active, tolerance, pile):
     through memory: the acceleration of an impulse is added when its contact is relaxed.
     """
     size, share, keep = 0.0, 0.0, 0.0
-    for turn in range(MOST_PILE_SWEEPS):
+    for turn in range(max(MOST_PILE_SWEEPS, MOST_RELAXED // max(active, 1))):
         _accelerate(share, keep, pile)
         for c in range(active):
             _relax_forward(c, share, keep, pile)

@@ -66,10 +66,16 @@ def copy_motion(source, target, members):
 
 @compiled
 def begin(members, group):
-    """Copy the motion to `initial`, and set the noise to the round-off of its largest part."""
+    """Copy the motion to `initial`, and set the noise."""
+    copy_motion(group.motion, group.initial, members)
+    set_noise(members, group)
+
+
+@compiled
+def set_noise(members, group):
+    """Set the noise to the round-off of the largest part of the motion."""
     largest = 0.0
     for m in range(members):
-        group.initial[m, 0], group.initial[m, 1] = group.motion[m, 0], group.motion[m, 1]
         largest = max(largest, abs(group.motion[m, 0]) + abs(group.motion[m, 1]))
     group.noise[0] = 2.0 * SPEED_NOISE * largest
 

@@ -19,8 +19,43 @@ MOST_ROOT_ITERATIONS = 2200  # what bisection alone needs across all exponents a
 
 
 @compiled
+def bend(i, discs, time):
+    """How place and velocity of a disc in a step of persistent contact differ from those on its parabola; 0 in flight."""
+    if discs[i, Disc.STEP] == INFINITY:
+        return 0.0, 0.0, 0.0, 0.0
+    s = time - discs[i, Disc.EPOCH]
+    left = time - discs[i, Disc.STEP]
+    x, y = discs[i, Disc.BX] + s * discs[i, Disc.CX], discs[i, Disc.BY] + s * discs[i, Disc.CY]
+    place, rate, last = s * s * left, s * (2.0 * left + s), s * s * left
+    return place * x, place * y, rate * x + last * discs[i, Disc.CX], rate * y + last * discs[i, Disc.CY]
+
+
+@compiled
+def velocity_at(i, discs, time):
+    """Velocity of a disc."""
+    s = time - discs[i, Disc.EPOCH]
+    vx, vy = discs[i, Disc.VX] + s * discs[i, Disc.AX], discs[i, Disc.VY] + s * discs[i, Disc.AY]
+    if discs[i, Disc.STEP] == INFINITY:
+        return vx, vy
+    _, _, x, y = bend(i, discs, time)
+    return vx + x, vy + y
+
+
+@compiled
+def displacement_at(i, discs, time):
+    """Displacement of a disc from its original position."""
+    s = time - discs[i, Disc.EPOCH]
+    ux = discs[i, Disc.UX] + s * (discs[i, Disc.VX] + 0.5 * s * discs[i, Disc.AX])
+    uy = discs[i, Disc.UY] + s * (discs[i, Disc.VY] + 0.5 * s * discs[i, Disc.AY])
+    if discs[i, Disc.STEP] == INFINITY:
+        return ux, uy
+    x, y, _, _ = bend(i, discs, time)
+    return ux + x, uy + y
+
+
+@compiled
 def relative_motion(discs, i, j, time):
-    """Position, velocity and acceleration of disc j relative to disc i at a time."""
+    """Position, velocity and acceleration of disc j relative to disc i at a time, on their parabolas."""
     s = time - discs[i, Disc.EPOCH]
     t = time - discs[j, Disc.EPOCH]
     iax, iay, jax, jay = discs[i, Disc.AX], discs[i, Disc.AY], discs[j, Disc.AX], discs[j, Disc.AY]
@@ -32,6 +67,17 @@ def relative_motion(discs, i, j, time):
     vx = (jvx + t * jax) - (ivx + s * iax)
     vy = (jvy + t * jay) - (ivy + s * iay)
     return dx, dy, vx, vy, difference(iax, jax), difference(iay, jay)
+
+
+@compiled
+def relative_state(discs, i, j, time):
+    """Position and velocity of disc j relative to disc i at a time, on their bent paths."""
+    dx, dy, vx, vy, _, _ = relative_motion(discs, i, j, time)
+    if discs[i, Disc.STEP] < INFINITY or discs[j, Disc.STEP] < INFINITY:
+        ibx, iby, icx, icy = bend(i, discs, time)
+        jbx, jby, jcx, jcy = bend(j, discs, time)
+        dx, dy, vx, vy = dx + (jbx - ibx), dy + (jby - iby), vx + (jcx - icx), vy + (jcy - icy)
+    return dx, dy, vx, vy
 
 
 @compiled

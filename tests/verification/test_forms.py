@@ -1,0 +1,73 @@
+"""Programs compute the same bits interpreted and compiled, and when the one follows the other, at any step."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from game import Session
+from systems.physics.integrators import INTEGRATORS
+from systems.program.compiler import Compile
+from tests.reference import bits
+from tests.reference.elements import Model
+from tests.reference.forms import all_modules, load_all, programs
+from tests.reference.random_models import case, numbers_of
+from tests.verification.test_determinism import DOCUMENTS
+
+KINDS = (
+    "everything, in motion",
+    "cables with dampers",
+    "loads of every history",
+    "stiff",
+    "free discs that collide",
+    "discs on trusses",
+)  # each is compiled
+
+
+def state(model: str | Model, steps: int, choice: Compile, switch: int | None = None, **chosen: str) -> bytes:
+    """All columns after so many steps; machine code takes over after `switch` of them."""
+    with programs(choice):
+        session = Session.open(model)
+        for name, value in chosen.items():
+            setattr(session.settings, name, value)
+        if switch is not None:
+            session.run(steps=switch)
+            load_all()
+        session.run(steps=steps - (switch or 0))
+        loaded = {module.is_loaded for module in all_modules() if module._form is not None}
+        assert loaded == {choice is Compile.ALWAYS} if switch is None else True in loaded
+        return bits.digest(session.model).encode()
+
+
+@pytest.mark.parametrize("title", KINDS)
+@settings(max_examples=6)
+@given(turn=st.integers(0, 10_000))
+def test_random_models_have_the_same_bits_in_both_forms(title: str, turn: int) -> None:
+    document = case(numbers_of(title, 1, turn)[0]).document
+    assert state(document, 60, Compile.NEVER) == state(document, 60, Compile.ALWAYS)
+
+
+@pytest.mark.parametrize("integrator", list(INTEGRATORS))
+def test_all_integrators_have_the_same_bits_in_both_forms(integrator: str) -> None:
+    one, other = (
+        state("hyperstatic_yield", 80, choice, integrator=integrator)
+        for choice in (Compile.NEVER, Compile.ALWAYS)
+    )
+    assert one == other
+
+
+@pytest.mark.parametrize("title", ["everything, in motion", "discs on trusses", "free discs that collide"])
+@settings(max_examples=6)
+@given(turn=st.integers(0, 10_000), switch=st.integers(1, 59))
+def test_machine_code_may_take_over_at_any_step(title: str, turn: int, switch: int) -> None:
+    document = case(numbers_of(title, 1, turn)[0]).document
+    assert state(document, 60, Compile.ELSEWHERE, switch) == state(document, 60, Compile.NEVER)
+
+
+@pytest.mark.parametrize("document", [make() for make in DOCUMENTS.values()], ids=list(DOCUMENTS))
+def test_bits_do_not_depend_on_the_portions_of_interpreted_steps(
+    document: Model, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("systems.program.compiler.LONGEST_CALL", 1e-4)
+    assert state(document, 300, Compile.NEVER) == state(document, 300, Compile.ALWAYS)
