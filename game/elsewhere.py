@@ -24,15 +24,16 @@ Jobs = Mapping[Job, GeneratedModule]
 class Elsewhere:
     """What is compiled in another process, and loaded by a thread of this one while its other threads go on.
 
-    ended: the jobs that were done, with what went wrong, or "".
+    ended: the jobs that were done, with what went wrong, or "". compiles: False if nothing ever is compiled.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, compiles: bool = True) -> None:
         self.ended: dict[Job, str] = {}
+        self._compiles = compiles
         self._needed: Jobs = {}
         self._soon: Jobs = {}
         self._later: Jobs = {}
-        self._can_load = True
+        self._can_load = compiles
         self._process: subprocess.Popen[str] | None = None
         self._at_work: list[Job] = []
         self._urgent = False  # what is compiled now is needed
@@ -69,7 +70,8 @@ class Elsewhere:
             importlib.import_module(library)  # what edits and steps need, which takes several frames
         while not self._closed.wait(INTERVAL):
             self._load()
-            self._compile()
+            if self._compiles:
+                self._compile()
 
     def _load(self) -> None:
         """Load what is compiled, or else rewrite what will be interpreted; one program at a time."""

@@ -55,8 +55,8 @@ class Preparation(System):
     headless = False
 
     def __init__(self) -> None:
-        self.elsewhere = Elsewhere()
         self._asked = Choice.compile
+        self.elsewhere = Elsewhere(compiles=self._asked is not Compile.NEVER)
         if self._asked is not Compile.NEVER:
             Choice.compile = Compile.ELSEWHERE
         self._frames = 0
@@ -76,7 +76,7 @@ class Preparation(System):
             self.elsewhere.begin()
         simulation = frame.session.simulation
         before, self._structure = self._structure, simulation.model.structure
-        if before == self._structure and self._asked is not Compile.NEVER:  # what was made or deleted is seen first
+        if before == self._structure:  # what was made or deleted is seen first
             self._ask(simulation)
             self._compile_here()
             seen, self._seen = self._seen, simulation.model.revision
@@ -139,11 +139,10 @@ class Preparation(System):
 
     def waits_for(self, simulation: Simulation) -> Waiting | None:
         """What a simulation waits for; None if it can go on, interpreted or compiled."""
-        if self._asked is Compile.NEVER:
-            return None
         jobs = _jobs_of(simulation)
         self._needed |= dict.fromkeys(jobs, simulation)
-        if self._asked is Compile.SOON and is_live(simulation.model):
+        waits = not is_live(simulation.model) if self._asked is Compile.SOON else self._asked is Compile.ALWAYS
+        if not waits:
             return None
         left = [job for job in jobs if not self._is_ready(job)]
         if not left:

@@ -21,6 +21,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from enum import Enum, IntEnum
 from functools import cache as once
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from types import CodeType, ModuleType, SimpleNamespace
 from typing import Any
@@ -275,7 +276,7 @@ class GeneratedModule:
         """How long compiling it will take, by what that took before on this machine."""
         return _seconds_per_byte() * self._size
 
-    @property
+    @cached_property
     def _size(self) -> int:
         """Bytes of the interpreter's code of all that is compiled."""
         reached = _reached_from([*self.functions.values(), *self._source_and_kernels[1].values()])
@@ -414,11 +415,14 @@ def _keep_note(key: str, cost: tuple[float, int] | None) -> None:
                 _note_of(key).write_text(f"{cost[0]:.3f} s, {cost[1]} bytes", encoding="ascii")
 
 
+_NOTES = 50  # of those of former compilations that are read
+
+
 @once
 def _seconds_per_byte() -> float:
     """What compiling took on this machine; without experience, what it took where this was written."""
     seconds, size = 0.0, 0
-    for path in cache.folder().glob("*.done"):
+    for path in islice(cache.folder().glob("*.done"), _NOTES):
         with contextlib.suppress(OSError, ValueError):
             took, of = path.read_text(encoding="ascii").removesuffix(" bytes").split(" s, ")
             seconds, size = seconds + float(took), size + int(of)

@@ -11,6 +11,8 @@ from systems.run.simulation import Simulation
 
 LONGEST_FRAME = 0.1  # s of real time that one frame may catch up
 BUDGET = 0.012  # s of a frame that steps may take
+LONGEST_STEP = 0.02  # s after which a frame leaves a step in its midst, where that is possible
+AT_ONCE = 0.003  # s for which steps are planned at once
 GROWTH = 8  # times as many steps at once, at most, as have ever been taken at once at what they cost now
 FASTEST, SLOWEST = 1e3, 1e-5  # simulated seconds per second shown, times the natural pace at 1
 MANY, SHARE = 2000, 0.1  # above MANY elements, a change of their number by a smaller share keeps the pace
@@ -52,8 +54,11 @@ class TimeScale:
         self._most = 0  # steps that were taken at once
 
     def affordable(self, seconds: float) -> int:
-        """Steps to take next where so many seconds are left: one at first, to learn what they cost."""
-        fitting = seconds / max(self._seconds_per_step, 1e-9)
+        """Steps to take next where so many seconds are left: one at first, to learn what they cost, and never all.
+
+        Impacts make steps ten times as long from one moment to the next.
+        """
+        fitting = min(AT_ONCE, seconds) / max(self._seconds_per_step, 1e-9)
         return int(min(fitting, GROWTH * self._most)) if self._most else 1
 
     def cost(self, steps: int, seconds: float) -> None:
@@ -117,7 +122,7 @@ class RealTimeRunner:
         if self._changes != Choice.changes:
             self._changes = Choice.changes
             clock.forget_cost()
-        Choice.deadline = time.perf_counter() + LONGEST_FRAME / 2
+        Choice.deadline = time.perf_counter() + LONGEST_STEP
         try:
             some = max(clock.affordable(left), 1)
             while some > 0:
