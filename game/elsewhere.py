@@ -65,13 +65,17 @@ class Elsewhere:
     # --- in the thread -------------------------------------------------------------------------------
 
     def _run(self) -> None:
+        self._look()
         read_sources([integrator for integrator in INTEGRATORS.values() if integrator.mod is None])
         for library in ("systems.plasticity.kernels", "scipy.spatial", "scipy.sparse.linalg"):
             importlib.import_module(library)  # what edits and steps need, which takes several frames
         while not self._closed.wait(INTERVAL):
-            self._load()
-            if self._compiles:
-                self._compile()
+            self._look()
+
+    def _look(self) -> None:
+        if self._compiles:
+            self._compile()
+        self._load()
 
     def _load(self) -> None:
         """Load what is compiled, or else rewrite what will be interpreted; one program at a time."""

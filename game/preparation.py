@@ -71,9 +71,6 @@ class Preparation(System):
 
     def process(self, frame: Any) -> None:
         """Say what is needed next; and once each, what could not be compiled or kept."""
-        self._frames += 1
-        if self._frames == 2:  # after the first picture
-            self.elsewhere.begin()
         simulation = frame.session.simulation
         before, self._structure = self._structure, simulation.model.structure
         if before == self._structure:  # what was made or deleted is seen first
@@ -82,6 +79,9 @@ class Preparation(System):
             seen, self._seen = self._seen, simulation.model.revision
             if seen == self._seen:
                 self._make_program(simulation)
+        self._frames += 1
+        if self._frames == 2:  # after the first picture
+            self.elsewhere.begin()
         self._tell(frame.session)
         self._needed = {}
 
