@@ -6,7 +6,7 @@ Programs begin interpreted, so that most models never wait: see `is_live`.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from typing import Any
 
@@ -64,6 +64,7 @@ class Preparation(System):
         self._needed: dict[Job, Simulation] = {}  # by this frame, in order, and by what
         self._waiting: dict[Job, float] = {}  # what keeps a simulation waiting, and since when
         self._given_up: set[Job] = set()  # of these: what cannot be compiled at all
+        self._problems: dict[str, None] = {}  # with what is needed
         self._said: set[str] = set()
         self._draws_many = False
         self._seen = -1  # the model's revision in the last frame
@@ -83,11 +84,10 @@ class Preparation(System):
         if self._frames == 2:  # after the first picture
             self.elsewhere.begin()
         self._tell(frame.session)
-        self._needed = {}
 
     def _ask(self, simulation: Simulation) -> None:
-        """Have compiled what this frame needed, and what may be needed next; and loaded what something waits for."""
-        needed = dict(self._needed) | dict.fromkeys(_jobs_of(simulation), simulation)
+        """Have compiled and loaded what this frame needed, then what may be needed next."""
+        needed = self._needed | dict.fromkeys(_jobs_of(simulation), simulation)
         if self._draws_many:
             needed = {(RASTER.name,): simulation} | needed
         soon = {job: simulation for job in _jobs_soon(simulation) if job not in needed}
@@ -95,10 +95,18 @@ class Preparation(System):
         unknown = ((job, by) for job, by in (needed | soon | later).items() if job not in self._modules)
         for job, by in islice(unknown, 1):  # finding it takes a part of a frame
             self._modules[job] = _module_of(job, by)
+        known = [self._known(jobs) for jobs in (needed, soon, later)]
+        if known[0] is not None:
+            self.elsewhere.ask(*(found or {} for found in known))
+        self._problems = dict.fromkeys(filter(None, map(self._problem_of, needed)))
         self._waiting = {job: since for job, since in self._waiting.items() if job in needed}
-        self.elsewhere.ask(
-            *({job: m for job in jobs if (m := self._modules.get(job))} for jobs in (needed, soon, later))
-        )
+        self._needed = {}
+
+    def _known(self, jobs: Iterable[Job]) -> dict[Job, GeneratedModule] | None:
+        """The modules of jobs, once all are known: they are compiled by one process."""
+        if any(job not in self._modules for job in jobs):
+            return None
+        return {job: module for job in jobs if (module := self._modules[job]) is not None}
 
     def _make_program(self, simulation: Simulation) -> None:
         """Make the program before a key needs it: it is loaded, or rewritten by the thread, so that this is quick."""
@@ -119,9 +127,8 @@ class Preparation(System):
                 return
 
     def _tell(self, session: Any) -> None:
-        for job in self._needed:
-            if problem := self._problem_of(job):
-                tell(f"{SLOWER}: {problem.removesuffix('.')}.")
+        for problem in self._problems:
+            tell(f"{SLOWER}: {problem.removesuffix('.')}.")
         for sentence in (*cache.TROUBLE, *UNCOMPILED):
             if sentence not in self._said:
                 self._said.add(sentence)
