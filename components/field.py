@@ -13,6 +13,7 @@ from typing import Any, Generic, Protocol, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from components.mistake import Mistake
 from components.wording import quoted
 
 T = TypeVar("T")
@@ -57,7 +58,7 @@ class Role(Enum):
     __hash__ = object.__hash__  # each is one of a kind, and looked up at every change
 
 
-class FieldError(ValueError):
+class FieldError(Mistake, ValueError):
     """A value that a Field cannot take; the message names the element, the value and the remedy."""
 
 

@@ -16,13 +16,34 @@ paths.py                    what particles.B.force and the like mean, wherever a
 preparation.py prepare.py   compiling ahead of need, in another process
 """
 
-from game.interrupts import quietly_interrupted
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-with quietly_interrupted():
-    from game import included as _included  # noqa: F401 (registers what is written as mods are)
+from game.interrupts import is_program, quietly_interrupted
+from game.version import __version__
+
+if TYPE_CHECKING:  # each is loaded where it is asked for
     from game.checks import SystemCheckError, check_system
     from game.editor.context import Context
     from game.session import Session
-    from game.version import __version__
 
 __all__ = ["Context", "Session", "SystemCheckError", "__version__", "check_system"]
+
+_HOMES = {
+    "Context": "game.editor.context",
+    "Session": "game.session",
+    "SystemCheckError": "game.checks",
+    "check_system": "game.checks",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'game' has no attribute '{name}'")
+    with quietly_interrupted():
+        import_module("game.included")  # registers what is written as mods are
+        return getattr(import_module(_HOMES[name]), name)
+
+
+if not is_program():  # which loads what it needs
+    __getattr__("Session")  # so that models can hold all, whatever part of the program a script begins with

@@ -1,16 +1,22 @@
 """The program: `pinjoint`, or `python -m game`."""
 
+import os
 import sys
 import warnings
 
 from game.interrupts import ended_with, quietly_interrupted
+from game.version import __version__
 
 
 def main() -> int:
     """Run the command line; returns the exit status."""
     if not sys.warnoptions:  # they are for those who write programs; -W shows them
         warnings.simplefilter("ignore")
+    if sys.argv[1:] == ["--version"] and _version_written():
+        return 0
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the matrices are small, and waiting threads take 0.1 s
     with quietly_interrupted():
+        from game import included  # noqa: F401 (registers what is written as mods are)
         from game.commands import command_line
         from game.commands.progress import told
         from game.streams import prepare_streams
@@ -18,6 +24,15 @@ def main() -> int:
     with told():
         status = command_line.main()
     return ended_with(status)
+
+
+def _version_written() -> bool:
+    """Write the version before anything is loaded; False if that fails: the command line says why."""
+    try:
+        print(f"pinjoint {__version__}", flush=True)
+    except OSError:
+        return False
+    return sys.stdout is not None
 
 
 if __name__ == "__main__":

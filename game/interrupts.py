@@ -21,8 +21,9 @@ PATIENCE = 5.0  # s that a frame in progress may take before it is cut off
 LEFT_OVER = 2.0  # s that threads may take to end after the program
 
 
-def _is_program(called: str) -> bool:
+def is_program() -> bool:
     """True if the process is the program: `pinjoint` or `python -m game` (called "-m" before Python has found it)."""
+    called = next(iter(sys.argv), "")
     return Path(called).stem in ("pinjoint", "pinjoint-script", "-m") or Path(called).parent == _HERE
 
 
@@ -31,7 +32,7 @@ def quietly_interrupted() -> Iterator[None]:
     """Let Ctrl+C end the process at once, if it is the program itself; scripts that import game handle it themselves."""
     usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     in_main_thread = threading.current_thread() is threading.main_thread()
-    if not (usual and in_main_thread and _is_program(*sys.argv[:1] or [""])):
+    if not (usual and in_main_thread and is_program()):
         yield
         return
     signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -17,6 +17,7 @@ import msgspec
 
 from components.field import Field, FieldError, Role
 from components.handle import Handle
+from components.mistake import Mistake
 from components.model import Model
 from components.suggestions import missing, remedy
 from components.table import Table
@@ -41,7 +42,7 @@ _SET_BY_TIME = ("clock",)  # tables
 _FLAGS = {"true": True, "false": False}
 
 
-class PathError(LookupError):
+class PathError(Mistake, LookupError):
     """A path that names nothing or cannot have a value; the message gives the reason and the remedy."""
 
 

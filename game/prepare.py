@@ -15,8 +15,8 @@ from itertools import groupby
 from components.model import Model
 from components.particle import Particle
 from components.rod import spawn_rods
-from game.commands.mods import load_as_asked
-from game.session import Session
+from game import Session
+from game.commands.with_mods import load_as_asked
 from systems import cache
 from systems.collision.driven.compiled import DRIVEN
 from systems.collision.free.discs import EVENTS, HORIZONS, PILES

@@ -26,8 +26,6 @@ from typing import Any
 
 import numpy as np
 
-from systems.kernels import plain_function
-
 Interpreted = Callable[..., Any]
 
 # --- arithmetic ------------------------------------------------------------------------------------
@@ -418,6 +416,12 @@ def _at_least_zero(node: ast.expr) -> ast.expr:
 
 # --- functions -------------------------------------------------------------------------------------
 
+
+def plain_function(function: Callable[..., Any]) -> Callable[..., Any]:
+    """What a kernel, or a function that numba's own decorators made, was declared as; other functions as they are."""
+    return getattr(function, "py_func", function)
+
+
 _rewritten: dict[Any, Interpreted] = {}  # by the function that was declared
 _rewriting = threading.RLock()
 
@@ -467,7 +471,11 @@ def _definitions(file: str) -> dict[int, list[_Defined]]:
     if not lines:
         raise OSError(f"There is no source of {file}.")
     found: dict[int, list[_Defined]] = {}
-    for node in ast.walk(ast.parse("".join(lines))):
+    try:
+        parsed = ast.parse("".join(lines))
+    except SyntaxError as error:  # it is another text, such as a page with the function in it
+        raise OSError(f"{file} is no source: {error}.") from error
+    for node in ast.walk(parsed):
         if isinstance(node, ast.FunctionDef):
             found.setdefault(min([node.lineno, *(d.lineno for d in node.decorator_list)]), []).append(node)
         elif isinstance(node, ast.Lambda):

@@ -20,13 +20,13 @@ def islands(model: Model) -> Rows:
     """
     moves = np.asarray((model.particles.mobility > 0.0).any(axis=1))
     between = model.rods.between.astype(np.intp)
-    root = _lowest_joined(len(moves), between[moves[between].all(axis=1)])
+    root = lowest_joined(len(moves), between[moves[between].all(axis=1)])
     found = np.full(len(moves), IMMOVABLE, dtype=np.intp)
     found[moves] = np.unique(root[moves], return_inverse=True)[1] + 1
     return found
 
 
-def _lowest_joined(count: int, pairs: Rows) -> Rows:
+def lowest_joined(count: int, pairs: Rows) -> Rows:
     """The lowest row that a chain of pairs joins each row to, shape (count,)."""
     root = np.arange(count)
     while True:

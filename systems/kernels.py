@@ -14,13 +14,13 @@ in systems/interpreter.py, machine code in systems/machine_code.py.
 
 from __future__ import annotations
 
-import inspect
 import os
 from collections.abc import Callable
 from enum import Enum
 from functools import cached_property, partial, update_wrapper
-from types import ModuleType
 from typing import Any
+
+from systems.interpreter import interpreted
 
 PLAIN = os.environ.get("PINJOINT_PLAIN_NUMBA", "") == "1"
 
@@ -51,17 +51,7 @@ class Kernel:
     @cached_property
     def interpreted(self) -> Callable[..., Any]:
         """The plain form, to be called with arrays."""
-        from systems.interpreter import interpreted
-
-        return interpreted(self)
-
-    @cached_property
-    def machine(self) -> Callable[..., Any]:
-        """The compiled form; what calls it first has it compiled, or loaded from the cache."""
-        from systems.machine_code import dispatcher_of
-
-        dispatcher: Callable[..., Any] = dispatcher_of(self)
-        return dispatcher
+        return interpreted(self.py_func)
 
     def __call__(self, *given: Any) -> Any:
         """Compute, interpreted."""
@@ -99,19 +89,3 @@ def shared() -> Callable[[Callable[..., Any]], Kernel]:
 
 
 prange = range
-
-
-def plain_function(function: Callable[..., Any]) -> Callable[..., Any]:
-    """What a kernel, or a function that numba's own decorators made, was declared as; other functions as they are."""
-    return getattr(function, "py_func", function)
-
-
-def used_by(plain: Callable[..., Any]) -> dict[str, Any]:
-    """The names that a function takes from outside: closure, globals, and attributes of modules among these."""
-    outside = inspect.getclosurevars(plain)
-    used: dict[str, Any] = {**outside.globals, **outside.nonlocals}
-    for name, value in list(used.items()):
-        if isinstance(value, ModuleType):
-            names = plain.__code__.co_names
-            used |= {f"{name}.{n}": getattr(value, n) for n in names if hasattr(value, n)}
-    return used

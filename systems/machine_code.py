@@ -63,8 +63,22 @@ _FURTHER: dict[Use, dict[str, Any]] = {
 }
 
 
-def dispatcher_of(kernel: Kernel) -> Any:
-    """What numba makes of a kernel: it compiles itself when it is called, or when what calls it is compiled."""
+def machine_code(kernel: Any) -> Any:
+    """What numba makes of a kernel: it compiles itself when it is called, or when what calls it is compiled.
+
+    What mods have declared by numba's own decorators is that already.
+    """
+    if not isinstance(kernel, Kernel):
+        return kernel
+    if kernel not in _made:
+        _made[kernel] = _dispatcher_of(kernel)
+    return _made[kernel]
+
+
+_made: dict[Kernel, Any] = {}
+
+
+def _dispatcher_of(kernel: Kernel) -> Any:
     options, function = _FURTHER[kernel.use] | kernel.targetoptions, kernel.py_func
     if kernel.use is Use.PART and not PLAIN:
         chosen = {"nopython": True, "boundscheck": None, **options}
@@ -83,7 +97,7 @@ def dispatcher_of(kernel: Kernel) -> Any:
 @typeof_impl.register(Kernel)
 def _type_of(kernel: Kernel, context: Any) -> Any:
     """Functions that numba compiles call a kernel as what it makes of it."""
-    return numba.typeof(kernel.machine)
+    return numba.typeof(machine_code(kernel))
 
 
 def adopt(module: ModuleType, name: str, kernels: Iterable[Any]) -> None:

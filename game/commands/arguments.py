@@ -8,12 +8,13 @@ import re
 from collections.abc import Callable
 from typing import Any, NoReturn
 
+from components.mistake import Mistake
 from game.streams import put
 
 BAD_INPUT = 2
 
 
-class UsageError(Exception):
+class UsageError(Mistake):
     """Bad usage or a bad model: one sentence for the person, and the exit status."""
 
     def __init__(self, sentence: str, status: int = BAD_INPUT) -> None:

@@ -1,63 +1,20 @@
-"""`pinjoint mods list|check|new`, the options --mods and --no-mods of every command, and the safe start after a crash."""
+"""`pinjoint mods list|check|new`: extensions of the program."""
 
 from __future__ import annotations
 
-import logging
-import uuid
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from game.commands import COMMANDS
 from game.commands.arguments import Parser
 from game.commands.options import ANSWERED, NOT_ANSWERED
 from game.commands.output import Row, add_output, write_result
-from game.documents.library import data_folder
-from game.documents.locks import lock_file
-from game.editor.context import FAULTS
 from game.mods.finding import mods_folder
 from game.mods.loading import MODS, load
-from game.mods.mod import INCLUDED, LOG, Mod, ModError
+from game.mods.mod import INCLUDED, Mod, ModError
 from game.mods.skeleton import write_skeleton
 from game.mods.trial import mistakes_of
-from game.streams import tell
 from game.version import __version__
-
-LEFT_OUT = (
-    "Pinjoint crashed while your mods were loaded, so they are left out this time. The next"
-    " start loads them again; --no-mods always leaves them out."
-)
-
-
-def load_as_asked(words: Sequence[str]) -> list[str]:
-    """Load the mods that the options --mods DIR and --no-mods ask for; returns the other words.
-
-    Mods that are left out are named on standard error. After a crash with mods, a window opens without those that
-    --mods did not name. Raises ModError; also for a mod that --mods names and that cannot be used, where a command
-    would compute without it.
-    """
-    parser = Parser(prog="pinjoint", add_help=False, allow_abbrev=False)
-    parser.add_argument("--mods", action="append", default=[], metavar="DIR")
-    parser.add_argument("--no-mods", action="store_true")
-    options, others = parser.parse_known_args(list(words))
-    for folder in options.mods:
-        if not Path(folder).is_dir():
-            raise ModError(f"--mods {folder}: there is no such folder.")
-    unsafe = not options.no_mods and others[:1] not in [[name] for name in COMMANDS] and crashed()
-    if unsafe:
-        FAULTS.append(LEFT_OUT)
-    named = {Path(folder).resolve() for folder in options.mods}
-    computes = set(others[:1]) & set(COMMANDS) - {"open"}
-    for mod in load(options.mods, installed=not (options.no_mods or unsafe)):
-        if mod.off and others[:1] != ["mods"]:
-            if computes and mod.folder is not None and {mod.folder, mod.folder.parent} & named:
-                raise ModError(f"The mod '{mod.name}' cannot be used: {mod.problem}")
-            tell(f"the mod '{mod.name}' was left out: {mod.problem}")
-    return others
-
-
-# --- the command ---------------------------------------------------------------------------------------
 
 
 def command(words: Sequence[str]) -> int:
@@ -137,39 +94,3 @@ def _lines_of_check(found: Sequence[dict[str, Any]]) -> Iterator[str]:
     for mod in found:
         yield f"{mod['name']} {mod['version']}: {'WRONG' if mod['problems'] else 'all is well'}"
         yield from (f"    {line}" for line in (*mod["problems"], *mod["notes"]))
-
-
-# --- safe start ----------------------------------------------------------------------------------------
-
-
-def crashed() -> bool:
-    """True if a window with mods ended without being closed; asking deletes its lock file."""
-    found = False
-    for path in (data_folder() / "running").glob("*.lock"):
-        lock = lock_file(path)
-        if lock is not None:
-            lock.close()
-            path.unlink(missing_ok=True)
-            found = True
-    return found
-
-
-@contextmanager
-def in_use() -> Iterator[None]:
-    """Keep a log and a lock file while a window is open with a person's mods; only a crash leaves the file behind."""
-    if not any(mod.loaded and mod.source != INCLUDED for mod in MODS):
-        yield
-        return
-    path = data_folder() / "running" / f"{uuid.uuid4().hex}.lock"
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        lock = lock_file(path)
-        LOG.addHandler(logging.FileHandler(data_folder() / "mods.log", encoding="utf-8", delay=True))
-    except OSError:  # the folder cannot be written; the window works all the same
-        lock = None
-    try:
-        yield
-    finally:
-        if lock is not None:
-            lock.close()
-        path.unlink(missing_ok=True)

@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from components.mistake import Mistake
 from components.wording import printable
 from game.commands.arguments import UsageError
 from game.documents.models import laid_out, replace
@@ -25,7 +26,7 @@ Row = Sequence[Any]  # of a table or of CSV
 Rows = Callable[[Any], Iterable[Row]]
 
 
-class ResultError(ValueError):
+class ResultError(Mistake, ValueError):
     """A result that is not a finite number; the message names the element."""
 
 

@@ -12,9 +12,9 @@ from components.model import Model
 from components.suggestions import nearest
 from game.commands import COMMANDS
 from game.commands.arguments import Parser, UsageError
-from game.commands.mods import in_use
 from game.commands.options import ANSWERED, NO_DISPLAY
 from game.commands.output import writable, writing
+from game.commands.with_mods import in_use
 from game.documents import models
 from game.documents.open_documents import ModelFile, file_of
 from game.scripts import script

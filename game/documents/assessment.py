@@ -12,10 +12,10 @@ from components.snapshot import Snapshot
 from systems.base import Law, StopReason
 from systems.catalogue import step_systems
 from systems.run.simulation import Simulation
+from systems.statics.events import Event
 
 if TYPE_CHECKING:  # they import scipy
     from systems.run.measured_error import MeasuredError
-    from systems.statics.events import Event
     from systems.statics.verify import Comparison, Theories
 
 Moment = tuple[int, float]  # of a run: the revision of its last edit, and the time (s)

@@ -21,6 +21,7 @@ from components.field import Column, Field, FieldError, Role, is_broken
 from components.grid import Grid
 from components.handle import Handle
 from components.load import Load
+from components.mistake import Mistake
 from components.model import ADDED, Model
 from components.particle import Particle, check_velocities
 from components.rod import Rod
@@ -58,7 +59,7 @@ _SAVED = (Role.DOCUMENT, Role.STATE)
 Columns = Mapping[str, Column]
 
 
-class ModelError(ValueError):
+class ModelError(Mistake, ValueError):
     """A model that cannot be read or written; the message says where, what is wrong and the remedy."""
 
 

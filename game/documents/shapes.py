@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Role
+from components.mistake import Mistake
 from components.model import Model
 from components.view import Shape
 
@@ -17,7 +18,7 @@ LOWEST_OF_LARGE = 50  # modes of structures that are too large for all
 LARGEST = 2000  # rods; shapes of larger structures are left to the command line
 
 
-class NoShape(LookupError):
+class NoShape(Mistake, LookupError):
     """The shape that was asked for does not exist; the message says which do."""
 
 

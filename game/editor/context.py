@@ -8,7 +8,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from components.camera import Viewport
 from components.field import Vector
@@ -37,9 +37,7 @@ from systems.run.real_time import TimeScale
 from systems.run.simulation import Simulation
 from systems.run.system import Time
 from systems.schedule import Schedule
-
-if TYPE_CHECKING:  # it imports scipy
-    from systems.statics.events import Event
+from systems.statics.events import Event
 
 Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
+from components.mistake import Mistake
 from components.wording import is_identifier, printable, quoted
 from game.editor.context import FAULTS
 from game.interrupts import is_persons
@@ -30,7 +31,7 @@ OURS = tuple(f"{Path(__file__).parents[2] / part}{os.sep}" for part in ("compone
 _KEYS = ("name", "version", "description", "requires")  # of a manifest
 
 
-class ModError(ValueError):
+class ModError(Mistake, ValueError):
     """A mod that cannot be used; the message says why and what helps."""
 
 

@@ -35,6 +35,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
+from components.mistake import Mistake
 from components.suggestions import remedy
 from components.wording import as_json, cut
 
@@ -43,7 +44,7 @@ _HEADER_KEYS = (*HEADER, "model", "title", "description", "mods")
 EMPTY = {"format": "pinjoint model", "version": 1}
 
 
-class ScriptError(ValueError):
+class ScriptError(Mistake, ValueError):
     """A script that cannot be played; the message names the line, the reason and the remedy."""
 
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from components.mistake import Mistake
 from components.model import Model
 from components.wording import cut
 from game.paths import EVERY, PathError, Target, locate, read_value, settable
@@ -25,7 +26,7 @@ INSTALL = 'pip install "pinjoint[sweep]"'
 MOST_VARIANTS = 10_000_000
 
 
-class SweepError(ValueError):
+class SweepError(Mistake, ValueError):
     """A sweep that cannot be done; the message says why and what to write or do."""
 
 

@@ -17,7 +17,6 @@ from components.model import Model
 from components.wording import is_identifier
 from systems.base import Commit, Event, Integrator, Law, StepSystem
 from systems.entries import ACCOUNTS
-from systems.kernels import Kernel
 from systems.program.chance import source_of_chance
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
@@ -401,6 +400,8 @@ def _result_type(b: Bound, model: Model) -> Any:
     from numba import types
     from numba.np.numpy_support import from_dtype
 
+    from systems.machine_code import machine_code
+
     def type_of(parameter: str) -> Any:
         if parameter in PROVIDED:
             made: Any = types.float64
@@ -415,6 +416,6 @@ def _result_type(b: Bound, model: Model) -> Any:
 
     of_load = (types.float64, types.Array(types.float64, 1, "C", readonly=True), types.uint32)
     signature = of_load if b.each == "loads" else tuple(map(type_of, b.parameters))
-    dispatcher: Any = b.function.machine if isinstance(b.function, Kernel) else b.function
+    dispatcher = machine_code(b.function)
     dispatcher.compile(signature)
     return dispatcher.overloads[signature].signature.return_type

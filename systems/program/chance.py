@@ -4,16 +4,27 @@ from __future__ import annotations
 
 import inspect
 import random
+import sys
 from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-import numpy as np
+from systems.interpreter import plain_function
 
-from systems.kernels import plain_function
+_MODULES = ("random", "numpy.random")
 
-_MODULES = (random, np.random)
-_GENERATORS = (random.Random, np.random.RandomState, np.random.Generator)
+
+def _generators() -> tuple[type, ...]:
+    """The kinds of generators that there can be; importing numpy's, which takes 10 ms, is left to who uses them."""
+    numpy = sys.modules.get("numpy.random")
+    return (random.Random, *((numpy.RandomState, numpy.Generator) if numpy is not None else ()))
+
+
+def _draws(found: Any) -> bool:
+    """Whether a module, a generator or a method of one draws random numbers."""
+    if isinstance(found, ModuleType):
+        return found.__name__ in _MODULES
+    return isinstance(getattr(found, "__self__", found), _generators())
 
 
 def source_of_chance(kernel: Callable[..., Any]) -> str:
@@ -32,9 +43,7 @@ def source_of_chance(kernel: Callable[..., Any]) -> str:
             attributes = plain.__code__.co_names if isinstance(value, ModuleType) else ()
             inside = {f"{name}.{n}": getattr(value, n) for n in attributes if hasattr(value, n)}
             for called, found in {name: value, **inside}.items():
-                if any(found is module for module in _MODULES) or isinstance(
-                    getattr(found, "__self__", found), _GENERATORS
-                ):
+                if _draws(found):
                     return called
                 if hasattr(found, "py_func"):
                     pending.append(found)

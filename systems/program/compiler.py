@@ -29,7 +29,8 @@ from typing import Any
 import numpy as np
 
 from systems import cache
-from systems.kernels import PLAIN, Kernel, Use, plain_function, used_by
+from systems.interpreter import plain_function
+from systems.kernels import PLAIN, Kernel, Use
 
 
 def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
@@ -47,7 +48,7 @@ def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
             f"{plain.__module__}.{plain.__qualname__}",
             repr(getattr(function, "targetoptions", {})),
             _described(plain.__code__),
-            *(f"{name} = {_constant(value)}" for name, value in sorted(used_by(plain).items())),
+            *(f"{name} = {_constant(value)}" for name, value in sorted(_used_by(plain).items())),
         ]
     return "\n".join(parts)
 
@@ -61,8 +62,19 @@ def _reached_from(functions: Iterable[Callable[..., Any]]) -> Iterator[Callable[
             seen.add(function)
             yield function
             if not isinstance(function, type):
-                used = used_by(plain_function(function))
+                used = _used_by(plain_function(function))
                 pending += [value for _, value in sorted(used.items()) if hasattr(value, "py_func")]
+
+
+def _used_by(plain: Callable[..., Any]) -> dict[str, Any]:
+    """The names that a function takes from outside: closure, globals, and attributes of modules among these."""
+    outside = inspect.getclosurevars(plain)
+    used: dict[str, Any] = {**outside.globals, **outside.nonlocals}
+    for name, value in list(used.items()):
+        if isinstance(value, ModuleType):
+            names = plain.__code__.co_names
+            used |= {f"{name}.{n}": getattr(value, n) for n in names if hasattr(value, n)}
+    return used
 
 
 def _described(code: CodeType) -> str:
@@ -241,11 +253,11 @@ class GeneratedModule:
 
         def timed(function: Callable[..., Any]) -> Callable[..., Any]:
             def called(*given: Any) -> Any:
-                began = time.perf_counter()
+                began = time.thread_time()  # what other processes take tells nothing of the program
                 try:
                     return function(*given)
                 finally:
-                    self._last = time.perf_counter() - began
+                    self._last = time.thread_time() - began
                     self.spent += self._last
 
             return called
@@ -312,10 +324,10 @@ class GeneratedModule:
 
     def _machine(self) -> SimpleNamespace:
         """The functions, to be compiled when they are called."""
-        from systems.machine_code import adopt
+        from systems.machine_code import adopt, machine_code
 
         adopt(self.module, self.key, _reached_from(self._source_and_kernels[1].values()))
-        return SimpleNamespace(**{name: f.machine for name, f in self.functions.items()})
+        return SimpleNamespace(**{name: machine_code(f) for name, f in self.functions.items()})
 
     def _compile(self) -> None:
         """Compile by calling everything, and keep that."""

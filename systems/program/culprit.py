@@ -10,7 +10,7 @@ import numpy as np
 from components.model import Model
 from components.snapshot import Snapshot
 from systems.base import REVIEW_INTERVAL, Mod, StepSystem
-from systems.kernels import plain_function
+from systems.interpreter import plain_function
 from systems.program.binding import ProgramError, bind
 from systems.program.near_pairs import pairs_within
 from systems.program.program import MOTION, Program

@@ -95,6 +95,8 @@ class BlockProgram(ReorderedProgram):
 
     def _cores(self) -> int:
         """Number of cores that are worth using; results do not depend on it."""
+        if not self.module.is_loaded:
+            return 1
         os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # else idle threads spin for milliseconds
         os.environ.setdefault("GOMP_SPINCOUNT", _SPINS)
         import numba

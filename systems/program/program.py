@@ -96,8 +96,8 @@ class Program:
     def _call_all(self) -> None:
         """Call every function once, which makes numba compile it, or load it from the cache, if it is to be compiled."""
         try:
-            self.advance(0)
-            self.observe()
+            self._take(0, math.inf, math.inf)
+            self._observe()
             if self._writer.commits:  # with no rods: a commit changes history
                 state = [self._arrays[name][:0] for name in STATE]
                 self.module.form.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
@@ -341,6 +341,9 @@ class Program:
 
     def observe(self) -> None:
         """Bring the derived columns of rods and particles, and the measures, up to date."""
+        self._observe()
+
+    def _observe(self) -> None:
         time, size = self._control[:2].tolist()
         self.module.form.observe(time, size, *self._observed, *self._columns)
         for table, names in OBSERVED.items():

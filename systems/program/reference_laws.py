@@ -136,7 +136,8 @@ def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..
         f"        total += {'made[0] + made[1]' if pair else 'made'}",
         "    return total",
     ]
-    return generated("the timing of a kernel", "\n".join(lines), kernels).functions["loop"].machine
+    loop: Callable[..., float] = generated("the timing of a kernel", "\n".join(lines), kernels).load().loop
+    return loop
 
 
 def _seconds(loop: Callable[..., float], columns: Sequence[NDArray[Any]]) -> float:

@@ -15,7 +15,7 @@ from components.model import Model
 from components.rod import is_warm
 from systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
 from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
-from systems.kernels import plain_function
+from systems.interpreter import plain_function
 from systems.physics.automatic import SMALL
 from systems.physics.kernels import conserved, judge
 from systems.program.binding import (

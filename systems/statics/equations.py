@@ -8,20 +8,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, Union
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix, identity
-from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import splu
 
 from components.model import Model
+from systems.islands import lowest_joined
+
+if TYPE_CHECKING:  # only large structures need it
+    from scipy.sparse import csc_matrix
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Rows = NDArray[np.intp]
-Matrix: TypeAlias = Array | csc_matrix  # full up to DENSE unknowns, else sparse
+Matrix: TypeAlias = Union[Array, "csc_matrix"]  # full up to DENSE unknowns, else sparse
 
 SYMMETRIC = {"SymmetricMode": True}  # pivots on the diagonal
 DENSE = 100  # unknowns up to which full matrices are faster
@@ -163,6 +164,9 @@ class Structure:
         index = np.flatnonzero(self.unknown.ravel())
         if len(index) <= DENSE:
             return index
+        from scipy.sparse import csc_matrix, identity
+        from scipy.sparse.linalg import splu
+
         links = compatibility(self.ends, np.ones((len(self.ends), 2)), len(self.position))[:, index]
         pattern = csc_matrix(abs(links).T @ abs(links) + identity(len(index)))
         order = splu(pattern, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=SYMMETRIC).perm_c
@@ -345,6 +349,8 @@ class Structure:
             kept, place = self._dense_pattern
             full = np.bincount(place, parts[kept], self.size**2).astype(np.float64)
             return full.reshape(self.size, self.size)
+        from scipy.sparse import csc_matrix
+
         kept, slot, rows, starts = self._sparse_pattern
         values = np.bincount(slot, parts[kept], len(rows))
         return csc_matrix((values, rows, starts), shape=(self.size, self.size))
@@ -369,14 +375,22 @@ class Structure:
         starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
         return kept, slot, (places % self.size).astype(np.int32), starts
 
-    def compatibility(self, response: Response, rows: Rows | slice = slice(None)) -> csc_matrix:
-        """Elongations of (some) rods from the unknowns, (rods, N); its transpose is the equilibrium matrix."""
-        matrix = compatibility(self.ends[rows], response.axis[rows], len(self.position))
-        return csc_matrix(matrix[:, self.index])
+    def compatibility(self, response: Response) -> csc_matrix:
+        """Elongations of rods from the unknowns, (rods, N); its transpose is the equilibrium matrix."""
+        return compatibility(self.ends, response.axis, len(self.position))[:, self.index].tocsc()
+
+    def elongations(self, response: Response, rows: Rows) -> Array:
+        """Some rows of the compatibility matrix in full, (k, N)."""
+        matrix = np.zeros((len(rows), *self.unknown.shape))
+        for sign, end in zip((-1.0, 1.0), self.ends[rows].T, strict=True):
+            matrix[np.arange(len(rows)), end] = sign * response.axis[rows]
+        return matrix.reshape(len(rows), -1)[:, self.index]
 
 
 def compatibility(ends: Rows, axis: Array, particles: int) -> csc_matrix:
     """Elongations from the displacements of all particles, (rods, 2n)."""
+    from scipy.sparse import csc_matrix
+
     columns = 2 * ends[:, [0, 0, 1, 1]] + np.array([0, 1, 0, 1])
     entries = np.concatenate([-axis, axis], axis=1)
     rows = np.repeat(np.arange(len(ends)), 4)
@@ -391,9 +405,7 @@ def _held_by_rods(particles: int, ends: Rows) -> Flags:
 
 
 def _bodies(particles: int, ends: Rows) -> Rows:
-    graph = csc_matrix((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), (particles, particles))
-    labels: Rows = connected_components(graph, directed=False)[1].astype(np.intp)
-    return labels
+    return np.unique(lowest_joined(particles, ends), return_inverse=True)[1]
 
 
 def _arbitrary(fixed: Flags, body: Rows) -> Flags:

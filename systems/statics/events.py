@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from components.model import Model
-from systems.statics.equations import Array
 
 RESTS = 1e-9  # of the largest motion: a smaller one counts as none
 
@@ -27,7 +27,7 @@ class Event:
     load_factor: float
     message: str
     rods: tuple[str, ...] = ()
-    motion: Array | None = None
+    motion: NDArray[np.float64] | None = None
 
 
 def event_record(model: Model, event: Event) -> dict[str, Any]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.linalg.lapack import dsytrf, dsytrs
-from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 
 from systems.statics.equations import SYMMETRIC, Array, Flags, Matrix, Response, Structure
+from systems.statics.lapack import lapack
+
+if TYPE_CHECKING:  # only large structures need it
+    from scipy.sparse import csc_matrix
 
 NO_STIFFNESS = 1e-13  # of the rods' stiffness at the same particle: round-off
 SOFT = 1e-12  # of the same: a motion that is resisted less counts as not resisted
@@ -37,6 +39,7 @@ class Factor:
         """Bunch and Kaufman's pivoting; its 2 × 2 pivots have one eigenvalue of either sign."""
         if matrix.shape[0] == 0:
             return
+        dsytrf, dsytrs = lapack().dsytrf, lapack().dsytrs
         factors, swaps, info = dsytrf(matrix, lower=1)
         self.exists = info == 0
         single = swaps >= 0
@@ -45,6 +48,8 @@ class Factor:
 
     def _factor_sparse(self, matrix: csc_matrix) -> None:
         """Pivots on the diagonal only, so that they are those of a symmetric elimination."""
+        from scipy.sparse.linalg import splu
+
         try:
             factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC)
         except RuntimeError:  # exactly singular

@@ -245,7 +245,7 @@ class Path:
         limited: Flags = branches.outward != 0.0
         sign = branches.outward[limited]
         stiffness = (structure.stiffness / structure.rest_length)[limited]
-        pull = structure.compatibility(response, np.flatnonzero(limited)).toarray() * sign[:, None]
+        pull = structure.elongations(response, np.flatnonzero(limited)) * sign[:, None]
         softening = pull @ elastic.factor.solve(np.ascontiguousarray(pull.T))
         matrix = np.diag(stiffness) - stiffness[:, None] * softening * stiffness
         growth = stiffness * self._growth(response, branches, elastic)[limited]

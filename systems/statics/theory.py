@@ -6,7 +6,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import qr, svd
 
 from components.model import Model
 from systems.statics.equations import ROUND_OFF, Array, Response, Structure, normalised
@@ -146,6 +145,8 @@ def _rank(structure: Structure) -> int:
         return 0
     if structure.size > FULL:
         return structure.size - soft_count(structure.initial_tangent, structure.weight)
+    from scipy.linalg import svd
+
     matrix = structure.compatibility(structure.unmoved).toarray()
     return _count(svd(matrix, compute_uv=False), matrix)
 
@@ -159,6 +160,8 @@ def _null_space(matrix: Array) -> Array:
     """Orthonormal basis (columns, k) of the null space of a matrix."""
     if 0 in matrix.shape:
         return np.eye(matrix.shape[1])
+    from scipy.linalg import svd
+
     _, singular, ways = svd(matrix)
     space: Array = ways[_count(singular, matrix) :].T
     return space
@@ -168,6 +171,8 @@ def _localised(basis: Array) -> Array:
     """Another basis (size, k) of the same space: each vector is 1 in one place where all others are 0."""
     if basis.shape[1] == 0:
         return basis
+    from scipy.linalg import qr
+
     pivots = qr(basis.T, mode="r", pivoting=True)[1][: basis.shape[1]]
     return np.linalg.solve(basis[pivots].T, basis.T).T
 

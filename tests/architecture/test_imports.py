@@ -19,14 +19,10 @@ ROOT = Path(__file__).parents[2]
 LAYERS = ("components", "systems", "game", "tests")  # each may import itself and those before it
 RESOURCES = "assets"
 WINDOW = ("systems/render/pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
-KERNELS = (  # numba is imported as soon as they are
-    "systems/kernels.py",
-    "systems/*/kernels.py",
-    "systems/collision/kernels/*.py",
-    "systems/collision/free/pile_equilibrium.py",
-)
-COMPILED = (*KERNELS, "systems/program/*.py")
-SHARED = ("base", "broad_phase", "cache", "entries", "islands", "kernels", "program")  # by all systems
+COMPILER = ("systems/machine_code.py",)  # numba is imported as soon as it is
+COMPILED = (*COMPILER, "systems/program/*.py")
+FORMS = ("interpreter", "kernels", "machine_code")
+SHARED = ("base", "broad_phase", "cache", "entries", "islands", *FORMS, "program")  # by all systems
 COMPOSED = ("program", "run", "catalogue.py")  # of what other folders of systems hold
 MODULES_OF = {"pygame-ce": "pygame", "pillow": "PIL"}  # distributions whose module has another name
 
@@ -77,7 +73,7 @@ def broken_rule(path: str, name: str) -> str | None:
     if top == "pygame" and not within(path, WINDOW):
         return "pygame is imported only by the window's backends"
     if top == "numba" and not within(path, COMPILED):
-        return "numba is imported only by kernels.py files and the step program"
+        return "numba is imported only by machine_code.py and the step program"
     return None
 
 
@@ -153,7 +149,7 @@ def test_no_modules_import_each_other() -> None:
 
 def modules(layer: str) -> list[str]:
     """The modules of a layer that are there without a window and before anything is compiled."""
-    backends = (*WINDOW, *KERNELS, "*/__main__.py")
+    backends = (*WINDOW, *COMPILER, "*/__main__.py")
     paths = [path for path in files() if path.split("/")[0] == layer and not within(path, backends)]
     return [module_name(path) for path in paths]
 
@@ -199,6 +195,7 @@ def test_importing_loads_neither_a_window_nor_a_compiler(names: list[str], unwan
         ("game/session.py", "from tests.reference import models"),
         ("game/session.py", "import pygame"),
         ("game/session.py", "from numba import njit"),
+        ("systems/physics/kernels.py", "from numba import njit"),
         ("game/session.py", "import requests"),
     ],
 )
@@ -214,7 +211,7 @@ def test_a_forbidden_import_is_found(path: str, line: str) -> None:
         ("systems/physics/system.py", "from systems.base import Law\nfrom systems.physics.kernels import drag"),
         ("systems/physics/system.py", "from systems.plasticity.kernels import limited"),
         ("systems/physics/system.py", "from systems.plasticity import kernels\nfrom . import kernels"),
-        ("systems/physics/kernels.py", "from numba import njit\nfrom systems.kernels import compiled"),
+        ("systems/physics/kernels.py", "from systems.kernels import compiled"),
         ("systems/render/pygame_canvas.py", "import pygame.gfxdraw"),
         ("game/app.py", "import pygame\nfrom systems.physics.system import Elasticity"),
         ("systems/program/compiler.py", "import numba"),

@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 
 from game import Session, mods
-from game.commands.mods import LEFT_OUT, crashed, in_use, load_as_asked
+from game.commands.with_mods import LEFT_OUT, crashed, in_use, load_as_asked
 from tests.mods.conftest import Write
 
 HOLD = """
 from game.mods import load
-from game.commands.mods import in_use
+from game.commands.with_mods import in_use
 load(installed=True)
 with in_use():
     print("ready", flush=True)

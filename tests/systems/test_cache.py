@@ -154,7 +154,7 @@ from numba import njit
 from systems.program.compiler import generated
 
 source = "from systems.kernels import kept\\n\\n@kept()\\ndef answer(x):\\n    return kernel(x)\\n"
-module = generated("test", source, {"kernel": njit(lambda x: 2 * x)})
+module = generated("test", source, {"kernel": njit(lambda x: 2 * x)}).load()
 print(module.answer(21.0), module.answer(21))
 """
 

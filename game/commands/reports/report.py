@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from components.mistake import Mistake
 from components.model import Model
 from components.settings import AUTOMATIC
 from game.commands.output import ResultError
@@ -25,9 +26,9 @@ from systems.physics.automatic import AFFORDABLE
 from systems.run.measured_error import IN_A_COMMAND
 from systems.run.simulation import Simulation
 from systems.run.watch import watched
+from systems.statics.events import Event, event_record
 
-if TYPE_CHECKING:  # they import scipy
-    from systems.statics.events import Event
+if TYPE_CHECKING:  # it imports scipy
     from systems.statics.settle import StaticState
 
 INTERRUPTED = "interrupted"  # the status of a run that Ctrl+C ended
@@ -35,7 +36,7 @@ MOD_FAILED = "mod failed"
 FOUND = ("equilibrium", "at rest", "time reached")  # statuses of a run that found what was asked for
 
 
-class AnalysisError(ValueError):
+class AnalysisError(Mistake, ValueError):
     """An analysis that a model cannot have; the message says why and the remedy."""
 
 
@@ -205,8 +206,6 @@ def _state(simulation: Simulation) -> State:
 
 
 def _records(model: Model, events: Sequence[Event]) -> list[dict[str, Any]]:
-    from systems.statics.events import event_record
-
     return [event_record(model, event) for event in events]
 
 

@@ -59,6 +59,7 @@ def test_json_loses_no_letter_where_the_encoding_lacks_it(tmp_path: Path) -> Non
         ("$P plan isostatic >&-", 2, "Standard output cannot be written: it is closed. Choose another file."),
         ("$P plan isostatic >/dev/full", 2, "Standard output cannot be written: No space left on device."),
         ("$P --help >/dev/full", 2, "No space left on device"),
+        ("$P --version >/dev/full", 2, "No space left on device"),
         ("$P plan nonsense 2>&- <&-", 2, ""),
         ("$P plan isostatic --format json --output /dev/null >&- 2>&-", 0, ""),
     ],

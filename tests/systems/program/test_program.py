@@ -497,6 +497,7 @@ print(session.simulation.programs.compile_seconds)
 
 def test_a_second_process_loads_instead_of_compiling(fresh_process: Callable[..., str], tmp_path: Path) -> None:
     folders = {"XDG_CACHE_HOME": str(tmp_path), "LOCALAPPDATA": str(tmp_path), "HOME": str(tmp_path)}
+    folders["PINJOINT_COMPILE"] = "always"
     first, second = (float(fresh_process(COMPILE, folders)) for _ in range(2))
     assert list(tmp_path.rglob("pinjoint_program_*.code"))
     assert second < 0.5 * first
@@ -508,6 +509,7 @@ def test_an_unwritable_cache_folder_is_done_without(fresh_process: Callable[...,
     blocked.write_text("not a folder")
     temporary.mkdir()
     folders = {"XDG_CACHE_HOME": str(blocked), "LOCALAPPDATA": str(blocked), "HOME": str(blocked)}
+    folders["PINJOINT_COMPILE"] = "always"
     assert float(fresh_process(COMPILE, folders | {"TMPDIR": str(temporary), "TEMP": str(temporary)})) > 0.0
     assert blocked.read_text() == "not a folder"
     assert list(temporary.rglob("pinjoint_program_*.code"))

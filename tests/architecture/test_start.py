@@ -1,0 +1,88 @@
+"""What short commands and scripts import: half of their time, so that nothing is loaded that they do not need."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+REST_OF_SCIPY = ("scipy.linalg.blas", "scipy.sparse", "scipy.spatial")  # that takes 0.15 s
+WINDOW = ("pygame", "game.app", "game.preparation")
+OTHER_COMMANDS = (
+    "game.sweeps",
+    "game.scripts.playing",
+    "game.commands.play",
+    "game.commands.mods",
+    "game.checks",
+)
+
+
+def loaded_by(code: str) -> set[str]:
+    """The modules that are there after a script, packages included."""
+    done = subprocess.run(
+        [sys.executable, "-c", f"import sys\n{code}\nprint(*sys.modules, file=sys.stderr)"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stderr
+    return set(done.stderr.splitlines()[-1].split())
+
+
+def loaded_by_command(words: str) -> set[str]:
+    """The modules that are there after a command."""
+    code = f"sys.argv = ['pinjoint', *'{words}'.split()]\nfrom game.__main__ import main\nassert main() == 0"
+    return loaded_by(code)
+
+
+def test_the_version_is_told_before_anything_is_loaded() -> None:
+    loaded = loaded_by_command("--version")
+    assert not {name for name in loaded if name.split(".")[0] in ("components", "systems", "numpy", "argparse")}
+
+
+@pytest.mark.parametrize("model", ["isostatic", "hyperstatic_yield"])
+def test_small_structures_settle_without_the_rest_of_scipy(model: str) -> None:
+    loaded = loaded_by_command(f"run {model} --static --format json")
+    unwanted = {*WINDOW, *OTHER_COMMANDS, *REST_OF_SCIPY, "numba", "numpy.random"}
+    assert not loaded & unwanted
+
+
+def test_collisions_are_computed_without_statics() -> None:
+    loaded = loaded_by_command("run collision_iii --at 0.2 --format json")
+    assert not loaded & {*WINDOW, *OTHER_COMMANDS, "scipy.sparse", "systems.statics.equations"}
+
+
+def test_a_command_loads_no_other() -> None:
+    loaded = loaded_by_command("mods list")
+    assert "game.commands.mods" in loaded
+    assert not loaded & {*WINDOW, "game.sweeps", "game.commands.run", "game.commands.play", "scipy"}
+
+
+def test_a_session_is_open_without_a_window_a_compiler_or_scipy() -> None:
+    loaded = loaded_by("from game import Session\nSession.open('hyperstatic')")
+    assert not loaded & {*WINDOW, *OTHER_COMMANDS, "numba", "scipy", "numpy.random"}
+
+
+@pytest.mark.parametrize("module", ["game.documents.models", "game.paths", "game.session", "game"])
+def test_models_can_hold_all_whatever_a_script_begins_with(module: str) -> None:
+    loaded_by(
+        f"import {module}\n"
+        "from components import Model\n"
+        "from components.load import HISTORIES\n"
+        "assert 'sine' in HISTORIES and 'walls' in Model().tables"
+    )
+
+
+def test_the_command_line_keeps_to_one_thread_of_linear_algebra_unless_a_person_chose() -> None:
+    """Idle threads of OpenBLAS take 0.1 s of a command to start and to end."""
+    told = "import os, game.__main__\nsys.argv = ['pinjoint', 'mods', 'list']\ngame.__main__.main()\n"
+    loaded_by(told + "assert os.environ['OPENBLAS_NUM_THREADS'] == '1'")
+    loaded_by(
+        "import os\nos.environ['OPENBLAS_NUM_THREADS'] = '2'\n"
+        + told
+        + "assert os.environ['OPENBLAS_NUM_THREADS'] == '2'"
+    )
