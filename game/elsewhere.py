@@ -31,7 +31,6 @@ class Elsewhere:
         self.ended: dict[Job, str] = {}
         self._compiles = compiles
         self._needed: Jobs = {}
-        self._soon: Jobs = {}
         self._later: Jobs = {}
         self._can_load = compiles
         self._process: subprocess.Popen[str] | None = None
@@ -45,9 +44,14 @@ class Elsewhere:
         if self._thread.ident is None:
             self._thread.start()
 
-    def ask(self, needed: Jobs, soon: Jobs, later: Jobs) -> None:
-        """Compile and load what is needed, in order, then what may be needed soon; and compile what may be later."""
-        self._needed, self._soon, self._later = needed, soon, later
+    def ask(self, needed: Jobs, later: Jobs) -> None:
+        """Compile and load what is needed, in order, then what may be needed later."""
+        self._needed, self._later = needed, later
+
+    @property
+    def has_loaded_all(self) -> bool:
+        """True if nothing that is needed runs interpreted any more."""
+        return all(module.is_loaded for module in self._needed.values())
 
     @staticmethod
     def is_ready(module: GeneratedModule) -> bool:
@@ -79,7 +83,7 @@ class Elsewhere:
 
     def _load(self) -> None:
         """Load what is compiled, or else rewrite what will be interpreted; one program at a time."""
-        wanted = [module for jobs in (self._needed, self._soon) for module in jobs.values()]
+        wanted = [module for jobs in (self._needed, self._later) for module in jobs.values()]
         for module in (*interpreted_here(), *wanted):
             try:
                 if module.is_loaded:
@@ -107,7 +111,7 @@ class Elsewhere:
             self._note_end(process)
             needed = self._left(self._needed)
         self._urgent, self._process = bool(needed), None
-        self._at_work = needed or self._left({**self._soon, **self._later})
+        self._at_work = needed or self._left(self._later)
         if self._at_work and not self._closed.is_set():
             self._process = started(self._at_work, self._urgent)
 

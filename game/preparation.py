@@ -90,14 +90,12 @@ class Preparation(System):
         needed = self._needed | dict.fromkeys(_jobs_of(simulation), simulation)
         if self._draws_many:
             needed = {(RASTER.name,): simulation} | needed
-        soon = {job: simulation for job in _jobs_soon(simulation) if job not in needed}
-        later = {(unit.name,): simulation for unit in AHEAD if (unit.name,) not in needed}
-        unknown = ((job, by) for job, by in (needed | soon | later).items() if job not in self._modules)
+        later = {job: simulation for job in _jobs_later(simulation) if job not in needed}
+        unknown = ((job, by) for job, by in (needed | later).items() if job not in self._modules)
         for job, by in islice(unknown, 1):  # finding it takes a part of a frame
             self._modules[job] = _module_of(job, by)
-        known = [self._known(jobs) for jobs in (needed, soon, later)]
-        if known[0] is not None:
-            self.elsewhere.ask(*(found or {} for found in known))
+        if (found := self._known(needed)) is not None:
+            self.elsewhere.ask(found, self._known(later) or {})
         self._problems = dict.fromkeys(filter(None, map(self._problem_of, needed)))
         self._waiting = {job: since for job, since in self._waiting.items() if job in needed}
         self._needed = {}
@@ -195,14 +193,15 @@ def _jobs_of(simulation: Simulation) -> list[Job]:
     return jobs
 
 
-def _jobs_soon(simulation: Simulation) -> Iterator[Job]:
-    """What a simulation may come to need: while a hand pulls, with plasticity, under a load that grows."""
+def _jobs_later(simulation: Simulation) -> Iterator[Job]:
+    """What a simulation may come to need: while a hand pulls, with plasticity, under a load that grows; and all units."""
     if not simulation.integrator.exact:
         yield _job_with(simulation, {Pull.name})
         if any(isinstance(system, Elasticity) for system in simulation.plan):
             yielding = {ElasticityAfterYielding.name, Strength.name, Yielding.name}
             yield _job_with(simulation, yielding, without=Elasticity.name)
         yield _job_with(simulation, {RAMP})
+    yield from ((unit.name,) for unit in AHEAD)
 
 
 def _job_with(simulation: Simulation, names: set[str], without: str = "") -> Job:

@@ -170,7 +170,7 @@ def test_plasticity_is_compiled_before_it_is_switched_on(app: App, compiler: Com
     session = app.session
     session.settings.plasticity = False
     frames(app, 3)
-    soon = list(preparation._jobs_soon(session.simulation))
+    soon = list(preparation._jobs_later(session.simulation))
     session.settings.plasticity = True
     assert _jobs_of(session.simulation)[0] in soon
 

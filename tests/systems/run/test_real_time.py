@@ -112,7 +112,9 @@ def test_a_step_that_is_left_in_its_midst_comes_to_the_same_bits(monkeypatch: py
     assert list(session.impacts.time) == list(whole.impacts.time)
 
 
-def test_a_step_left_in_its_midst_is_taken_anew_where_less_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_step_left_in_its_midst_is_taken_anew_where_less_is_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     session = Session.open("pile")
     session.run(steps=50)
     simulation, time = session.simulation, session.time
