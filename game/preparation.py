@@ -15,7 +15,7 @@ from components.obstacles import any_obstacles
 from components.rod import is_warm, nodes
 from game.editor.host import Waiting
 from game.elsewhere import SLOWER, Elsewhere
-from game.prepare import UNITS, WARM, Job, compile_job
+from game.prepare import UNITS, WARM, Job, problem_of
 from systems import cache
 from systems.base import Phase, StepSystem, System
 from systems.collision.driven.compiled import DRIVEN
@@ -118,15 +118,13 @@ class Preparation(System):
         for job in self._waiting:
             if self._problem_of(job) and job not in self._given_up:
                 self._given_up.add(job)
-                try:
-                    compile_job(job)
-                except Exception as error:  # numba raises many kinds
-                    tell(f"{SLOWER}: {error}.")
+                if problem := problem_of(job):
+                    tell(f"{SLOWER}: {problem}.")
                 return
 
     def _tell(self, session: Any) -> None:
         for problem in self._problems:
-            tell(f"{SLOWER}: {problem.removesuffix('.')}.")
+            tell(f"{SLOWER}: {problem}.")
         for sentence in (*cache.TROUBLE, *UNCOMPILED):
             if sentence not in self._said:
                 self._said.add(sentence)

@@ -7,6 +7,7 @@ compiler in its own would hold it up, in a thread too. A line for each job says 
 from __future__ import annotations
 
 import gc
+import importlib
 import os
 import sys
 from collections.abc import Sequence
@@ -40,17 +41,25 @@ def main(words: Sequence[str]) -> None:
         os.nice(19 if jobs[0] == LATER else 5)
     for between, job in groupby(jobs, lambda word: word in (NEXT, LATER)):
         if not between:
-            print(_problem_of(tuple(job)), flush=True)
+            print(problem_of(tuple(job)), flush=True)
     forget_unused()
 
 
-def _problem_of(job: Job) -> str:
+def problem_of(job: Job) -> str:
     """Do a job; returns why it could not be done, "" if it could."""
+    try:
+        importlib.import_module("systems.machine_code")
+    except Exception as error:  # numba is not there, or damaged
+        return f"numba cannot be imported ({_in_a_line(error)})"
     try:
         compile_job(job)
     except Exception as error:  # numba raises many kinds
-        return " ".join(f"{type(error).__name__}: {error}".split())
-    return cache.TROUBLE[0] if cache.TROUBLE else ""
+        return _in_a_line(error)
+    return cache.TROUBLE[0].partition(". ")[0] if cache.TROUBLE else ""
+
+
+def _in_a_line(error: Exception) -> str:
+    return " ".join(str(error).split()).removesuffix(".") or type(error).__name__
 
 
 def compile_job(job: Job) -> None:

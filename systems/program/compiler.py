@@ -309,8 +309,12 @@ class GeneratedModule:
         with _loading:
             if self._compiled:
                 return True
-            kept = cache.read(_types_of(self.key)) if self.is_compiled() else None
-            if kept is None:
+            if not self.is_compiled():
+                return False
+            kept = cache.read(_types_of(self.key))
+            if kept is None:  # damaged: it is compiled anew
+                with contextlib.suppress(OSError):
+                    _note_of(self.key).unlink()
                 return False
             from systems.machine_code import compile_for
 

@@ -22,7 +22,7 @@ from game.app import App
 from game.documents import models
 from game.editor.view_model import COMPILING
 from game.preparation import Preparation, _job, _jobs_of, is_live
-from game.prepare import Job, example
+from game.prepare import Job, example, problem_of
 from game.session import Session
 from systems import cache
 from systems.input import pygame_input
@@ -255,7 +255,7 @@ def test_what_is_awaited_and_cannot_be_compiled_there_is_compiled_here(
     large: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     here: list[Job] = []
-    monkeypatch.setattr(preparation, "compile_job", here.append)
+    monkeypatch.setattr(preparation, "problem_of", lambda job: here.append(job) or "")
     large.session.press("space")
     compiler.status = compiler.processes[0].returncode = 1
     until(large, lambda: bool(here))
@@ -275,8 +275,8 @@ def test_models_wait_from_a_size_on(count: int, live: bool) -> None:
     ("said", "status", "told"),
     [
         ("", -9, "the process that compiles ended with status -9"),
-        ("ImportError: no numba\n", 0, "ImportError: no numba"),
-        ("Compiled programs cannot be kept.\n", 0, "Compiled programs cannot be kept."),
+        ("numba cannot be imported (No module)\n", 0, "numba cannot be imported (No module)."),
+        ("Compiled programs cannot be kept\n", 0, "Compiled programs cannot be kept."),
         ("\n", 0, "what was compiled was not kept"),
     ],
 )
@@ -388,6 +388,25 @@ def test_another_process_compiles_what_this_one_loads(tmp_path: Path) -> None:
         [sys.executable, "-c", CHECK], env=os.environ | folders, check=True, capture_output=True, text=True
     )
     assert done.stdout.split() == ["True", *["1", "0"] * 2]
+
+
+def test_where_it_is_not_known_what_was_compiled_it_is_compiled_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cache, "folder", lambda: tmp_path)
+    module = GeneratedModule("test", lambda: ("", {}))
+    (tmp_path / f"{module.key}.done").touch()
+    cache.write(f"{module.key}.types", b"damaged")
+    (tmp_path / f"{module.key}.types").write_bytes(b"cut")
+    assert not module.load_kept()
+    assert not module.is_compiled()
+
+
+def test_without_numba_all_jobs_have_the_same_problem(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "systems.machine_code", None)
+    problems = {problem_of(job) for job in [("raster",), ("dop853", FEW, "physics.elasticity")]}
+    assert len(problems) == 1
+    assert "numba cannot be imported" in problems.pop()
 
 
 SMALL = """
