@@ -60,6 +60,7 @@ class Clock(Handle):
     largest_imbalance: Field[float] = state(
         "J", doc="Energy that the steps lost (positive) or created at most, in the run so far."
     )
+    at_rest: Field[bool] = state(dtype=bool, doc="The run came to rest; edits let it go on.")
     steps: Field[int] = state(dtype=int, doc="Steps taken, one that is under way included.")
     origin_steps: Field[int] = state(dtype=int, doc="Steps at the time origin.")
     collisions: Field[int] = state(dtype=int, doc="Impacts so far.")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Collection, Mapping, Set
 from dataclasses import KW_ONLY, dataclass, field
 from enum import Enum
@@ -14,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.mistake import Mistake
-from components.wording import quoted
+from components.wording import is_broken, quoted
 
 T = TypeVar("T")
 Vector = tuple[float, float]
@@ -33,7 +32,6 @@ _STORAGE: dict[Any, tuple[Any, Any]] = {
     object: (object, None),
     "reference": (np.uint32, 0),
 }
-_HALVES = re.compile("[\ud800-\udfff]")
 # What numbers and flags given for a whole column may be: numpy's kinds, or the types in a list.
 _PLAIN: dict[Any, tuple[str, set[type]]] = {
     float: ("fiu", {float, int, np.float64, np.int64}),
@@ -41,11 +39,6 @@ _PLAIN: dict[Any, tuple[str, set[type]]] = {
     bool: ("b", {bool, np.bool_}),
     "reference": ("iu", {int, np.int64, np.uint32}),
 }
-
-
-def is_broken(text: str) -> bool:
-    """True if a text holds half of a character, a surrogate, which no file and no clipboard can hold."""
-    return _HALVES.search(text) is not None
 
 
 class Role(Enum):

@@ -9,6 +9,7 @@ import numpy as np
 from components.field import LARGEST, SMALLEST, Column, Field, Role
 from components.model import Model
 from components.obstacles import obstacles
+from components.wording import cut
 
 UNKNOWN_SHARE = 1e-3  # of a radius: how well places must be known for impacts
 
@@ -37,9 +38,8 @@ def _too_far(model: Model) -> str:
     far = np.maximum(np.abs(others.start), np.abs(others.start + others.span)).max(axis=1)
     least = UNKNOWN_SHARE * float(model.particles.radius.max())
     for row in np.flatnonzero(np.spacing(far) > least)[:1].tolist():
-        name = others.names[row]
         return (
-            f"{name[:1].upper()}{name[1:]}: one of its ends is {far[row]:g} m away, where places are known to"
+            f"The obstacle {cut(others.names[row])}: one of its ends is {far[row]:g} m away, where places are known to"
             f" {np.spacing(far[row]):.1g} m only, too coarse for the radii of the particles; place it nearer."
         )
     return ""

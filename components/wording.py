@@ -11,8 +11,10 @@ from unicodedata import normalize
 
 LONGEST = 60  # characters of a name or value in a sentence
 
-# Controls, line separators, marks that turn the direction of a line, and halves of characters.
-_UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+_HALVES = "\ud800-\udfff"  # of characters, alone
+# Controls, line separators, marks that turn the direction of a line, and halves.
+UNPRINTABLE = re.compile(f"[\x00-\x1f\x7f-\x9f\u2028\u2029\u202a-\u202e\u2066-\u2069{_HALVES}]")
+_BROKEN = re.compile(f"[{_HALVES}]")
 _VALUES = reprlib.Repr()
 _VALUES.maxlevel, _VALUES.maxstring, _VALUES.maxother = 3, LONGEST, LONGEST
 
@@ -22,9 +24,14 @@ def is_identifier(name: str) -> bool:
     return name.isidentifier() and not iskeyword(name) and normalize("NFKC", name) == name
 
 
+def is_broken(text: str) -> bool:
+    """True if a text holds half of a character, a surrogate, which no file and no clipboard can hold."""
+    return _BROKEN.search(text) is not None
+
+
 def printable(text: str) -> str:
     """A text whose characters that do not print are written as Python writes them: \\x1b."""
-    return _UNPRINTABLE.sub(lambda found: ascii(found[0])[1:-1], text)
+    return UNPRINTABLE.sub(lambda found: ascii(found[0])[1:-1], text)
 
 
 def cut(text: str) -> str:

@@ -274,24 +274,27 @@ def _check_alike(name: str, one: Mapping[str, Column], other: Mapping[str, Colum
 
 def _check_frames(system: Callable[[], System], source: Source) -> float:
     made, session = system(), Session(_model(source))
-    before = columns_of(session.model)
-    seconds = _frames(made, session)
-    after = columns_of(session.model)
-    compare(made.name, before, after, set(made.writes) | set(made.adds), "a frame of it changed")
+    seconds = run_frames(made, session)
     _check_finite(made.name, session.model)
     other = Session(_model(source))
-    _frames(system(), other)
-    _check_alike(made.name, after, columns_of(other.model), "run twice, it gives different")
+    run_frames(system(), other)
+    one, two = columns_of(session.model), columns_of(other.model)
+    _check_alike(made.name, one, two, "run twice, it gives different")
     return 1e9 * seconds / FRAMES / max(session.particles.count + session.rods.count, 1)
 
 
-def _frames(system: System, session: Session) -> float:
-    """Run a system for FRAMES frames; returns the seconds that it took."""
-    started = time.perf_counter()
+def run_frames(system: System, session: Session) -> float:
+    """Run a system for FRAMES frames; returns the seconds that it took.
+
+    Raises SystemCheckError if it fails, or changes columns that it does not declare.
+    """
+    before, started = columns_of(session.model), time.perf_counter()
     for _ in range(FRAMES):
         session.model.activate()
         try:
             system.process(Frame(session, FRAME))
         except Exception as error:
             raise SystemCheckError(f"{system.name} raises {type(error).__name__}: {error}") from error
-    return time.perf_counter() - started
+    seconds, declared = time.perf_counter() - started, {*system.writes, *system.adds}
+    compare(system.name, before, columns_of(session.model), declared, "a frame of it changed")
+    return seconds

@@ -17,7 +17,7 @@ from components.clock import Clock
 from components.commands import Assign
 from components.departure import Departure
 from components.environment import Environment
-from components.field import Column, Field, FieldError, Role, is_broken
+from components.field import Column, Field, FieldError, Role
 from components.grid import Grid
 from components.handle import Handle
 from components.load import Load
@@ -28,7 +28,7 @@ from components.rod import Rod
 from components.settings import Settings
 from components.suggestions import missing, remedy
 from components.table import Table, fields_of
-from components.wording import cut, quoted
+from components.wording import cut, is_broken, quoted
 from game.documents.mod_data import DATA as FOREIGN
 from game.documents.mod_data import MODS, known_versions, upgraded, versions_in
 

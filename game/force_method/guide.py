@@ -64,10 +64,9 @@ class Set:
 
     def scale_to(self, state: SetState) -> None:
         """Choose drawing scales for the displacements and forces of a final state."""
-        moved, pulled = largest(state.displacement), largest(state.axial_force)
-        share = DRAWN_SHARE * extent(self.model)
-        self.model.settings.displacement_scale = round_down(share / moved) if moved > 0.0 else 1.0
-        self.model.settings.diagram_scale = round_down(DIAGRAM_HEIGHT / pulled) if pulled > 0.0 else 1.0
+        settings, drawn = self.model.settings, DRAWN_SHARE * extent(self.model)
+        settings.displacement_scale = _scale_to(drawn, largest(state.displacement))
+        settings.diagram_scale = _scale_to(DIAGRAM_HEIGHT, largest(state.axial_force))
 
     def settle(self) -> None:
         """Skip the rest of the motion: go to its equilibrium, if there is one."""
@@ -76,6 +75,11 @@ class Set:
             with self.model.transaction("settle"):
                 self.model.give("particles.displacement", final.displacement)
                 self.model.give("particles.velocity", np.zeros_like(final.displacement))
+
+
+def _scale_to(drawn: float, size: float) -> float:
+    """The round scale at which a size is drawn so large; 1 where it, or the picture, has none."""
+    return round_down(drawn / size) if min(drawn, size) > 0.0 else 1.0
 
 
 class Mechanism:

@@ -15,7 +15,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, wraps
 from itertools import islice
-from types import NoneType, UnionType
+from types import AsyncGeneratorType, CoroutineType, GeneratorType, NoneType, UnionType
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -34,6 +34,7 @@ _NUMBERS: Mapping[type, tuple[type, ...]] = {
     int: (int, np.integer),
     float: (int, float, np.integer, np.floating),
 }
+_UNRUN: Mapping[type, str] = {GeneratorType: "yield", CoroutineType: "async", AsyncGeneratorType: "async"}
 _KINDS = {"f": "fiu", "i": "iu", "u": "iu", "b": "b"}  # numpy's kinds that become each kind
 
 
@@ -86,8 +87,11 @@ def _checked(method: Callable[..., Any]) -> Callable[..., Any]:
 def _maker(declared: Any) -> Made:
     """What checks values of a type."""
     origin, arguments = get_origin(declared), get_args(declared)
-    if declared is Any or declared is object or isinstance(declared, TypeVar):
-        return lambda value, called: value
+    meant = getattr(origin or declared, "__value__", None)  # of an alias, as NDArray is since numpy 2.5
+    if meant is not None:
+        return _maker(meant[arguments] if arguments else meant)
+    if declared in (Any, object, None) or isinstance(declared, TypeVar):
+        return _anything
     if declared in _NUMBERS:
         return _number(declared)
     if declared is str:
@@ -109,6 +113,18 @@ def _maker(declared: Any) -> Made:
 
 def _refused(value: Any, called: str, wanted: str) -> TypeError:
     return TypeError(f"{called} is {quoted(value)}; it must be {wanted}")
+
+
+def _anything(value: Any, called: str) -> Any:
+    """A value, unless it is the rest of a function that has not run."""
+    for kind, word in _UNRUN.items():
+        if type(value) is kind:
+            if isinstance(value, CoroutineType):
+                value.close()  # or Python warns of it
+            raise TypeError(
+                f"{called} is a {kind.__name__}, of which nothing has run; write it without '{word}'"
+            )
+    return value
 
 
 def _number(kind: type) -> Made:

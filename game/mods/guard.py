@@ -107,7 +107,7 @@ def _guard_question(mod: Mod, system: System, name: str, declared: Any, otherwis
     vars(system)[name] = lambda model: mod.call(what, own, model, otherwise=otherwise, declared=declared)
 
 
-def _change_whole(mod: Mod, system: System, what: str, model: Model, change: Callable[[], None]) -> None:
+def _change_whole(mod: Mod, system: System, what: str, model: Model, change: Callable[[], object]) -> None:
     """Let a system change a model, by all of its commands or by none, and only to what Fields can take."""
     tables = {column.partition(".")[0] for column in (*system.writes, *system.adds)} & model.tables.keys()
     before = Snapshot.take(model, *tables) if tables else None
@@ -134,9 +134,9 @@ def _check_state(model: Model, tables: Iterable[str]) -> None:
                 field.check_column(column, table.count, lambda row, table=table: model.describe(table[row]))  # type: ignore[misc]
 
 
-def _in_frame(process: Callable[[Any], object], frame: Any) -> None:
+def _in_frame(process: Callable[[Any], object], frame: Any) -> object:
     with view_kept(frame.session):
-        process(frame)
+        return process(frame)
 
 
 @contextmanager
@@ -170,7 +170,7 @@ def interruptible(change: Callable[[], object], model: Model, patience: float) -
     """
     model.before_command = stop_after(patience)
     try:
-        change()
+        as_declared(change(), None, "what it returned")
     finally:
         model.before_command = None
         model.check_entities()

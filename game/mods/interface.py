@@ -149,8 +149,8 @@ def _guarded_method(mod: Mod, kind: type[Scene], name: str) -> Callable[..., Any
     mistakes = (LookupError,) if name == "click_box" else ()
 
     def asked(scene: Scene, *arguments: Any) -> Any:
-        made = own(scene, *arguments)
-        return None if declared is None else _shown(as_declared(made, declared, f"what {name} returned"))
+        made = as_declared(own(scene, *arguments), declared, f"what {name} returned")
+        return None if declared is None else _shown(made)
 
     def method(scene: Scene, *arguments: Any) -> Any:
         what = f"the scene '{kind.name}'"

@@ -15,6 +15,7 @@ from game.editor.context import FAULTS
 from game.interrupts import is_persons, mark_interrupts
 from game.mods import finding
 from game.mods.app import App, check_plugin
+from game.mods.declared import as_declared
 from game.mods.finding import in_order, required
 from game.mods.mod import MANIFEST, Mod, ModError
 from game.version import __version__
@@ -22,6 +23,7 @@ from systems.catalogue import all_systems
 from systems.input.bindings import prefer
 from systems.schedule import Schedule
 
+STREAMS = ("stdin", "stdout", "stderr")
 PATIENCE = 30.0  # s that loading one mod may take
 
 MODS: list[Mod] = []  # all that were found in this process, those that come with the program first
@@ -82,12 +84,13 @@ def unload(mods: Sequence[Mod]) -> None:
 def _load(mod: Mod) -> None:
     app = App(mod)
     modules, threads = dict(sys.modules), set(threading.enumerate())
+    streams = {name: getattr(sys, name) for name in STREAMS}
     try:
         for name in required(mod):
             if any(other.name == name and other.off for other in MODS):
                 raise ModError(f"It requires the mod '{name}', which cannot be used.")
         mod.within(PATIENCE, lambda: _plug_in(mod, app))
-        _check_left_behind(modules, threads)
+        _check_left_behind(modules, threads, streams)
     except ModError as error:
         mod.problem = str(error)
     except BaseException as error:  # of code that is not ours
@@ -95,6 +98,7 @@ def _load(mod: Mod) -> None:
             raise
         mod.problem = mod.describe(error)
     sys.modules.update(modules)
+    vars(sys).update(streams)
     if mod.off:
         app.withdraw()
         _forget(mod)
@@ -105,12 +109,17 @@ def _load(mod: Mod) -> None:
 def _plug_in(mod: Mod, app: App) -> None:
     """Import a mod and let it register what it has. Raises ModError, or whatever its code raises."""
     module = _import(mod)
-    check_plugin(getattr(module, "plugin", None))(app)
+    as_declared(check_plugin(getattr(module, "plugin", None))(app), None, "what plugin(app) returned")
     Schedule(all_systems())
 
 
-def _check_left_behind(modules: Mapping[str, ModuleType], threads: set[threading.Thread]) -> None:
-    """Raise ModError if a mod changed these modules, or left a thread running besides these."""
+def _check_left_behind(
+    modules: Mapping[str, ModuleType], threads: set[threading.Thread], streams: Mapping[str, object]
+) -> None:
+    """Raise ModError if a mod changed these modules or streams, or left a thread running besides these."""
+    for name, stream in streams.items():
+        if getattr(sys, name, None) is not stream:
+            raise ModError(f"It replaced or removed sys.{name}, which the program writes to or reads.")
     for name, module in modules.items():
         if sys.modules.get(name) is not module:
             raise ModError(f"It replaced or removed the module '{name}' in sys.modules, which others use.")

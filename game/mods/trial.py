@@ -11,7 +11,7 @@ from components.field import Field, FieldError, Role
 from components.load import HISTORIES
 from components.model import ADDED, Model
 from components.suggestions import missing
-from game.checks import EVERYTHING, FRAME, FRAMES, STEPS, columns_of, compare
+from game.checks import EVERYTHING, FRAME, STEPS, run_frames
 from game.documents import models
 from game.documents.library import data_apart
 from game.editor.context import FAULTS
@@ -141,7 +141,7 @@ class _Trial:
         for systems in session.plan(scene).phases.values():
             for system in systems:
                 if system.mod is self.mod and not isinstance(system, StepSystem):
-                    self._check_frames(session, system)
+                    run_frames(system, session)
         for size in SIZES:
             session.resize(*size)
             for scale in SCALES:
@@ -161,20 +161,6 @@ class _Trial:
         if session.scene == scene != PAUSE:
             session.scenes.request(PAUSE)
             session.frame(FRAME)
-
-    def _check_frames(self, session: Session, system: System) -> None:
-        """Run a frame system; note columns that it changes and does not declare."""
-        before = columns_of(session.model)
-        for _ in range(FRAMES):
-            session.model.activate()
-            system.process(Frame(session, FRAME))
-        compare(
-            system.name,
-            before,
-            columns_of(session.model),
-            {*system.writes, *system.adds},
-            "a frame of it changed",
-        )
 
     def _press(self, key: str, scene: str) -> None:
         session = _session(self.mod, scene)

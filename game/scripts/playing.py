@@ -10,8 +10,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, TextIO
 
-from components.field import Vector, is_broken
-from components.wording import as_json, cut
+from components.field import Vector
+from components.wording import as_json, cut, is_broken
 from game.documents.document import ModelError
 from game.editor.context import FAULTS
 from game.mods.loading import MODS

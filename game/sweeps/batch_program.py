@@ -20,6 +20,7 @@ from systems.program.program import Program
 _SHARED = "fresh", "breaks", "until", "landing", "loads_end"
 _RETURNS = {"advance": "taken[k], reason[k] = "}
 _KEPT = {"observe": ("force",)}
+_ALL, _FIRST = slice(None), np.zeros(1, dtype=np.intp)
 _PIECES = 4  # for each thread, so that none waits long for another
 
 
@@ -108,13 +109,22 @@ class BatchProgram:
         """
         taken, reason = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
 
-        def one_by_one(some: NDArray[np.intp]) -> None:
-            scratch = {name: np.zeros(shape) for name, shape in self._scratch(entry).items()}
-            given = [scratch[p] if p in scratch else arguments[p] for p in self._parameters[entry]]
-            getattr(self._module.form, f"{entry}_each")(some, taken, reason, *given)
+        names = self._parameters[entry]
 
+        def each(some: NDArray[np.intp], rows: slice = _ALL) -> None:
+            scratch = {name: np.zeros(shape) for name, shape in self._scratch(entry).items()}
+            given = scratch | {
+                p: arguments[p] if p in _SHARED else arguments[p][rows] for p in names if p not in scratch
+            }
+            call = getattr(self._module.form, f"{entry}_each")
+            call(some, taken[rows], reason[rows], *(given[p] for p in names))
+
+        if not self._module.is_loaded:  # one by one, none with the arrays of others: machine code may follow
+            for variant in variants.tolist():
+                each(_FIRST, slice(variant, variant + 1))
+            return taken, reason
         pieces = 1 if len(variants) < 2 * self.threads else self.threads * _PIECES
-        self._share_out(one_by_one, np.array_split(variants, pieces))
+        self._share_out(each, np.array_split(variants, pieces))
         return taken, reason
 
     def _share_out(self, work: Callable[[NDArray[np.intp]], None], pieces: Sequence[NDArray[np.intp]]) -> None:

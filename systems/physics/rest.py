@@ -100,6 +100,13 @@ def rests_unseen(measures: Array, lost: float, damped: float, energy_scale: floa
     return bool(is_still and lost <= damped + LOST_UNSEEN * energy_scale)
 
 
+def may_rest(measures: Array, force_scale: float, energy_scale: float) -> bool:
+    """True if a state of which a file says that it is at rest may be so, by a rule that all at rest meet."""
+    largest = max(measures[Measure.LARGEST_FORCE], force_scale)
+    is_still = measures[Measure.RESIDUAL] <= max(UNSEEN * largest, 8.0 * measures[Measure.ROUND_OFF])
+    return bool(is_still and measures[Measure.KINETIC] <= UNSEEN**2 * energy_scale)
+
+
 def _largest(count: int, *values: tuple[Rows, Array]) -> Array:
     """The largest value on each island."""
     found = np.zeros(count)

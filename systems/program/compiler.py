@@ -118,7 +118,7 @@ VARIABLE = "PINJOINT_COMPILE"
 LOADING = 0.2  # s of interpreting after which it is sooner to load the compiled program
 LARGE = 300  # rods or discs from which on one step, interpreted, takes as long as a picture
 LONGEST_CALL = 0.05  # s, interpreted
-BEFORE_COMPILING = 0.5  # s of interpreting, for each that compiling is expected to take
+BEFORE_COMPILING = 1.0  # s of interpreting, for each that compiling is expected to take
 SECONDS_PER_BYTE = (
     2e-4  # of the interpreter's code, that compiling takes; for a machine that has compiled nothing yet
 )

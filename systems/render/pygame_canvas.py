@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import math
-import unicodedata
 from collections.abc import Callable
 from functools import partial
 from importlib.resources import files
@@ -15,6 +14,7 @@ import pygame
 import pygame.gfxdraw
 from numpy.typing import NDArray
 
+from components.wording import UNPRINTABLE
 from systems.render.coverage import stroke_coverage, stroke_pixels_estimate
 from systems.render.marks import Bars, Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
 from systems.render.raster import Clip, Pixels, Raster
@@ -26,7 +26,6 @@ _FINE = 8  # symbols and corners are drawn this much larger, then reduced
 _PHASES = 4  # positions of a symbol within a pixel, each way
 _MOST_CACHED = 4000  # rendered texts, symbols and panels
 _SKETCHED = 1_500  # elements of a kind
-_UNDRAWN = "Cc", "Cs"  # controls and halves of characters, by their categories
 _LONGEST = 4000  # characters that are drawn of a text: more than any window is wide
 _MANY = 300  # bars, discs; and 50 pixels of strokes for each: from there on the compiled kernels pay
 
@@ -169,12 +168,10 @@ class Canvas:
 
 def _written(font: pygame.font.Font, mark: Text) -> pygame.Surface:
     """A text as an image: what no font can draw as "�", and nothing where there is nothing to see."""
-    text = mark.text[:_LONGEST]
-    if not text.isprintable():
-        text = "".join("�" if unicodedata.category(character) in _UNDRAWN else character for character in text)
+    text = UNPRINTABLE.sub("�", mark.text[:_LONGEST])
     try:
         return font.render(text, True, mark.colour[:3])
-    except pygame.error:  # of no width, such as a mark that turns the direction of writing
+    except pygame.error:  # of no width, such as a joiner of characters
         return pygame.Surface((0, 0))
 
 

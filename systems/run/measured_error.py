@@ -61,7 +61,7 @@ def measure_error(simulation: Simulation, beginning: Snapshot) -> MeasuredError 
     meaningless = met or simulation.program.watches_events or simulation.integrator.exact
     lost = clock.largest_imbalance / max(clock.energy_scale, SMALLEST_ENERGY)
     coarse = not -MOST_CREATED <= lost <= MOST_LOST
-    coarse |= simulation.note == STUCK  # as at Verlet's stable step, where the energy may be right
+    coarse |= simulation.note == STUCK or simulation.step_size.unstable  # the energy may be right
     if meaningless or coarse or not clock.time > then["clock.time"][0]:
         return None
     program = simulation.programs.compiled

@@ -27,6 +27,7 @@ CRAWLING = 1e-3  # of it: so much shorter ones under error control are told of
 FREE_STEP = 1e-3  # s, where nothing limits the step
 DOUBTFUL_STEP = 1e-2  # times 1/ω, for an integrator that is stable at no step
 
+EIGENVALUE_ERROR = 1e-9  # of the highest frequency, and so of the largest stable step
 TOLD_SHARE = 0.1  # of all energy ever supplied; smaller: warns of lattices by automatic steps of Verlet
 
 ERROR_CONTROL = (
@@ -80,7 +81,7 @@ class StepPolicy:
     def is_doubtful(self, limits: Limits) -> bool:
         """True if the run will probably diverge, of which a person is warned."""
         stable = limits.stable_step
-        return stable == 0.0 or (self.fixed is not None and self.fixed > stable)
+        return stable == 0.0 or (self.fixed is not None and is_unstable(self.fixed, stable))
 
     def first(self, limits: Limits) -> tuple[float, float]:
         """The step (s) that a run begins with, and its limit (s) under error control, 0: none."""
@@ -119,6 +120,11 @@ class StepPolicy:
         share = ACCURATE if self.rods <= SMALL else SAFETY
         observed = self.observed() if self.integrator.exact else math.inf
         return rounded_down(min(share * stable, FREE_STEP, observed))
+
+
+def is_unstable(size: float, stable: float) -> bool:
+    """True if steps of this size (s) are not below the largest stable one (s), at which errors grow already."""
+    return size >= stable * (1.0 - EIGENVALUE_ERROR)
 
 
 def rounded_down(size: float) -> float:

@@ -21,7 +21,7 @@ from systems.collision.driven.stepper import DrivenCollisions
 from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
 from systems.collision.overlaps import part_overlaps
-from systems.physics.rest import rests_unseen
+from systems.physics.rest import may_rest, rests_unseen
 from systems.program.program import OBSERVED
 from systems.run.checkpoint import Checkpoint
 from systems.run.energy import Account, Energy
@@ -36,9 +36,10 @@ from systems.schedule import Plan, Schedule
 # Of the clock, as a run begins.
 CHOSEN = ("step_size", "guard_energy", "largest_imbalance", "initial_energy", "potential_reference")
 
+SAME = f"each {REVIEW_INTERVAL} steps lead back to the same state"
 STUCK = (
-    f"Each {REVIEW_INTERVAL} steps lead back to the same state, though forces are not balanced or the integration took"
-    " the motion: what moves alternates, or is lost in rounding. Choose another time step."
+    f"{SAME.capitalize()}, though forces are not balanced or the integration took the motion: what moves alternates,"
+    " or is lost in rounding. Choose another time step."
 )
 
 ENDS = (StopReason.REST, StopReason.DIVERGED)  # of a run
@@ -94,7 +95,6 @@ class Simulation:
         self._recovery = Recovery(model, self.programs, self._sleep, self.step_size)
         self._announces = True
         self._present: tuple[int, Snapshot] | None = None  # the state at this revision
-        self._rested = 0.0  # s, when it came to rest last
         self.armed = False
         self.armed_revision = -1
         model.before_change = self.before_change
@@ -176,12 +176,16 @@ class Simulation:
                 self._account.close()
                 self._sleep.review(self.program)
                 self.step_size.begin(self.step_size.first())
+            self.wake()
+            if problem:
+                self.reason, self.message = StopReason.DIVERGED, problem
             self.armed = True
             self.armed_revision = self.model.revision
             self._recovery.safe = None
-            self.reason, self.message = StopReason.DIVERGED if problem else StopReason.DONE, problem
         elif self._recovery.safe is None:
             self.step_size.look_up()
+            if self.halted and not self._rests_still():
+                self.wake()  # the file was changed by hand, or misses a mod
         if self._recovery.safe is None:
             self._recovery.safe = self._whole(self.present())
         self.programs.bind()
@@ -193,21 +197,30 @@ class Simulation:
 
     def wake(self) -> None:
         """Let the run go on although it was at rest or had diverged, since something acts on the model from outside."""
+        if self.model.clock.at_rest:
+            self.model.writable("clock.at_rest")[0] = False
         self.reason, self.message = StopReason.DONE, ""
+
+    def _rests_still(self) -> bool:
+        """True if what a state says of rest holds."""
+        clock, measures = self.model.clock, self._measured()
+        over = self.program.changes_end <= clock.time
+        return over and may_rest(measures, clock.force_scale, clock.energy_scale)
 
     # --- going back ----------------------------------------------------------------------------------
 
     def forget(self) -> None:
         """Begin anew from a state that undo or a file put in place; all edits are accounted for in it."""
         self.programs.unbind()  # the plan may differ: persistent contacts are part of the state
-        self._forget_run()
+        self._forget_run(self._started, None)
 
-    def _forget_run(self) -> None:
-        self.armed = self._started
+    def _forget_run(self, armed: bool, before_edit: Column | None) -> None:
+        self.armed, self._account.before_edit = armed, before_edit
         self._sleep.forget()
-        self._account.before_edit = None
         self._recovery.forget()
-        self.wake()
+        self.reason, self.message = StopReason.DONE, ""
+        if armed and self.model.clock.at_rest:
+            self.reason, self.message = StopReason.REST, at_rest_since(self.moved_until)
 
     def start_anew(self) -> None:
         """Begin a new run with a state from before edits."""
@@ -242,8 +255,7 @@ class Simulation:
             self.stay()
         if checkpoint.binding != self.programs.bindings:
             self.programs.unbind()
-        self._forget_run()
-        self.armed, self._account.before_edit = checkpoint.armed, checkpoint.before_edit
+        self._forget_run(checkpoint.armed, checkpoint.before_edit)
         if checkpoint.whole:  # else the stable step is determined anew
             self._recovery.safe = self._whole(checkpoint.state)
             self.step_size.stable, self.step_size.warning = checkpoint.stable_step, checkpoint.warning
@@ -299,8 +311,8 @@ class Simulation:
         """React to the reason for which the stepper returned."""
         self.reason = StopReason.DONE if reason is StopReason.EVENT else reason
         if reason is StopReason.REST:
-            self._rested = self.model.clock.time
-            self.message = at_rest_since(self._rested)
+            self.model.writable("clock.at_rest")[0] = True
+            self.message = at_rest_since(self.model.clock.time)
         elif reason is StopReason.REVIEW:
             self._review()
         elif self.reason is not StopReason.DONE:
@@ -335,6 +347,9 @@ class Simulation:
             lost, damped = energy.imbalance, energy.dissipated_damping
             if rests_unseen(self.program.measures, lost, damped, clock.energy_scale):
                 self._heed(StopReason.REST)  # all that happened was lost in rounding
+                return
+            if self.step_size.unstable:
+                self.reason, self.message = StopReason.DIVERGED, self._recovery.give_up(SAME)
                 return
             if not self.warning:
                 self.note = STUCK
@@ -520,8 +535,10 @@ class Simulation:
     @property
     def moved_until(self) -> float:
         """The time (s) up to which steps were taken; at rest, time may pass without any."""
-        now = self.model.clock.time
-        return min(self._rested, now) if self.reason is StopReason.REST else now
+        clock, departure = self.model.clock, self.model.clock.departure
+        if departure is None or not clock.at_rest:
+            return clock.time
+        return float(departure.state.columns["clock.time"][0])
 
     @property
     def residual(self) -> float:

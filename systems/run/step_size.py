@@ -11,7 +11,7 @@ from components.model import Model
 from systems.physics.integrators import INTEGRATORS
 from systems.physics.pace import natural_pace
 from systems.physics.spectrum import spectrum
-from systems.run.policy import ERROR_CONTROL, Limits, StepPolicy, begin_steps
+from systems.run.policy import ERROR_CONTROL, Limits, StepPolicy, begin_steps, is_unstable
 from systems.run.programs import Programs
 from systems.run.sleep import Sleep
 
@@ -108,6 +108,12 @@ class StepSize:
             if self._policy.in_contact:
                 self._model.writable("clock.step_size")[0] = min(self._model.clock.step_size, limit)
 
+    @property
+    def unstable(self) -> bool:
+        """True if a person chose steps that are not below the largest stable one."""
+        fixed = self._policy.fixed
+        return fixed is not None and is_unstable(fixed, self.stable)
+
     def remedy(self, size: float | None) -> str:
         """The remedy for a run that is unstable with steps of this size (s), None: automatic."""
         integrator = self._programs.integrator
@@ -117,9 +123,9 @@ class StepSize:
                 f"Without damping {name} is stable at no time step:"
                 f" choose the integrator {DEFAULT_INTEGRATOR}, or give the rods damping."
             )
-        if size is not None and size > self.stable:
+        if size is not None and is_unstable(size, self.stable):
             return (
-                f"The time step {size:.3g} s is above the largest stable one, {self.stable:.3g} s for"
+                f"The time step {size:.3g} s is not below the largest stable one, {self.stable:.3g} s for"
                 f" {name}: set it to automatic or make it smaller."
             )
         if self._policy.controls_error:

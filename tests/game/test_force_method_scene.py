@@ -342,3 +342,11 @@ def test_a_copy_is_elastic_undisplaced_and_at_rest_and_keeps_what_else_was_drawn
     assert found.pop("settings") == expected.pop("settings")
     for key in ("environment", "particles", "rods", "loads"):
         assert found.get(key) == expected.get(key), key
+
+
+def test_a_single_support_that_was_moved_is_drawn_to_scale() -> None:
+    model = Model()
+    model.create(Particle, 1, position=[(0.0, 0.0)], displacement=[(0.016, 0.0)], fixed=[(True, True)])
+    session = Session(model)
+    session.press("k")
+    assert session.focus[0].settings.displacement_scale == 1.0

@@ -118,6 +118,28 @@ class Sly(str):
 ANYWHERE = (WINDOW, RUN)
 
 HOSTILE: dict[str, Hostile] = {
+    # --- what never runs, or takes what others need ----------------------------------------------------------
+    "a plugin that yields": Hostile(
+        plugin("app.layer(draw); yield", "def draw(sheet):\n    return []\n"),
+        "what plugin(app) returned is a generator, of which",
+        (LOAD,),
+    ),
+    "a plugin that waits": Hostile(
+        f"{HEAD}\nasync def plugin(app):\n    pass\n", "nothing has run; write it without 'async'", (LOAD,)
+    ),
+    "a frame that yields": Hostile(system("yield"), "nothing has run; write it without 'yield'", ANYWHERE),
+    "a frame that waits": Hostile(
+        system("pass").replace("def process", "async def process"), "write it without 'async'", ANYWHERE
+    ),
+    "an action that waits": Hostile(
+        action("pass").replace("def act(", "async def act("), "write it without 'async'"
+    ),
+    "a scene that yields": Hostile(
+        scene("def enter(self, session):\n        yield"), "write it without 'yield'"
+    ),
+    "standard output taken away": Hostile(
+        plugin("sys.stdout = None"), "It replaced or removed sys.stdout", (LOAD,)
+    ),
     # --- what marks are ------------------------------------------------------------------------------------
     "a colour without opacity": Hostile(
         layer("[Text('hi', 9, 9, 12, (255, 0, 0))]"), "Text.colour is (255, 0, 0); it must be 4 entries"

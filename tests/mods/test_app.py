@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import sys
+import typing
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
+import numpy as np
 import pytest
 
 from components import Environment, World
@@ -13,6 +16,7 @@ from components.commands import Command
 from game import Session, mods
 from game.commands.command_line import main
 from game.documents import models
+from game.mods.declared import as_declared
 from systems.render.marks import Text
 from systems.render.picture import compose
 from systems.render.theme import load_theme
@@ -311,3 +315,14 @@ def test_an_icon_that_cannot_be_drawn_is_refused(write_mod: Write, icon: str) ->
         ModError, match=r"The icon of 'apple\.toggle': .* is no part of an icon; a part is like"
     ):
         opened(write_mod, TOGGLED.format(key="y", icon=icon))
+
+
+@pytest.mark.skipif(sys.version_info < (3, 12), reason="aliases of types are new in Python 3.12")
+def test_aliases_of_types_are_what_they_mean() -> None:
+    """numpy's NDArray is one since numpy 2.5; mods' arrays were refused."""
+    alias: Any = vars(typing)["TypeAliasType"]
+    item: Any = TypeVar("item")
+    several = alias("several", tuple[float, ...])
+    column = alias("column", np.ndarray[tuple[Any, ...], np.dtype[item]], type_params=(item,))
+    assert as_declared([1, 2.5], several, "places") == (1.0, 2.5)
+    assert as_declared([1, 2], column[np.float64], "places").dtype == np.float64

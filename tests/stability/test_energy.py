@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from components.settings import AUTOMATIC
 from game import Session
+from game.commands.command_line import main
 from game.documents import models
 from systems.physics.integrators import INTEGRATORS
 from tests.reference.elements import Model
@@ -134,3 +137,20 @@ def test_motion_that_is_too_slow_for_its_numbers_is_not_rest() -> None:
     session = stepping(document, "velocity_verlet", 1e-18)
     assert session.run(steps=20_000) == "time reached"
     assert "lead back to the same state" in session.message
+
+
+@pytest.mark.parametrize("words", [["--at", "20"], ["--until-rest"]])
+def test_a_motion_that_alternates_is_found_out_however_long_it_is_to_run(
+    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """At Verlet's stable step a mass under a force is at 0 and at twice the equilibrium in turn, with the right energy."""
+    made = oscillator(1000.0, mass=1.0, force=1.0)
+    made["settings"] = {"integrator": "velocity_verlet", "time_step": 0.002}
+    (tmp_path / "made.json").write_text(json.dumps(made), encoding="utf-8")
+    assert main(["run", str(tmp_path / "made.json"), "--format", "json", *words]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert found["status"] == "diverged"
+    assert "lead back to the same state" in found["message"]
+    session = Session.open(made)
+    session.run(time=0.5)
+    assert "0.002 s is not below the largest stable one" in session.message

@@ -122,5 +122,5 @@ def test_a_wall_so_far_that_nothing_can_be_told_to_touch_it_is_named(end: float,
         assert session.model.clock.collisions == 1
         assert session.energy.kinetic == pytest.approx(0.92369, rel=1e-4)
     else:
-        assert "one of its ends is" in session.message
+        assert "The obstacle ground: one of its ends is" in session.message
         assert session.time == 0.0

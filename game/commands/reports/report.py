@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -53,32 +52,35 @@ class Analysis:
     limit: float = DEFAULT_LIMIT
     measures_error: bool = False
 
-    def run(self, simulation: Simulation, name: str) -> Run:
-        """The result of the analysis, in which `name` is the model.
+    def run(self, simulation: Simulation, name: str, reported: list[State] | None = None) -> Run:
+        """The result of the analysis, in which `name` is the model. reported: gets the states at `times`, one by one.
 
         Raises AnalysisError, ResultError, FieldError, and ModError if a mod has failed or fails meanwhile.
         """
         check_mods()
         with heeding_mods(simulation):
-            return self._found(simulation, name)
+            return self._found(simulation, name, [] if reported is None else reported)
 
-    def _found(self, simulation: Simulation, name: str) -> Run:
+    def _found(self, simulation: Simulation, name: str, reported: list[State]) -> Run:
         if self.load_factors is not None:
             return run_static(simulation, name, self.load_factors)
         if self.times is not None:
-            return run_at(simulation, name, self.times)
+            return run_at(simulation, name, self.times, reported)
         return run_until_rest(simulation, name, self.limit)
 
     def run_in(self, session: Session, name: str) -> Run:
         """The same in a session, which adds remarks of theory on a run through time and its measured error."""
+        reported: list[State] = []
         try:
             if self.load_factors is not None:
                 return self.run(session.simulation, name)
             session.run(steps=0)  # records the beginning, for theory beside the run
             with session.without_frames(), watched(session.simulation):
-                found = self.run(session.simulation, name)
-        except Interrupted as interrupted:
-            return _interrupted(session.simulation, name, interrupted.states)
+                found = self.run(session.simulation, name, reported)
+        except KeyboardInterrupt:
+            if self.load_factors is not None:
+                raise
+            return _interrupted(session.simulation, name, reported)
         except ModError as failure:
             return _failed(session.simulation, name, failure)
         happened = [asdict(event) for event in session.simulation.events]
@@ -90,23 +92,6 @@ class Analysis:
             "events": [*happened, *_records(session.model, session.remarks)],
             "error_estimate": asdict(error) if error is not None else None,
         }
-
-
-class Interrupted(KeyboardInterrupt):
-    """A run that was interrupted, with the states that it had reported."""
-
-    def __init__(self, states: list[State]) -> None:
-        super().__init__()
-        self.states = states
-
-
-@contextmanager
-def _interruptible(states: list[State]) -> Iterator[None]:
-    """Let an interrupt inside bring along the states so far."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        raise Interrupted(states) from None
 
 
 def _interrupted(simulation: Simulation, name: str, states: list[State]) -> Run:
@@ -137,26 +122,23 @@ def _uncontrolled(simulation: Simulation) -> str:
 
 def run_until_rest(simulation: Simulation, name: str, limit: float) -> Run:
     """Run until at rest, at most `limit` s of simulated time."""
-    with _interruptible([]):
-        simulation.run_until_rest(simulation.model.clock.time + limit)
+    simulation.run_until_rest(simulation.model.clock.time + limit)
     ended = {StopReason.REST: "at rest", StopReason.DIVERGED: "diverged"}
     status = ended.get(simulation.reason, "limit reached")
     return _run(simulation, name, status, [_state(simulation)])
 
 
-def run_at(simulation: Simulation, name: str, times: Sequence[float]) -> Run:
+def run_at(simulation: Simulation, name: str, times: Sequence[float], states: list[State]) -> Run:
     """Run through the given times (s, ascending) and report the state at exactly each of them.
 
-    Raises AnalysisError for times before that of the model.
+    states: gets them one by one, for whoever interrupts the run. Raises AnalysisError for times before that of the model.
     """
     if times[0] < (present := simulation.model.clock.time):
         raise AnalysisError(
             f"The model is at t = {present:.9g} s already, after {times[0]:.9g} s; ask for later times."
         )
-    states: list[State] = []
     for target in times:
-        with _interruptible(states):
-            simulation.run_to(target)
+        simulation.run_to(target)
         states.append(_state(simulation))
         if simulation.reason is StopReason.DIVERGED:
             return _run(simulation, name, "diverged", states)
