@@ -55,7 +55,7 @@ def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
 
 def _reached_from(functions: Iterable[Callable[..., Any]]) -> Iterator[Callable[..., Any]]:
     """These functions and all compiled ones that they call, each once."""
-    pending, seen = list(functions), set[Callable[..., Any]]()
+    pending, seen = [function for function in functions if callable(function)], set[Callable[..., Any]]()
     while pending:
         function = pending.pop()
         if function not in seen:
@@ -391,7 +391,8 @@ def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str
 def _key_of(source: str, kernels: Mapping[str, Callable[..., Any]]) -> str:
     """numba's own cache would notice neither edits of functions that a cached one calls, nor another processor."""
     meaning = _meaning_of(kernels[name] for name in sorted(kernels))
-    about = source, meaning, *_circumstances(), f"plain: {PLAIN}", f"layout: {_LAYOUT}"
+    constants = [f"{name} = {_constant(value)}" for name, value in sorted(kernels.items()) if not callable(value)]
+    about = source, meaning, *constants, *_circumstances(), f"plain: {PLAIN}", f"layout: {_LAYOUT}"
     return "pinjoint_program_" + hashlib.sha256("\n".join(about).encode()).hexdigest()[:24]
 
 
