@@ -39,15 +39,25 @@ def command(words: Sequence[str]) -> int:
         found = session.load_path(options.factor, until=options.until, points=options.points)
     except ValueError as error:
         raise UsageError(str(error)) from None
-    write_result(options, _data(session.model, found), _rows)
-    if laws := session.schedule.left_out_of_statics(session.model):
+    laws = session.schedule.left_out_of_statics(session.model)
+    message = "" if found.complete else _why_it_ends(session.model, found, options.points)
+    said = {"complete": found.complete, "message": message, "left_out": laws}
+    write_result(options, said | _data(session.model, found), _rows)
+    if laws:
         tell(f"The curve leaves out the laws of mods: {', '.join(laws)}.")
-    if not found.complete:
-        tell(
-            f"The curve ends at the load factor {found.load_factor[-1]:.6g}."
-            f"{_why_nothing_follows(session.model) if len(found.load_factor) == 1 else ''}"
-        )
-    return ANSWERED if found.complete else NOT_ANSWERED
+    tell(message)
+    return ANSWERED if found.complete and not laws else NOT_ANSWERED
+
+
+def _why_it_ends(model: Model, curve: Curve, most: int) -> str:
+    """Where and why a curve ends before its goal."""
+    count = len(curve.load_factor)
+    message = f"The curve ends at the load factor {curve.load_factor[-1]:.6g}"
+    if count == most:
+        return f"{message}, after {count} points; give it more: --points {10 * count}."
+    if count > 1:
+        return f"{message}: no equilibria could be found that go on from there."
+    return f"{message}.{_why_nothing_follows(model)}"
 
 
 def _why_nothing_follows(model: Model) -> str:
@@ -66,12 +76,11 @@ def _why_nothing_follows(model: Model) -> str:
 def _data(model: Model, curve: Curve) -> dict[str, Any]:
     """A curve as plain data, each list with one entry for every equilibrium.
 
-    displacement (m): by free direction, such as "B.y"; axial_force (kN): by rod. complete: as in `Curve`.
+    displacement (m): by free direction, such as "B.y"; axial_force (kN): by rod.
     """
     names = model.particles.names
     free = np.argwhere(~model.particles.fixed).tolist()
     return {
-        "complete": curve.complete,
         "load_factor": curve.load_factor,
         "stable": curve.stable,
         "displacement": {f"{names[row]}.{'xy'[axis]}": curve.displacement[:, row, axis] for row, axis in free},

@@ -7,10 +7,9 @@ from typing import Any
 
 from components.model import Model
 from game.commands.arguments import Parser, UsageError
-from game.commands.options import ANSWERED
+from game.commands.options import ANSWERED, NOT_ANSWERED, session_of
 from game.commands.output import Row, add_output, write_result
-from game.documents import models
-from game.paths import apply_override
+from game.streams import tell
 
 
 def command(words: Sequence[str]) -> int:
@@ -25,17 +24,18 @@ def command(words: Sequence[str]) -> int:
     )
     add_output(parser, default="json")
     options = parser.parse_args(words)
-    model = models.load(options.model)
-    for override in options.set:
-        apply_override(model, override)
+    session = session_of(options)
     from systems.statics.force_method import ForceMethodError
 
     try:
-        found = _solved(model, None if options.all else options.release)
+        found = _solved(session.model, None if options.all else options.release)
     except ForceMethodError as error:
         raise UsageError(str(error)) from None
-    write_result(options, found, _rows)
-    return ANSWERED
+    laws = session.schedule.left_out_of_statics(session.model)
+    write_result(options, found | {"left_out": laws}, _rows)
+    if laws:
+        tell(f"The force method leaves out the laws of mods: {', '.join(laws)}.")
+    return NOT_ANSWERED if laws else ANSWERED
 
 
 def _solved(model: Model, release: str | None) -> dict[str, Any]:

@@ -115,7 +115,9 @@ def _asked() -> Compile:
 
 
 VARIABLE = "PINJOINT_COMPILE"
-LOADING = 0.2  # s of interpreting after which it is sooner to load the compiled program
+STARTING = 0.05  # s of interpreting, of all modules, after which it is worth it to start the compiler up
+LOADING = 0.03  # s of interpreting after which it is sooner to load what is compiled
+SMALL = 50  # rods or discs up to which the interpreted form may well take all steps of a run before another is loaded
 LARGE = 300  # rods or discs from which on one step, interpreted, takes as long as a picture
 LONGEST_CALL = 0.05  # s, interpreted
 BEFORE_COMPILING = 1.0  # s of interpreting, for each that compiling is expected to take
@@ -138,6 +140,7 @@ class Choice:
     compile = _asked()
     changes = 0
     deadline = math.inf
+    spent = 0.0  # s of interpreting, of all modules
 
 
 class Unfinished(Exception):
@@ -214,7 +217,7 @@ class GeneratedModule:
                 self.load()
             else:
                 self._begin_interpreted()
-        elif self.spent > self._patience and not self._compiled:
+        elif self.spent > self._patience and Choice.spent > STARTING and not self._compiled:
             self._lose_patience()
         return self._form
 
@@ -224,8 +227,8 @@ class GeneratedModule:
         return {name: function.interpreted for name, function in self.functions.items()}
 
     def begin(self, elements: int) -> None:
-        """Choose the form for a model of so many elements: a large one would not get far interpreted."""
-        if elements > LARGE and Choice.compile is Compile.SOON:
+        """Choose the form for a model of so many elements: one of many would not get far interpreted."""
+        if Choice.compile is Compile.SOON and (elements > LARGE or (elements > SMALL and self.is_compiled())):
             self.load_or_tell()
 
     def load_or_tell(self) -> None:
@@ -259,6 +262,7 @@ class GeneratedModule:
                 finally:
                     self._last = time.thread_time() - began
                     self.spent += self._last
+                    Choice.spent += self._last
 
             return called
 
@@ -391,7 +395,9 @@ def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str
 def _key_of(source: str, kernels: Mapping[str, Callable[..., Any]]) -> str:
     """numba's own cache would notice neither edits of functions that a cached one calls, nor another processor."""
     meaning = _meaning_of(kernels[name] for name in sorted(kernels))
-    constants = [f"{name} = {_constant(value)}" for name, value in sorted(kernels.items()) if not callable(value)]
+    constants = [
+        f"{name} = {_constant(value)}" for name, value in sorted(kernels.items()) if not callable(value)
+    ]
     about = source, meaning, *constants, *_circumstances(), f"plain: {PLAIN}", f"layout: {_LAYOUT}"
     return "pinjoint_program_" + hashlib.sha256("\n".join(about).encode()).hexdigest()[:24]
 

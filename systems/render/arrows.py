@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from components.rod import nodes
 from components.tags import DiagramShown
+from systems.render.clip import bounds, clip_segments
 from systems.render.labels import STRONG
 from systems.render.marks import Fills, Mark, Strokes
 from systems.render.sheet import DIRECTIONS, Rows, Sheet
@@ -74,6 +75,9 @@ def _arrows(
     tail = sheet.centres[rows] + np.where(np.reshape(pushes, (-1, 1)), -reach - length, reach)
     tip, across = tail + length, along[:, ::-1] * [-1.0, 1.0]
     neck = tip - HEAD * u * along
+    low, high = bounds(sheet.viewport)
+    _, _, seen = clip_segments(tail, tip, low - HEAD * u, high + HEAD * u)  # rims may be beyond all pixels
+    tail, tip, across, neck = tail[seen], tip[seen], across[seen], neck[seen]
     sheet.occupancy.line(tail, tip, STRONG)
     yield Strokes(tail, neck, 2.0 * u, colour)
     yield Fills(np.stack([tip, neck + 0.5 * HEAD * u * across, neck - 0.5 * HEAD * u * across], axis=1), colour)

@@ -25,7 +25,7 @@ def clip_segments(
     Segments with a coordinate that is not finite are left out.
     """
     step = end - start
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         at_low, at_high = (low - start) / step, (high - start) / step
         first, last = np.fmin(at_low, at_high), np.fmax(at_low, at_high)
         parallel = step == 0.0

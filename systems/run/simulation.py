@@ -468,7 +468,8 @@ class Simulation:
     def go_to(self, steps: int, within: float | None) -> None:
         """Let time pass to such a moment."""
         self.advance(max(steps - self.moment[0], 0))
-        if within is not None and self.moment == (steps, None):
+        whole, now = self.moment
+        if within is not None and whole == steps and now != within:  # also from another moment of the same step
             self.run_to(within)
 
     def passed_since(self, then: Snapshot) -> bool:

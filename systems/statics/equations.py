@@ -48,6 +48,7 @@ class Response:
 
     elastic_force: the trial force, before yielding. plastic_strain: after yielding. axis: unit vectors from
     first to second end, (rods, 2). flowing: rods that yield now. slack: one-sided rods without force.
+    round_off: what rounding alone makes of elastic_force (kN).
     """
 
     elongation: Array
@@ -59,6 +60,7 @@ class Response:
     plastic_strain: Array
     flowing: Flags
     slack: Flags
+    round_off: Array
 
     @property
     def soft(self) -> Flags:
@@ -259,7 +261,15 @@ class Structure:
             plastic_strain=np.where(flowing, strain - force / self.stiffness, plastic_strain),
             flowing=flowing,
             slack=slack,
+            round_off=self._round_off_of_forces(displacement, plastic_strain),
         )
+
+    def _round_off_of_forces(self, displacement: Array, plastic_strain: Array) -> Array:
+        """By the sizes of what elastic strains are sums of, which may cancel: displacements, misfits, plastic strains."""
+        moved = np.abs(displacement).sum(axis=1)
+        summed = (moved[self.ends].sum(axis=1) + np.abs(self.misfit)) / self.rest_length
+        round_off: Array = 4.0 * ROUND_OFF * self.stiffness * (summed + np.abs(plastic_strain))
+        return round_off
 
     def _stretch(self, change: Array) -> tuple[Array, Array, Array]:
         """Changes of length from the original ones, unit vectors and lengths of the rods.
@@ -298,15 +308,14 @@ class Structure:
 
     def at_limit(self, response: Response) -> Flags:
         """Rods whose axial force is at a strength."""
-        slack = ROUND_OFF * 4.0 * self.stiffness * np.abs(response.strain)
         force, tension, compression = response.axial_force, self.tension_limit, self.compression_limit
-        pulled = np.isfinite(tension) & (force >= tension * (1.0 - AT_LIMIT) - slack)
-        pressed = np.isfinite(compression) & (force <= slack - compression * (1.0 - AT_LIMIT))
+        pulled = np.isfinite(tension) & (force >= tension * (1.0 - AT_LIMIT) - response.round_off)
+        pressed = np.isfinite(compression) & (force <= response.round_off - compression * (1.0 - AT_LIMIT))
         return pulled | pressed
 
     def branches(self, response: Response, scale: float) -> Branches:
         """The pieces of their laws that the rods are on; forces (kN) below AT_LIMIT × scale count as 0."""
-        nothing = AT_LIMIT * scale + ROUND_OFF * 4.0 * self.stiffness * np.abs(response.strain)
+        nothing = AT_LIMIT * scale + response.round_off
         verge = (self.sense != 0.0) & (np.abs(response.elastic_force) <= nothing)
         slack = response.slack & ~verge
         low = np.where(self.sense > 0.0, 0.0, -self.compression_limit)

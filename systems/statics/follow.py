@@ -36,6 +36,9 @@ SMALLEST = 1e-12  # increment, of the change of load, below which a path is lost
 NARROWINGS = 42  # halvings that locate a loss of stability
 FEW_NARROWINGS = 14  # the same in structures larger than EXACT_EVENTS
 ACTIVE_SET_ROUNDS = 12
+WAYS = (
+    1e-12  # weight of ways beside elongations, in energy, where directions are compared: ways decide below 1e-6
+)
 INDIFFERENT = 1e-11  # of the largest rate of elongation: a smaller one is round-off
 
 
@@ -77,6 +80,17 @@ class Tangent:
     def stable(self) -> bool:
         """True if the equilibrium resists every small motion."""
         return self.consistent and self.factor.definite
+
+
+@dataclass(frozen=True)
+class Change:
+    """From one point to the next: moved, of the unknowns (N,); elongation, of the rods (rods,), in m.
+
+    The latter is not what the former makes to first order, which takes the turning of long rods for more.
+    """
+
+    moved: Array
+    elongation: Array
 
 
 @dataclass(frozen=True)
@@ -135,13 +149,14 @@ class Path:
 
     # --- directions --------------------------------------------------------------------------------
 
-    def tangent(self, point: Point, onward: Array | None = None, before: Tangent | None = None) -> Tangent:
+    def tangent(self, point: Point, last: Point | None = None, before: Tangent | None = None) -> Tangent:
         """The direction in which the path goes on from a point.
 
-        onward: the last change of the unknowns; before: the tangent there. Of the rods at the end of a piece of
-        their law, those give way whose elongation goes on outward.
+        last: the point before it; before: the tangent there. Of the rods at the end of a piece of their law, those
+        give way whose elongation goes on outward.
         """
         response, branches = point.response, self.branches(point.response)
+        onward = None if last is None else self._change(last, point)
         limited = branches.outward != 0.0
         kept = before.soft & limited if before is not None else np.zeros_like(limited)
         found = self._direction(response, branches, kept, onward)
@@ -151,7 +166,12 @@ class Path:
             return self._onward_tangent(response, branches, kept, onward)
         return self._stable_tangent(response, branches, kept, onward)
 
-    def _onward_tangent(self, response: Response, branches: Branches, guess: Flags, onward: Array) -> Tangent:
+    def _change(self, last: Point, point: Point) -> Change:
+        """From one point to the next."""
+        moved = self.structure.gather(point.displacement - last.displacement)
+        return Change(moved, point.response.elongation - last.response.elongation)
+
+    def _onward_tangent(self, response: Response, branches: Branches, guess: Flags, onward: Change) -> Tangent:
         """Of all directions, with a growing or a falling load, the one most like the last."""
         elastic = self._direction(response, branches, np.zeros_like(guess), onward)
         limited, matrix, growth = self._limits(response, branches, elastic)
@@ -169,15 +189,21 @@ class Path:
                     best, likeness = found, like
         return best
 
-    def _likeness(self, response: Response, branches: Branches, motion: Array, other: Array) -> float:
-        """The cosine of the angle between two motions, as measured by the forces that they cause in elastic rods."""
-        stiffness = np.where(branches.slack, 0.0, self.structure.stiffness / self.structure.rest_length)
-        one, two = (self.structure.elongation_rate(each, response) for each in (motion, other))
-        size = math.sqrt(float(stiffness @ one**2) * float(stiffness @ two**2))
-        return float(stiffness @ (one * two)) / size if size > 0.0 else 0.0
+    def _likeness(self, response: Response, branches: Branches, rate: Array, onward: Change) -> float:
+        """The cosine of the angle between a direction and the last change, as measured by the forces that they cause in
+        elastic rods, and where those hardly change, by the ways of particles.
+
+        The former tells yielding from unloading, which may turn the ways back.
+        """
+        elongation = self.structure.elongation_rate(rate, response)
+        elastic = np.where(branches.slack, 0.0, self.structure.stiffness / self.structure.rest_length)
+        weight = np.concatenate([elastic, WAYS * self.structure.weight])
+        one, other = np.concatenate([elongation, rate]), np.concatenate([onward.elongation, onward.moved])
+        size = math.sqrt(float(weight @ one**2) * float(weight @ other**2))
+        return float(weight @ (one * other)) / size if size > 0.0 else 0.0
 
     def _stable_tangent(
-        self, response: Response, branches: Branches, guess: Flags, onward: Array | None
+        self, response: Response, branches: Branches, guess: Flags, onward: Change | None
     ) -> Tangent:
         """The direction in which t grows and the equilibria are stable, if there is one."""
         elastic = self._direction(response, branches, np.zeros_like(guess), onward)
@@ -194,7 +220,7 @@ class Path:
         return replace(self._direction(response, branches, growth > 0.0, onward), consistent=False)
 
     def _direction(
-        self, response: Response, branches: Branches, giving: Flags, onward: Array | None
+        self, response: Response, branches: Branches, giving: Flags, onward: Change | None
     ) -> Tangent:
         """The direction if these of the rods at the end of a piece give way."""
         structure = self.structure
@@ -205,11 +231,11 @@ class Path:
         return Tangent(rate, flowing, slack, factor, 1.0 if forward else -1.0)
 
     def _goes_on(
-        self, response: Response, branches: Branches, factor: Factor, rate: Array, onward: Array
+        self, response: Response, branches: Branches, factor: Factor, rate: Array, onward: Change
     ) -> bool:
         """True if a growing load leads onward."""
         if not self.passes_limits:
-            return factor.definite or float(rate @ onward) >= 0.0
+            return factor.definite or float(rate @ onward.moved) >= 0.0
         like = self._likeness(response, branches, rate, onward)
         return like > 0.0 or (like == 0.0 and factor.definite)
 
@@ -252,7 +278,7 @@ class Path:
         return limited, 0.5 * (matrix + matrix.T), growth
 
     def _soften_by_trial(
-        self, response: Response, branches: Branches, soft: Flags, onward: Array | None
+        self, response: Response, branches: Branches, soft: Flags, onward: Change | None
     ) -> Tangent:
         """The tangent by fixed-point iteration of the set of rods that give way: large structures, limit points."""
         for _ in range(ACTIVE_SET_ROUNDS):
@@ -279,7 +305,7 @@ class Path:
         far = LARGEST_MOVE / max(self.structure.move(tangent.rate, point.response.reach), 1e-300)
         nearest = min(self._until_event(point, tangent), 0.99 * far * self.stretch(tangent))
         trial, failed, shares = min(increment, nearest), False, 0
-        while trial > SMALLEST:
+        while trial > min(SMALLEST, HALF * nearest):
             found = self.attempt(point, tangent, trial)
             if isinstance(found, tuple):
                 return Step(*found, trial, increment if failed else 2.0 * increment)
@@ -338,8 +364,7 @@ class Path:
         share = self._share(point, tangent, found, dt)
         if share < 1.0:
             return share
-        change = self.structure.gather(found.displacement - point.displacement)
-        return found, self.tangent(found, change, tangent)
+        return found, self.tangent(found, point, tangent)
 
     def _turned_back(self, point: Point, tangent: Tangent, found: Point, following: Tangent) -> bool:
         """True if the path turns back though stability is not lost.
@@ -453,8 +478,9 @@ class Path:
 
     def _is_on(self, start: Point, piece: Tangent, found: Point) -> bool:
         """True if the rods at a point are on the pieces of their laws that a tangent at the start is on."""
-        difference = found.response.axial_force - self._on_piece(start, piece, found.response).axial_force
-        return largest(difference) <= 4.0 * ROUND_OFF * self.largest_force(found.response)
+        response = found.response
+        difference = np.abs(response.axial_force - self._on_piece(start, piece, response).axial_force)
+        return bool((difference <= 4.0 * ROUND_OFF * self.largest_force(response) + response.round_off).all())
 
     def _new_ends(self, point: Point, found: Point) -> Array:
         """1 or −1 for the rods that have gone beyond the upper or lower end of the piece that they were on, else 0."""
@@ -474,8 +500,9 @@ class Path:
             return 1.0
         structure, branches, new = self.structure, self.branches(point.response), ends != 0.0
         edge, sign = np.where(ends > 0.0, branches.high, branches.low)[new], ends[new]
-        size = np.where(edge == 0.0, self.largest_force(found.response), np.abs(edge))
-        near = AT_LIMIT * size + 4.0 * ROUND_OFF * (structure.stiffness * np.abs(found.response.strain))[new]
+        force = min(self.largest_force(point.response), self.largest_force(found.response))
+        size = np.where(edge == 0.0, force, np.abs(edge))
+        near = AT_LIMIT * size + found.response.round_off[new]
         stiffness = (structure.stiffness / structure.rest_length)[new]
         margin = np.maximum(sign * (edge - branches.force[new]) - 0.5 * near, 0.0)
         linear = sign * stiffness * structure.elongation_rate(dt * tangent.rate, point.response)[new]

@@ -25,8 +25,8 @@ LANDINGS = 60  # trials
 class Curve:
     """Equilibria in order along a path: load_factor (k,), displacement (k, n, 2) in m, axial_force (k, rods) in kN.
 
-    stable: (k,), False where the structure would snap or collapse under a dead load. complete: False if the
-    path was lost before its end.
+    stable: (k,), False where the structure would snap or collapse under a dead load. complete: False if it
+    has as many points as were asked for, or its path was lost, before the goal.
     """
 
     load_factor: Array

@@ -193,6 +193,8 @@ def _equilibria(found: Finding) -> None:
             found.unsure = "the reference finds no way from the state as it was drawn"
             return
         found.wrong.append(f"equilibrium without an event, but {reason}")
+    if jumps and not given.kind.yields:
+        _look_for_a_way(found, len(states))
     if not jumps:
         _compare_states(found, states, expected)
         if given.kind.yields and any(found.errors[name] > IN_EQUILIBRIUM[name] for name in found.errors):
@@ -214,6 +216,13 @@ def _jumps(settlement: Settlement) -> bool:
     return not JUMPS.isdisjoint(event.kind for event in settlement.events)
 
 
+def _look_for_a_way(found: Finding, states: int) -> None:
+    """Where settling jumps, stability is lost: small increments through stable equilibria do not come as far."""
+    followed, _ = _followed(found.case, INCREMENTS[0], always=True)
+    if len(followed) >= states:
+        found.wrong.append("settling jumps, but stable equilibria lead all the way")
+
+
 def _in_a_valley(found: Finding, state: StaticState, *, compares: bool) -> None:
     """An elastic equilibrium that lasts is where energy is least, as far as anything resists."""
     document = found.case.document
@@ -231,9 +240,12 @@ def _in_a_valley(found: Finding, state: StaticState, *, compares: bool) -> None:
             found.errors, found.unsure = errors, "another place of least energy was found"
 
 
-def _followed(given: Case, increments: int) -> tuple[list[Document], str]:
-    """The states of the independent method, as far as it comes, and why it comes no farther."""
-    largest = 1.0 / increments if given.kind.yields else 1.0
+def _followed(given: Case, increments: int, *, always: bool = False) -> tuple[list[Document], str]:
+    """The states of the independent method, as far as it comes, and why it comes no farther.
+
+    increments: per load factor, at least; where nothing yields, only if `always`.
+    """
+    largest = 1.0 / increments if given.kind.yields or always else 1.0
     states: list[Document] = []
     try:
         for state in statics.path(given.document, given.kind.factors, largest_increment=largest):

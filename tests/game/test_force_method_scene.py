@@ -270,6 +270,21 @@ def test_all_sets_are_looked_at_alike() -> None:
     assert [(camera.centre, camera.scale) for camera in scene.cameras(session)] == before
 
 
+def test_the_wheel_zooms_before_the_first_picture_as_after_it() -> None:
+    """As in a recording that is played, where nothing is drawn between two inputs."""
+    cameras = []
+    for drawn in (True, False):
+        session = Session.open("hyperstatic")
+        session.press("k")
+        if drawn:
+            assert session.stages
+        session.press("wheel up", (180.0, 300.0))
+        scene = session.scenes.active
+        assert isinstance(scene, ForceMethod)
+        cameras.append([(camera.centre, camera.scale) for camera in scene.cameras(session)])
+    assert cameras[0] == cameras[1]
+
+
 @pytest.mark.parametrize("size", [(640, 480), (1000, 700), (1920, 1080)])
 def test_a_long_table_is_scrolled_with_the_wheel(size: tuple[int, int]) -> None:
     session = Session.open("tower")

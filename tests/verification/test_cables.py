@@ -231,6 +231,29 @@ def test_a_curve_goes_on_where_cables_slacken_and_tighten() -> None:
         assert forces == pytest.approx(settle(model, [float(factor)]).final.axial_force, rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("aside", "stiffness", "longer"), [(0.5, 1e6, 0.003), (0.5, 1e8, 0.005), (1.0, 1e8, 0.004)]
+)
+def test_a_cable_much_stiffer_than_what_moves_it_tightens_without_a_jump(
+    aside: float, stiffness: float, longer: float
+) -> None:
+    """Its force would grow 10³ times as quickly as the load, so that the path hardly comes near where it tightens."""
+    particles = [
+        particle("A", 0, 0, **HELD),
+        particle("B", 1, 0, force=[0.0, -1.0]),
+        particle("C", 1, 1, **HELD),
+        particle("D", 1.0 + aside, 1, **HELD),
+    ]
+    cable = {"tension_only": True, "stiffness": stiffness, "rest_length": math.hypot(1.0, aside) + longer}
+    rods = [rod("A", "B", stiffness=100.0), rod("C", "B", stiffness=100.0), rod("D", "B", **cable)]
+    made = models.load(model(particles, rods))
+    settled, curve = settle(made), load_path(made, Goal(1.0))
+    assert [event.kind for event in settled.events] == ["taut"]
+    assert settled.final.residual <= 1e-9
+    assert curve.complete
+    assert curve.axial_force[-1] == pytest.approx(settled.final.axial_force, rel=1e-6)
+
+
 def test_random_loads_settle_where_they_come_to_rest() -> None:
     numbers = np.random.default_rng(7)
     session = None

@@ -12,8 +12,11 @@ import pytest
 
 from game import Session
 from game.commands.command_line import main
+from game.documents import models
+from systems.statics.path import Goal, load_path
 from tests.reference import closed_forms
 from tests.reference.models import three_bar_truss, von_mises_truss
+from tests.reference.random_models import case
 
 HEIGHT, HALF_SPAN, STIFFNESS = 1.0, 5.0, 1.28e6
 
@@ -113,3 +116,10 @@ def test_a_curve_of_a_mechanism_says_what_moves(capsys: pytest.CaptureFixture[st
     assert "ends at the load factor 0. The structure is a mechanism: C and D along x can move." in (
         capsys.readouterr().err
     )
+
+
+@pytest.mark.parametrize("number", [78020, 78255])
+def test_curves_of_what_hangs_loosely_get_on(number: int) -> None:
+    """Stiff rods turn much and elongate little on the way; then cables slacken, and forces hardly change."""
+    curve = load_path(models.load(case(number).document), Goal(1.0))
+    assert curve.complete

@@ -190,12 +190,11 @@ class ForceMethod(Scene):
         return [view.camera for _, view in self._lay_out(context)]
 
     def zoom(self, context: Context, factor: float, pixel: Vector) -> None:
-        foot = self._foot.camera.viewport
-        if foot.contains(pixel):
+        cameras = self.cameras(context)  # places the foot, too, which no picture may have done yet
+        if self._foot.camera.viewport.contains(pixel):
             last = max(len(self._page.table) - 2, 0)
             self._first = min(max(self._first + (1 if factor < 1.0 else -1), 0), last)
             return
-        cameras = self.cameras(context)
         under = next((c.viewport for c in cameras if c.viewport.contains(pixel)), cameras[0].viewport)
         for camera in cameras:
             v = camera.viewport

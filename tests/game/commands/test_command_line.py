@@ -272,6 +272,14 @@ def test_every_format_of_the_force_method_has_the_same_numbers(capsys: pytest.Ca
     assert f"{found['force']:.7g}" in printed_by(f"{command} --format table", capsys)
 
 
+def test_a_curve_that_ends_early_says_why(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["curve", "von_mises", "--points", "3", "--format", "json"]) == 1
+    said = capsys.readouterr()
+    message = json.loads(said.out)["message"]
+    assert message.endswith(", after 3 points; give it more: --points 30.")
+    assert message in said.err
+
+
 def test_every_format_of_a_curve_has_the_same_numbers(capsys: pytest.CaptureFixture[str]) -> None:
     command = "curve von_mises --until B.y=-0.1"
     rows = list(csv.DictReader(io.StringIO(printed_by(command, capsys))))

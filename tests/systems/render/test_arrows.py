@@ -49,6 +49,14 @@ def test_a_force_too_small_for_squares_still_has_a_direction() -> None:
     assert (tip - place) / np.hypot(*(tip - place)) == pytest.approx([-0.6, 0.8]), "it pushes"
 
 
+def test_an_arrow_at_a_rim_beyond_all_pixels_is_not_drawn() -> None:
+    model = Model()
+    model.create(
+        Particle, 2, position=[(0.0, 0.0), (1.0, 0.0)], force=[(1.0, 0.0), (0.0, 1.0)], radius=[1e30, 0.01]
+    )
+    assert len(tips(model)) == 1
+
+
 def test_velocities_are_seen_while_time_stands_still() -> None:
     model = triangle()
     model.create(Particle, 1, name=["ball"], position=[(0.0, 2.0)], velocity=[(1.0, 0.0)])

@@ -193,6 +193,16 @@ def test_stepping_goes_from_one_whole_step_to_the_next() -> None:
     assert bits.different(bits.columns(session.model), after) == []
 
 
+@EACH
+def test_a_moment_within_a_step_is_found_from_another_one_of_that_step(made: Model) -> None:
+    shown, found = Session.open(made), Session.open(made)
+    for number in range(1, 60):
+        _run_to(shown, 0.01 * number)
+        found.go_to(*shown.simulation.moment)
+        assert (found.time, found.simulation.moment) == (shown.time, shown.simulation.moment)
+    _assert_same(shown, found)
+
+
 @pytest.mark.parametrize("name", ["automatic", "fixed steps of Verlet", "driven", "flight"])
 def test_what_a_hand_did_within_steps_is_done_again(name: str) -> None:
     session = Session.open(CASES[name])
