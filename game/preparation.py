@@ -57,8 +57,6 @@ class Preparation(System):
     def __init__(self) -> None:
         self._asked = Choice.compile
         self.elsewhere = Elsewhere(compiles=self._asked is not Compile.NEVER)
-        if self._asked is not Compile.NEVER:
-            Choice.compile = Compile.ELSEWHERE
         self._frames = 0
         self._modules: dict[Job, GeneratedModule | None] = {}  # None: it cannot be written
         self._needed: dict[Job, Simulation] = {}  # by this frame, in order, and by what
@@ -69,6 +67,11 @@ class Preparation(System):
         self._draws_many = False
         self._seen = -1  # the model's revision in the last frame
         self._structure = -1  # when anything was made or deleted last, as of the last frame
+
+    def open(self) -> None:
+        """Let programs of this process begin interpreted, from now on until `close`."""
+        if self._asked is not Compile.NEVER:
+            Choice.compile = Compile.ELSEWHERE
 
     def process(self, frame: Any) -> None:
         """Say what is needed next; and once each, what could not be compiled or kept."""
@@ -144,8 +147,7 @@ class Preparation(System):
         """What a simulation waits for; None if it can go on, interpreted or compiled."""
         jobs = _jobs_of(simulation)
         self._needed |= dict.fromkeys(jobs, simulation)
-        waits = not is_live(simulation.model) if self._asked is Compile.SOON else self._asked is Compile.ALWAYS
-        if not waits:
+        if self._asked is Compile.NEVER or (self._asked is not Compile.ALWAYS and is_live(simulation.model)):
             return None
         left = [job for job in jobs if not self._is_ready(job)]
         if not left:

@@ -85,6 +85,7 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
     monkeypatch.setattr(GeneratedModule, "is_compiled", lambda module: found.compiled)
     monkeypatch.setattr(GeneratedModule, "load_kept", lambda module: found.load(module))
     monkeypatch.setattr(GeneratedModule, "is_loaded", property(lambda module: module in found.loaded))
+    monkeypatch.setattr(Choice, "compile", Compile.SOON)
     monkeypatch.setattr(programs, "UNCOMPILED", [])
     monkeypatch.setattr(preparation, "UNCOMPILED", programs.UNCOMPILED)
     monkeypatch.setattr(pygame_input, "IDLE_PAUSE", 0.0)
@@ -322,9 +323,12 @@ def test_nothing_is_compiled_where_that_is_not_wanted(
     assert Choice.compile is Compile.NEVER
 
 
-def test_a_window_leaves_the_choice_of_the_form_as_it_was() -> None:
-    before = Choice.compile
-    window = Preparation()
+def test_a_window_leaves_the_choice_of_the_form_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Choice, "compile", Compile.SOON)
+    before, window = Choice.compile, Preparation()
+    assert Choice.compile is before
+    window.open()
+    assert Choice.compile is Compile.ELSEWHERE
     window.close()
     assert Choice.compile is before
 
