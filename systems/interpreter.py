@@ -17,6 +17,7 @@ import ast
 import copy
 import linecache
 import math
+import threading
 from collections.abc import Callable, Mapping
 from enum import IntEnum
 from itertools import count
@@ -507,6 +508,7 @@ def plain_function(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 _rewritten: dict[Any, Interpreted] = {}  # by the function that was declared
+_rewriting = threading.RLock()
 
 
 def in_lists(function: Callable[..., Any]) -> Interpreted:
@@ -613,7 +615,8 @@ def _compiles_to(code: CodeType, node: _Defined) -> bool:
 
 def interpreted(function: Callable[..., Any]) -> Interpreted:
     """A kernel as Python calls it: with arrays, or named tuples of arrays, of which it may change the entries."""
-    rewritten = in_lists(function)
+    with _rewriting:
+        rewritten = in_lists(function)
 
     def called(*given: Any, **named: Any) -> Any:
         lists: dict[int, tuple[Any, Any]] = {}

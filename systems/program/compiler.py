@@ -21,6 +21,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from enum import Enum, IntEnum
 from functools import cache as once
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from types import CodeType, MappingProxyType, ModuleType, SimpleNamespace
 from typing import Any
@@ -58,7 +59,7 @@ def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
 
 def _reached_from(functions: Iterable[Callable[..., Any]]) -> Iterator[Callable[..., Any]]:
     """These functions and all compiled ones that they call, each once."""
-    pending, seen = list(functions), set[Callable[..., Any]]()
+    pending, seen = [function for function in functions if callable(function)], set[Callable[..., Any]]()
     while pending:
         function = pending.pop()
         if function not in seen:
@@ -94,7 +95,7 @@ def _constant(value: Any) -> str:
     return repr(value) if plain else type(value).__name__
 
 
-_LAYOUT = 3  # of what is kept on disk: raise it where former files are of no use any more
+_LAYOUT = 4  # of what is kept on disk: raise it where former files are of no use any more
 
 
 # --- which form ------------------------------------------------------------------------------------
@@ -133,10 +134,21 @@ LOG = logging.getLogger("pinjoint.compiler")
 
 
 class Choice:
-    """Which form programs of this process run in; a window changes it to ELSEWHERE."""
+    """Which form programs of this process run in; a window changes it to ELSEWHERE.
+
+    changes: how often a program began, or changed its form, in this process; what steps cost is known until then.
+    deadline: the time (time.perf_counter, s) from which on a step that is interpreted, and can be gone on with, raises
+    Unfinished.
+    """
 
     compile = _asked()
+    changes = 0
+    deadline = math.inf
     spent = 0.0  # s of interpreting, of all modules
+
+
+class Unfinished(Exception):
+    """A step takes longer than a frame may: the next advance goes on with it."""
 
 
 # --- modules ---------------------------------------------------------------------------------------
@@ -163,6 +175,7 @@ class GeneratedModule:
         """
         self.name = name
         self.spent = 0.0
+        self.refusal = ""
         self._contents = contents
         self._kinds = kinds
         self.warm_up = warm_up
@@ -208,6 +221,7 @@ class GeneratedModule:
     def form(self) -> Any:
         """The functions by name, in the form that they run in now."""
         if self._form is None:
+            Choice.changes += 1
             if Choice.compile is Compile.ALWAYS:
                 self.load()
             else:
@@ -215,6 +229,15 @@ class GeneratedModule:
         elif self.spent > self._patience and Choice.spent > STARTING and not self._compiled:
             self._lose_patience()
         return self._form
+
+    @cached_property
+    def rewritten(self) -> dict[str, Callable[..., Any]] | None:
+        """The interpreted functions, not timed; None where a kernel has no plain form, and `refusal` says why."""
+        try:
+            return {name: function.interpreted for name, function in self.functions.items()}
+        except NoPlainForm as error:
+            self.refusal = f"{self.name} cannot be interpreted: {error}"
+            return None
 
     def begin(self, elements: int) -> None:
         """Choose the form for a model of so many elements: one of many would not get far interpreted."""
@@ -227,7 +250,7 @@ class GeneratedModule:
             self.load()
         except Exception as error:  # numba raises many kinds
             self._patience = math.inf
-            _tell(f"{self.name} goes on interpreted, and slower: it cannot be compiled ({error}).")
+            tell(f"{self.name} goes on interpreted, and slower: it cannot be compiled ({error}).")
 
     @property
     def is_loaded(self) -> bool:
@@ -236,11 +259,10 @@ class GeneratedModule:
 
     def _begin_interpreted(self) -> None:
         """Use the interpreted form; where a kernel has none, machine code."""
-        try:
-            interpreted = {name: function.interpreted for name, function in self.functions.items()}
-        except NoPlainForm as error:
+        interpreted = self.rewritten
+        if interpreted is None:
             if Choice.compile is Compile.NEVER:
-                raise NoPlainForm(f"{self.name} cannot be interpreted: {error}") from error
+                raise NoPlainForm(self.refusal)
             self.load()
             return
 
@@ -257,6 +279,7 @@ class GeneratedModule:
             return called
 
         self._patience = LOADING
+        _interpreted.append(self)
         self._form = SimpleNamespace(**{name: timed(function) for name, function in interpreted.items()})
 
     def did(self, work: int) -> None:
@@ -281,7 +304,7 @@ class GeneratedModule:
         """How long compiling it will take, by what that took before on this machine."""
         return _seconds_per_byte() * self._size
 
-    @property
+    @cached_property
     def _size(self) -> int:
         """Bytes of the interpreter's code of all that is compiled."""
         reached = _reached_from([*self.functions.values(), *self._source_and_kernels[1].values()])
@@ -290,32 +313,72 @@ class GeneratedModule:
     def load(self) -> Any:
         """Go on with machine code from now on: compiled first if nobody has."""
         with _loading:
-            if not self._compiled:
-                self._load()
+            if not self.load_kept():
+                self._compile()
         return self._form
 
-    def _load(self) -> None:
+    def load_kept(self) -> bool:
+        """Go on with machine code if another process, or an earlier one, has kept it; False if it has not.
+
+        It calls nothing, so that a thread can load what another one interprets meanwhile.
+        """
+        with _loading:
+            if self._compiled:
+                return True
+            if not self.is_compiled():
+                return False
+            kept = cache.read(_types_of(self.key))
+            if kept is None:  # damaged: it is compiled anew
+                with contextlib.suppress(OSError):
+                    _note_of(self.key).unlink()
+                return False
+            from systems.machine_code import compile_for
+
+            machine = self._machine()
+            for name, function in vars(machine).items():
+                compile_for(function, kept, name)
+            self._form, self._compiled = machine, True
+            Choice.changes += 1
+            _keep_note(self.key, None)
+            return True
+
+    def _machine(self) -> SimpleNamespace:
+        """The functions, to be compiled when they are called."""
         from systems.machine_code import adopt, machine_code
 
-        before, known, began = self._form, self.is_compiled(), time.perf_counter()
         adopt(self.module, self.key, _reached_from(self._source_and_kernels[1].values()))
-        self._form = SimpleNamespace(**{name: machine_code(f) for name, f in self.functions.items()})
-        self._compiled = True
+        return SimpleNamespace(**{name: machine_code(f) for name, f in self.functions.items()})
+
+    def _compile(self) -> None:
+        """Compile by calling everything, and keep that."""
+        from systems.machine_code import types_of
+
+        before, began = self._form, time.perf_counter()
+        self._form, self._compiled = self._machine(), True
+        Choice.changes += 1
         try:
             self.warm_up()
         except BaseException:
             self._form, self._compiled = before, False
             raise
-        _keep_note(self.key, None if known else (time.perf_counter() - began, self._size))
+        cache.write(_types_of(self.key), types_of(vars(self._form)))
+        _keep_note(self.key, (time.perf_counter() - began, self._size))
 
 
-def _tell(sentence: str) -> None:
+def tell(sentence: str) -> None:
     if sentence not in UNCOMPILED:
         UNCOMPILED.append(sentence)
         LOG.warning(sentence)
 
 
+def interpreted_here() -> list[GeneratedModule]:
+    """What began interpreted in this process and has no machine code yet, the costliest first."""
+    _interpreted[:] = (module for module in _interpreted if not module.is_loaded)
+    return sorted(_interpreted, key=lambda module: -module.spent)
+
+
 _loading = threading.RLock()
+_interpreted: list[GeneratedModule] = []
 _modules: dict[Any, GeneratedModule] = {}  # by source, kernels and kinds
 
 
@@ -349,7 +412,10 @@ def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str
 def _key_of(source: str, kernels: Mapping[str, Callable[..., Any]]) -> str:
     """numba's own cache would notice neither edits of functions that a cached one calls, nor another processor."""
     meaning = _meaning_of(kernels[name] for name in sorted(kernels))
-    about = source, meaning, *_circumstances(), f"plain: {PLAIN}", f"layout: {_LAYOUT}"
+    constants = [
+        f"{name} = {_constant(value)}" for name, value in sorted(kernels.items()) if not callable(value)
+    ]
+    about = source, meaning, *constants, *_circumstances(), f"plain: {PLAIN}", f"layout: {_LAYOUT}"
     return "pinjoint_program_" + hashlib.sha256("\n".join(about).encode()).hexdigest()[:24]
 
 
@@ -374,6 +440,11 @@ def _note_of(key: str) -> Path:
     return cache.folder() / f"{key}.done"
 
 
+def _types_of(key: str) -> str:
+    """The name of the file that says for which types the functions of a module are compiled."""
+    return f"{key}.types"
+
+
 def _keep_note(key: str, cost: tuple[float, int] | None) -> None:
     """Note that all of a module is compiled, and when it was last used."""
     if not cache.TROUBLE:
@@ -384,20 +455,18 @@ def _keep_note(key: str, cost: tuple[float, int] | None) -> None:
                 _note_of(key).write_text(f"{cost[0]:.3f} s, {cost[1]} bytes", encoding="ascii")
 
 
+_NOTES = 50  # of those of former compilations that are read
+
+
 @once
 def _seconds_per_byte() -> float:
     """What compiling took on this machine; without experience, what it took where this was written."""
     seconds, size = 0.0, 0
-    for path in cache.folder().glob("*.done"):
+    for path in islice(cache.folder().glob("*.done"), _NOTES):
         with contextlib.suppress(OSError, ValueError):
             took, of = path.read_text(encoding="ascii").removesuffix(" bytes").split(" s, ")
             seconds, size = seconds + float(took), size + int(of)
     return seconds / size if size else SECONDS_PER_BYTE
-
-
-def is_blank() -> bool:
-    """True if nothing at all is compiled yet: the program is started for the first time."""
-    return next(cache.folder().glob("*.done"), None) is None
 
 
 def forget_unused(days: float = 60.0) -> None:

@@ -26,7 +26,7 @@ from systems.program.controlled_writer import ControlledWriter
 from systems.program.faults import check_results, explain, failure_of, kinds_of
 from systems.program.near_pairs import NearPairs
 from systems.program.reference_laws import in_turn
-from systems.program.writer import STATE, VERY_MANY, Writer, form_of, sides_of
+from systems.program.writer import STATE, VERY_MANY, Writer, sides_of
 
 _ORIGIN = ("origin", "step_limit")
 _COUNTS = ("steps", "origin_steps")
@@ -52,10 +52,11 @@ def _writer(model: Model, systems: Sequence[StepSystem], integrator: Integrator,
     return (ControlledWriter if integrator.controlled else plain)(model, joining, integrator, form)
 
 
-def has_program(model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str = "") -> bool:
-    """True if the program of this plan, in the form that suits the model or another, need only be loaded."""
-    writer = _writer(model, systems, integrator, form or form_of(model, integrator, systems))
-    return _module(writer, model).is_compiled()
+def module_of(
+    model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str
+) -> GeneratedModule:
+    """The module of the program of a plan, in that form, which is only written."""
+    return _module(_writer(model, systems, integrator, form), model)
 
 
 def _module(writer: Writer, model: Model) -> GeneratedModule:
