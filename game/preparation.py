@@ -44,8 +44,8 @@ def is_live(model: Model) -> bool:
 class Preparation(System):
     """Has another process compile what the open model runs with, then what it may come to need.
 
-    Runs begin, interpreted, meanwhile, and go on with machine code. Only models for which that would be too slow wait, and kernels of mods without a plain form.
-    PINJOINT_COMPILE=always has all models wait, =never none.
+    Runs begin, interpreted, meanwhile, and go on with machine code. What would be too slow waits, and kernels of mods that
+    have no plain form. PINJOINT_COMPILE=always has all models wait, =never none.
     """
 
     name = "programs.preparation"

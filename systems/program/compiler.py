@@ -7,95 +7,30 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import importlib.metadata
 import inspect
 import linecache
 import logging
 import math
 import os
-import platform
-import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from enum import Enum, IntEnum
+from collections.abc import Callable, Mapping
+from enum import Enum
 from functools import cache as once
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
-from types import CodeType, MappingProxyType, ModuleType, SimpleNamespace
+from types import MappingProxyType, ModuleType, SimpleNamespace
 from typing import Any
-
-import numpy as np
 
 from components.mistake import Mistake
 from systems import cache
 from systems.interpreter import FORMS, NoPlainForm, plain_function
-from systems.kernels import PLAIN, Kernel, Use
+from systems.kernels import Kernel, Use
 from systems.kinds import Kind, typed
+from systems.program.identity import key_of, reached_from
 
 Kinds = tuple[Kind, ...]
-
-
-def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
-    """All that decides what these compiled functions compute: code, options, what they refer to or call.
-
-    Read from the functions in memory: their files may have changed since they were imported.
-    """
-    parts: list[str] = []
-    for function in _reached_from(functions):
-        if isinstance(function, type):
-            parts.append(_constant(function))
-            continue
-        plain = plain_function(function)
-        parts += [
-            f"{plain.__module__}.{plain.__qualname__}",
-            repr(getattr(function, "targetoptions", {})),
-            _described(plain.__code__),
-            *(f"{name} = {_constant(value)}" for name, value in sorted(_used_by(plain).items())),
-        ]
-    return "\n".join(parts)
-
-
-def _reached_from(functions: Iterable[Callable[..., Any]]) -> Iterator[Callable[..., Any]]:
-    """These functions and all compiled ones that they call, each once."""
-    pending, seen = [function for function in functions if callable(function)], set[Callable[..., Any]]()
-    while pending:
-        function = pending.pop()
-        if function not in seen:
-            seen.add(function)
-            yield function
-            if not isinstance(function, type):
-                used = _used_by(plain_function(function))
-                pending += [value for _, value in sorted(used.items()) if hasattr(value, "py_func")]
-
-
-def _used_by(plain: Callable[..., Any]) -> dict[str, Any]:
-    """The names that a function takes from outside: closure, globals, and attributes of modules among these."""
-    outside = inspect.getclosurevars(plain)
-    used: dict[str, Any] = {**outside.globals, **outside.nonlocals}
-    for name, value in list(used.items()):
-        if isinstance(value, ModuleType):
-            names = plain.__code__.co_names
-            used |= {f"{name}.{n}": getattr(value, n) for n in names if hasattr(value, n)}
-    return used
-
-
-def _described(code: CodeType) -> str:
-    constants = [_described(c) if isinstance(c, CodeType) else repr(c) for c in code.co_consts]
-    return repr((code.co_code, code.co_names, code.co_varnames, constants))
-
-
-def _constant(value: Any) -> str:
-    if isinstance(value, np.ndarray):
-        return repr((value.dtype.str, value.shape, value.tobytes()))
-    if isinstance(value, type) and issubclass(value, IntEnum):
-        return repr((value.__name__, [(member.name, member.value) for member in value]))
-    plain = isinstance(value, bool | int | float | complex | str | tuple | None | np.generic)
-    return repr(value) if plain else type(value).__name__
-
-
-_LAYOUT = 4  # of what is kept on disk: raise it where former files are of no use any more
 
 
 # --- which form ------------------------------------------------------------------------------------
@@ -197,7 +132,7 @@ class GeneratedModule:
     @cached_property
     def key(self) -> str:
         """The name of the module in the cache, which hashes everything that is compiled into it."""
-        return _key_of(*self._source_and_kernels)
+        return key_of(*self._source_and_kernels)
 
     @cached_property
     def module(self) -> ModuleType:
@@ -307,7 +242,7 @@ class GeneratedModule:
     @cached_property
     def _size(self) -> int:
         """Bytes of the interpreter's code of all that is compiled."""
-        reached = _reached_from([*self.functions.values(), *self._source_and_kernels[1].values()])
+        reached = reached_from([*self.functions.values(), *self._source_and_kernels[1].values()])
         return sum(len(plain_function(f).__code__.co_code) for f in reached if not isinstance(f, type))
 
     def load(self) -> Any:
@@ -346,7 +281,7 @@ class GeneratedModule:
         """The functions, to be compiled when they are called."""
         from systems.machine_code import adopt, machine_code
 
-        adopt(self.module, self.key, _reached_from(self._source_and_kernels[1].values()))
+        adopt(self.module, self.key, reached_from(self._source_and_kernels[1].values()))
         return SimpleNamespace(**{name: machine_code(f) for name, f in self.functions.items()})
 
     def _compile(self) -> None:
@@ -407,32 +342,6 @@ def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str
 
 
 # --- on disk ---------------------------------------------------------------------------------------
-
-
-def _key_of(source: str, kernels: Mapping[str, Callable[..., Any]]) -> str:
-    """numba's own cache would notice neither edits of functions that a cached one calls, nor another processor."""
-    meaning = _meaning_of(kernels[name] for name in sorted(kernels))
-    constants = [
-        f"{name} = {_constant(value)}" for name, value in sorted(kernels.items()) if not callable(value)
-    ]
-    about = source, meaning, *constants, *_circumstances(), f"plain: {PLAIN}", f"layout: {_LAYOUT}"
-    return "pinjoint_program_" + hashlib.sha256("\n".join(about).encode()).hexdigest()[:24]
-
-
-@once
-def _circumstances() -> tuple[str, ...]:
-    """What else machine code depends on: compiler, interpreter, and processor, as far as is known without the compiler."""
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8", errors="replace") as file:
-            lines = file.read(8192).splitlines()
-        processor = [line for line in lines if line.startswith(("model name", "flags", "Features"))][:2]
-    except OSError:
-        processor = [platform.processor()]
-    try:
-        compiler = importlib.metadata.version("numba")
-    except importlib.metadata.PackageNotFoundError:
-        compiler = ""
-    return compiler, sys.version, platform.machine(), *processor
 
 
 def _note_of(key: str) -> Path:
