@@ -41,7 +41,8 @@ class Status:
 
     time: simulated seconds, if they matter. speed: simulated seconds per second shown (0: halted). state: such as
     "running", "at rest", "diverged". hint: the next possible step. problem: why it stopped, or "".
-    notice: what the last action did, or what is being waited for, or "".
+    notice: what the last action did, or what is being waited for, or "". share: how much of what the notice says is
+    done, from 0 to 1; None: it is no work.
     """
 
     time: float | None = 0.0
@@ -50,6 +51,7 @@ class Status:
     hint: str = ""
     problem: str = ""
     notice: str = ""
+    share: float | None = None
 
 
 @dataclass(frozen=True)
@@ -126,7 +128,7 @@ class View:
     legend: show the meaning of colours. help: the page of keys that is shown, from 1; 0: none. keys: its lines
     (key, meaning). more_keys: there is another page.
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
-    forces_known: False while the program that computes forces is being compiled; then no forces are shown.
+    forces_known: False while a large model waits for the program that computes forces; then no forces are shown.
     caption: lines at the top: a title, and facts about the model. page: text in place of the model.
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.

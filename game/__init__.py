@@ -13,7 +13,8 @@ mods/ included/             extensions by others, and ours that are written like
 api.py                      what mods and scripts may rely on, in one place
 checks.py                   check_system: a test of any system, for mods
 paths.py                    what particles.B.force and the like mean, wherever a person writes one
-preparation.py prepare.py   compiling ahead of need, in another process
+preparation.py              what a window has compiled, and which models wait for that
+elsewhere.py prepare.py     compiling in another process, and loading what it made in a thread
 """
 
 from importlib import import_module

@@ -16,11 +16,17 @@ def main() -> int:
         return 0
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the matrices are small, and waiting threads take 0.1 s
     with quietly_interrupted():
-        from game import included  # noqa: F401 (registers what is written as mods are)
-        from game.commands import command_line
-        from game.commands.progress import told
-        from game.streams import prepare_streams
-    prepare_streams()
+        from components.mistake import Mistake
+        from game.streams import prepare_streams, tell
+
+        prepare_streams()
+        try:
+            from game import included  # noqa: F401 (registers what is written as mods are)
+            from game.commands import command_line
+            from game.commands.progress import told
+        except Mistake as error:  # of a variable of the environment
+            tell(str(error))
+            return 2
     with told():
         status = command_line.main()
     return ended_with(status)

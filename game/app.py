@@ -146,6 +146,8 @@ class App:
         self.session.faults_seen = 0  # so that mods that were left out are shown
         self.session.autosave = self.autosave = autosave
         self.session.preparation = self.preparation = preparation
+        if preparation is not None:
+            preparation.open()
         self._theme = theme
         self._magnification = magnification
         self._clock, self._before = pygame.time.Clock(), time.perf_counter()

@@ -1,20 +1,21 @@
-"""Preparation: another process compiles step programs, collisions and drawing before they are needed."""
+"""Preparation: says what another process compiles, and whether a model has to wait for that.
+
+Programs begin interpreted, so that most models never wait: see `is_live`.
+"""
 
 from __future__ import annotations
 
-import importlib
-import subprocess
-import sys
-import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 from typing import Any
 
 from components.model import Model
 from components.obstacles import any_obstacles
 from components.rod import is_warm, nodes
-from game.mods import MODS
-from game.prepare import WARM, Job, is_prepared, load_program
+from game.editor.host import Waiting
+from game.elsewhere import SLOWER, Elsewhere
+from game.prepare import UNITS, WARM, Job, problem_of
 from systems import cache
 from systems.base import Phase, StepSystem, System
 from systems.collision.driven.compiled import DRIVEN
@@ -22,24 +23,29 @@ from systems.collision.free.discs import EVENTS, HORIZONS, PILES
 from systems.collision.free.flight import may_pile
 from systems.collision.system import Support, persistent_contacts
 from systems.edit.pull import Pull
-from systems.physics.integrators import INTEGRATORS
-from systems.program.compiler import GeneratedModule, is_blank
-from systems.program.program import has_program
-from systems.program.writer import form_of, read_sources
+from systems.physics.system import Elasticity, ElasticityAfterYielding
+from systems.plasticity.system import Strength, Yielding
+from systems.program.compiler import LARGE, UNCOMPILED, Choice, Compile, GeneratedModule, tell
+from systems.program.program import module_of
+from systems.program.writer import form_of
 from systems.render.raster import RASTER, Raster, load_raster
 from systems.run.simulation import Simulation
 
-Units = tuple[GeneratedModule, ...]  # that one process compiles
-FREE: tuple[Units, ...] = (EVENTS,), (HORIZONS,)  # for free particles
-PULLED: tuple[Units, ...] = (EVENTS,), (HORIZONS, PILES)  # for those that may pile up
-AHEAD: tuple[Units, ...] = (RASTER,), (DRIVEN,), *PULLED  # which any model may come to need
+BEGINNING = 1.5  # s in which the other process gets ready to compile
+RAMP = "loads.ramp"
+AHEAD = (RASTER, DRIVEN, EVENTS, HORIZONS, PILES)  # which any model may come to need
+
+
+def is_live(model: Model) -> bool:
+    """True if a step takes less than a tenth of a second interpreted, so that a run can begin before it is compiled."""
+    return max(model.rods.count, model.particles.count if model.rods.count == 0 else 0) <= LARGE
 
 
 class Preparation(System):
-    """Compiles the step program of the open model as soon as the model is known, and the drawing.
+    """Has another process compile what the open model runs with, then what it may come to need.
 
-    First a thread loads the compiler, which takes as long as a person needs to press a key. Compiled programs are
-    loaded while nobody waits for another; then programs that other models may need are compiled.
+    Runs begin, interpreted, meanwhile, and go on with machine code. What would be too slow waits, and kernels of mods that
+    have no plain form. PINJOINT_COMPILE=always has all models wait, =never none.
     """
 
     name = "programs.preparation"
@@ -49,147 +55,169 @@ class Preparation(System):
     headless = False
 
     def __init__(self) -> None:
+        self._asked = Choice.compile
+        self.elsewhere = Elsewhere(compiles=self._asked is not Compile.NEVER)
         self._frames = 0
+        self._modules: dict[Job, GeneratedModule | None] = {}  # None: it cannot be written
+        self._needed: dict[Job, Simulation] = {}  # by this frame, in order, and by what
+        self._waiting: dict[Job, float] = {}  # what keeps a simulation waiting, and since when
+        self._given_up: set[Job] = set()  # of these: what cannot be compiled at all
+        self._problems: dict[str, None] = {}  # with what is needed
+        self._said: set[str] = set()
+        self._draws_many = False
         self._seen = -1  # the model's revision in the last frame
         self._structure = -1  # when anything was made or deleted last, as of the last frame
-        self._compiler = threading.Thread(target=_load_libraries, daemon=True)
-        self._blank = is_blank()  # the cache is empty, which is known without loading the compiler
-        self._loaded = False  # whether the program was loaded in the last frame
-        self._driven = False  # the kernels of driven collisions are loaded
-        self._looked = -1  # the revision for which the program of a pulling hand was last looked up
-        self._pulled: set[Job] = set()  # programs of a pulling hand that were looked up
-        self._running: dict[Job, subprocess.Popen[bytes]] = {}
-        self._since: dict[Job, float] = {}
-        self._done: set[Job] = set()
-        self._said = False  # that programs cannot be kept on disk
+
+    def open(self) -> None:
+        """Let programs of this process begin interpreted, from now on until `close`."""
+        if self._asked is not Compile.NEVER:
+            Choice.compile = Compile.ELSEWHERE
 
     def process(self, frame: Any) -> None:
-        """Begin with what the session needs next; say once if nothing compiled can be kept."""
-        if cache.TROUBLE and not self._said:
-            self._said = True
-            frame.session.notice = cache.TROUBLE[0]
-        self._frames += 1
-        if self._frames == 2:  # after the first picture
-            self._compiler.start()
+        """Say what is needed next; and once each, what could not be compiled or kept."""
         simulation = frame.session.simulation
         before, self._structure = self._structure, simulation.model.structure
-        if before != self._structure:  # what was made or deleted is seen first
-            return
-        seen, self._seen = self._seen, simulation.model.revision
-        loaded, self._loaded = self._loaded, simulation.programs.ready
-        if loaded and simulation.programs.ready and self._waits_for_meetings(simulation) is None:
-            self._load_driven(simulation)
-            if seen == self._seen and not frame.session.busy:
-                self._load_pulled(simulation)
-        elif self.waits_for(simulation) is None and seen == self._seen and _is_compiled(simulation):
-            # As soon as what was done is seen: who needs the program first need not wait.
-            simulation.program  # noqa: B018 (it is loaded when asked for)
-        self._compile_ahead()
+        if before == self._structure:  # what was made or deleted is seen first
+            self._ask(simulation)
+            self._compile_here()
+            seen, self._seen = self._seen, simulation.model.revision
+            if seen == self._seen:
+                self._make_program(simulation)
+        self._frames += 1
+        if self._frames == 2:  # after the first picture
+            self.elsewhere.begin()
+        self._tell(frame.session)
 
-    def _load_driven(self, simulation: Simulation) -> None:
-        """Load what driven collisions need, in a frame after the program was loaded and before anything meets."""
-        if not self._driven and _may_meet(simulation):
-            self._driven = True
-            DRIVEN.load()
+    def _ask(self, simulation: Simulation) -> None:
+        """Have compiled and loaded what this frame needed, then what may be needed next."""
+        needed = self._needed | dict.fromkeys(_jobs_of(simulation), simulation)
+        if self._draws_many:
+            needed = {(RASTER.name,): simulation} | needed
+        later = {job: simulation for job in _jobs_later(simulation) if job not in needed}
+        unknown = ((job, by) for job, by in (needed | later).items() if job not in self._modules)
+        for job, by in islice(unknown, 1):  # finding it takes a part of a frame
+            self._modules[job] = _module_of(job, by)
+        if (found := self._known(needed)) is not None:
+            self.elsewhere.ask(found, self._known(later) or {})
+        self._problems = dict.fromkeys(filter(None, map(self._problem_of, needed)))
+        self._waiting = {job: since for job, since in self._waiting.items() if job in needed}
+        self._needed = {}
 
-    def _compile_ahead(self) -> None:
-        """Compile what any model may need, one process after the other, while nothing else is compiled."""
-        if all(process.poll() is not None for process in self._running.values()):
-            for units in AHEAD:
-                if self._waits_for_units(units) is not None:
-                    return
-
-    def _load_pulled(self, simulation: Simulation) -> None:
-        """While nothing happens, load the program that takes steps while a hand pulls; loading takes two frames."""
-        if self._seen == self._looked or simulation.integrator.exact:
-            return
-        plan = simulation.plan
-        pulled = (*_job(simulation, plan), Pull.name)
-        if pulled in self._running and self._running[pulled].poll() is None:  # still compiling
-            return
-        self._looked = self._seen
-        if pulled in self._pulled:
-            return
-        self._pulled.add(pulled)
-        if is_prepared(pulled):
-            load_program(pulled)
-
-    def waits_for(self, simulation: Simulation) -> float | None:
-        """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
-        if simulation.integrator.exact:  # it may be ready, but not for piles
-            waits = [self._waits_for_units(units) for units in _units(simulation)]
-            return max((waited for waited in waits if waited is not None), default=None)
-        if simulation.programs.ready:
-            return self._waits_for_meetings(simulation)
-        job = _job(simulation, simulation.plan)
-        waited = self._waits(job, lambda: _is_compiled(simulation))
-        others = self._waits_for_meetings(simulation)
-        if (
-            waited is None and job in self._running
-        ):  # a new kind of model: compile its program with a pulling hand, too
-            self._waits((*job, Pull.name), lambda: False)
-        return others if waited is None else waited
-
-    def _waits_for_meetings(self, simulation: Simulation) -> float | None:
-        """Seconds since the programs for contacts with structures were wanted; None if they are ready or not needed."""
-        if not _may_meet(simulation):
+    def _known(self, jobs: Iterable[Job]) -> dict[Job, GeneratedModule] | None:
+        """The modules of jobs, once all are known: they are compiled by one process."""
+        if any(job not in self._modules for job in jobs):
             return None
-        waited = self._waits_for_units((DRIVEN,))
-        if not _may_rest(simulation.model):
-            return waited
-        names = (system.name for system in simulation.plan)
-        plan = simulation.schedule.named((*names, Support.name))  # from when on something rests on something
-        resting = self._waits(_job(simulation, plan), lambda: _has_program(simulation, plan))
-        return resting if waited is None else waited
+        return {job: module for job in jobs if (module := self._modules[job]) is not None}
+
+    def _make_program(self, simulation: Simulation) -> None:
+        """Make the program before a key needs it: it is loaded, or rewritten by the thread, so that this is quick."""
+        if not simulation.programs.ready and self.waits_for(simulation) is None:
+            modules = [self._modules.get(job) for job in _jobs_of(simulation)]
+            if all(module is not None and self.elsewhere.is_ready(module) for module in modules):
+                simulation.program  # noqa: B018 (it is made when asked for)
+
+    def _compile_here(self) -> None:
+        """Compile what something waits for and the other process could not hand over, after a picture that says so."""
+        for job in self._waiting:
+            if self._problem_of(job) and job not in self._given_up:
+                self._given_up.add(job)
+                if problem := problem_of(job):
+                    tell(f"{SLOWER}: {problem}.")
+                return
+
+    def _tell(self, session: Any) -> None:
+        for problem in self._problems:
+            tell(f"{SLOWER}: {problem}.")
+        for sentence in (*cache.TROUBLE, *UNCOMPILED):
+            if sentence not in self._said:
+                self._said.add(sentence)
+                session.notice = sentence
+                return
+
+    def _problem_of(self, job: Job) -> str:
+        """Why a job cannot be had from the other process; "" if it can, as far as is known."""
+        problem, module = self.elsewhere.ended.get(job), self._modules.get(job)
+        if problem is None or module is None or module.is_compiled():
+            return ""
+        return problem or "what was compiled was not kept"
+
+    # --- what waits ----------------------------------------------------------------------------------
+
+    def waits_for(self, simulation: Simulation) -> Waiting | None:
+        """What a simulation waits for; None if it can go on, interpreted or compiled."""
+        jobs = _jobs_of(simulation)
+        self._needed |= dict.fromkeys(jobs, simulation)
+        if self._asked is Compile.NEVER:
+            return None
+        if (
+            self._asked is not Compile.ALWAYS
+            and is_live(simulation.model)
+            and not any(map(self._is_refused, jobs))
+        ):
+            return None
+        left = [job for job in jobs if not self._is_ready(job)]
+        if not left:
+            return None
+        now = time.monotonic()
+        since = min(self._waiting.setdefault(job, now) for job in left)
+        modules = [module for job in left if (module := self._modules.get(job)) and not module.is_compiled()]
+        expected = BEGINNING + sum(module.expected_seconds() for module in modules)
+        return Waiting(now - since, expected)
+
+    def _is_refused(self, job: Job) -> bool:
+        """True if it is known that something of it cannot be interpreted."""
+        module = self._modules.get(job)
+        return module is not None and bool(module.refusal)
+
+    def _is_ready(self, job: Job) -> bool:
+        """True if nothing has to wait for a job: it is loaded, or cannot be."""
+        if job not in self._modules:
+            return False
+        module = self._modules[job]
+        return module is None or module.is_loaded or job in self._given_up
 
     def raster(self) -> Raster | None:
-        """The raster of large pictures, as soon as it is compiled."""
-        return load_raster() if self._waits_for_units((RASTER,)) is None else None
-
-    def _waits_for_units(self, units: Units) -> float | None:
-        return self._waits(tuple(unit.name for unit in units), lambda: _are_compiled(units))
-
-    def _waits(self, job: Job, is_compiled: Callable[[], bool]) -> float | None:
-        if job in self._done:
-            return None
-        waited = time.monotonic() - self._since.setdefault(job, time.monotonic())
-        loading = self._compiler.ident is None or self._compiler.is_alive()
-        if loading and not self._blank:
-            return waited
-        if job not in self._running and (loading or not is_compiled()):
-            self._running[job] = _started(job)
-        if loading or (job in self._running and self._running[job].poll() is None):
-            return waited
-        self._done.add(job)  # if the other process failed, this one compiles the program and reports the error
-        return None
+        """The raster of large pictures, as soon as it is loaded."""
+        self._draws_many = True
+        return load_raster() if RASTER.is_loaded else None
 
     def close(self) -> None:
         """Let go of what is still being compiled."""
-        for process in self._running.values():
-            if process.poll() is None:
-                process.terminate()
-                process.wait()
+        self.elsewhere.close()
+        Choice.compile = self._asked
 
 
-def _may_meet(simulation: Simulation) -> bool:
-    """True if particles that do not fly free may meet."""
-    plan = simulation.plan
-    return not simulation.integrator.exact and any(system.impulsive for system in plan)
+# --- jobs ------------------------------------------------------------------------------------------------
 
 
-def _may_rest(model: Model) -> bool:
-    """True if something that is no structure may come to rest on one, or a structure on a wall, and none does yet."""
-    return persistent_contacts(model) is None and (any_obstacles(model) or not nodes(model).all())
+def _jobs_of(simulation: Simulation) -> list[Job]:
+    """What a simulation runs with, and what it will once something rests on a structure."""
+    model, plan = simulation.model, simulation.plan
+    if simulation.integrator.exact:
+        piles = may_pile(model, any(isinstance(system, Pull) for system in plan))
+        return [(unit.name,) for unit in (EVENTS, HORIZONS, *([PILES] if piles else []))]
+    jobs = [_job(simulation, plan)]
+    if any(system.impulsive for system in plan):  # particles that do not fly free may meet
+        jobs.append((DRIVEN.name,))
+        if persistent_contacts(model) is None and (any_obstacles(model) or not nodes(model).all()):
+            jobs.append(_job_with(simulation, {Support.name}))
+    return jobs
 
 
-def _are_compiled(units: Units) -> bool:
-    return all(unit.is_compiled() for unit in units)
+def _jobs_later(simulation: Simulation) -> Iterator[Job]:
+    """What a simulation may come to need: while a hand pulls, with plasticity, under a load that grows; and all units."""
+    if not simulation.integrator.exact:
+        yield _job_with(simulation, {Pull.name})
+        if any(isinstance(system, Elasticity) for system in simulation.plan):
+            yielding = {ElasticityAfterYielding.name, Strength.name, Yielding.name}
+            yield _job_with(simulation, yielding, without=Elasticity.name)
+        yield _job_with(simulation, {RAMP})
+    yield from ((unit.name,) for unit in AHEAD)
 
 
-def _units(simulation: Simulation) -> tuple[Units, ...]:
-    """The units that its free particles need."""
-    plan = simulation.plan
-    return PULLED if may_pile(simulation.model, any(isinstance(system, Pull) for system in plan)) else FREE
+def _job_with(simulation: Simulation, names: set[str], without: str = "") -> Job:
+    names |= {system.name for system in simulation.plan}
+    return _job(simulation, simulation.schedule.named(names - {without}))
 
 
 def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
@@ -198,31 +226,12 @@ def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:
     return simulation.integrator.key, form, *warmth, *(system.name for system in plan)
 
 
-def _is_compiled(simulation: Simulation) -> bool:
-    """True if its program need only be loaded."""
-    if simulation.integrator.exact:
-        return all(_are_compiled(units) for units in _units(simulation))
-    return _has_program(simulation, simulation.plan)
-
-
-def _has_program(simulation: Simulation, plan: Sequence[StepSystem]) -> bool:
-    return has_program(simulation.model, plan, simulation.integrator)
-
-
-def _load_libraries() -> None:
-    """Import what steps need besides their programs, which takes several frames."""
-    importlib.import_module("systems.machine_code")
-    for units in AHEAD:  # imports kernels, which takes several frames
-        _are_compiled(units)
-    read_sources([integrator for integrator in INTEGRATORS.values() if integrator.mod is None])
-    importlib.import_module("systems.plasticity.kernels")
-    for library in ("scipy.spatial", "scipy.sparse.linalg"):
-        importlib.import_module(library)
-
-
-def _started(job: Job) -> subprocess.Popen[bytes]:
-    mods = [word for mod in MODS if mod.loaded and mod.folder for word in ("--mods", str(mod.folder))]
-    command = [sys.executable, "-m", "game.prepare", *mods, "--no-mods", *job]
-    return subprocess.Popen(
-        command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    )
+def _module_of(job: Job, simulation: Simulation) -> GeneratedModule | None:
+    """What a job of a simulation is about; a step program is written for that. None if it cannot be."""
+    if job[0] in UNITS:
+        return UNITS[job[0]]
+    try:
+        plan = simulation.schedule.named(name for name in job[2:] if name != WARM)
+        return module_of(simulation.model, plan, simulation.integrator, job[1])
+    except Exception:  # of a mod, which is told of when the program is needed
+        return None

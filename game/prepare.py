@@ -1,60 +1,77 @@
-"""Compile ahead of need: `python -m game.prepare UNIT…`, or `… INTEGRATOR FORM [warm] SYSTEM…` for a step program.
+"""Compile ahead of need: `python -m game.prepare [later] JOB , JOB …`; each job is a unit or a step program.
 
-The window runs this in another process, because a compiler in its own would hold it up, in a thread too.
+`UNIT`, or `INTEGRATOR FORM [warm] SYSTEM…` for a step program. The window runs this in another process, because a
+compiler in its own would hold it up, in a thread too. A line for each job says why it could not be done, or is empty.
 """
 
 from __future__ import annotations
 
 import gc
+import importlib
+import os
 import sys
 from collections.abc import Sequence
+from itertools import groupby
 
 from components.model import Model
 from components.particle import Particle
 from components.rod import spawn_rods
 from game import Session
 from game.commands.with_mods import load_as_asked
-from systems.base import Integrator, StepSystem
+from systems import cache
 from systems.collision.driven.compiled import DRIVEN
 from systems.collision.free.discs import EVENTS, HORIZONS, PILES
-from systems.edit.pull import Hand
 from systems.physics.integrators import INTEGRATORS
-from systems.program.compiler import forget_unused
+from systems.program.compiler import Choice, Compile, forget_unused
 from systems.program.parallel import make_program
-from systems.program.program import has_program
+from systems.program.program import Program
 from systems.render.raster import RASTER
 
 UNITS = {unit.name: unit for unit in (RASTER, EVENTS, HORIZONS, PILES, DRIVEN)}
 WARM = "warm"  # the program is for rods whose temperature may have changed
+NEXT, LATER = ",", "later"  # between jobs, and before those that nobody waits for
 
-Job = tuple[str, ...]  # names of units, or a step program: integrator, form, perhaps WARM, systems
+Job = tuple[str, ...]  # the name of a unit, or a step program: integrator, form, perhaps WARM, systems
 
 
 def main(words: Sequence[str]) -> None:
-    """Compile units or a step program into the cache."""
-    job = tuple(load_as_asked(words))
-    if job[0] in UNITS:
-        for name in job:
-            UNITS[name].load()
-    else:
-        load_program(job)
+    """Compile jobs into the cache."""
+    jobs = load_as_asked(words)
+    if hasattr(os, "nice"):  # to what runs at the same time, the window above all
+        os.nice(19 if jobs[0] == LATER else 5)
+    for between, job in groupby(jobs, lambda word: word in (NEXT, LATER)):
+        if not between:
+            print(problem_of(tuple(job)), flush=True)
     forget_unused()
 
 
-def load_program(job: Job) -> None:
-    """Load a step program, compiled first if nobody has."""
-    session, plan, integrator, form = _example(job)
-    make_program(session.model, plan, integrator, form).load()
+def problem_of(job: Job) -> str:
+    """Do a job; returns why it could not be done, "" if it could."""
+    try:
+        importlib.import_module("systems.machine_code")
+    except Exception as error:  # numba is not there, or damaged
+        return f"numba cannot be imported ({_in_a_line(error)})"
+    try:
+        compile_job(job)
+    except Exception as error:  # numba raises many kinds
+        return _in_a_line(error)
+    return cache.TROUBLE[0].partition(". ")[0] if cache.TROUBLE else ""
 
 
-def is_prepared(job: Job) -> bool:
-    """True if a step program need only be loaded."""
-    session, plan, integrator, form = _example(job)
-    return has_program(session.model, plan, integrator, form)
+def _in_a_line(error: Exception) -> str:
+    return " ".join(str(error).split()).removesuffix(".") or type(error).__name__
 
 
-def _example(job: Job) -> tuple[Session, list[StepSystem], Integrator, str]:
-    """The smallest model with a step program, and its plan, integrator and form."""
+def compile_job(job: Job) -> None:
+    """Load what a job is about, compiled first if nobody has."""
+    if job[0] in UNITS:
+        UNITS[job[0]].load()
+    else:
+        example(job).load()
+
+
+def example(job: Job) -> Program:
+    """The step program of a job, of the smallest model that has one."""
     name, form, *systems = job
     model = Model()
     first, second = model.create(Particle, 2, position=[[0.0, 0.0], [1.0, 0.0]])
@@ -62,10 +79,10 @@ def _example(job: Job) -> tuple[Session, list[StepSystem], Integrator, str]:
         systems.remove(WARM)
         spawn_rods(model, [[first.row, second.row]], temperature_change=1.0)
     session = Session(model)
-    session.pull.take(Hand(first, 1.0, 0.0, (0.0, 0.0)))  # in case the hand is part of the program
-    return session, session.schedule.named(systems), INTEGRATORS[name], form
+    return make_program(model, session.schedule.named(systems), INTEGRATORS[name], form)
 
 
 if __name__ == "__main__":
     gc.disable()  # looking through all that the compiler makes would take a fifth of the time
+    Choice.compile = Compile.ALWAYS
     main(sys.argv[1:])

@@ -1,9 +1,9 @@
 """The contract that our systems and a modder's share.
 
-A law is a declaration and a compiled function of one row:
+A law is a declaration and a kernel, a function of one row:
 
->>> from numba import njit
->>> @njit
+>>> from systems.kernels import compiled
+>>> @compiled
 ... def weight(particles_mass):
 ...     return 0.0, -0.00981 * particles_mass
 >>> class Weight(Law):
@@ -124,7 +124,7 @@ class System(esper.Processor):  # type: ignore[misc,unused-ignore]
 class StepSystem(System):
     """Compiled behaviour inside the steps: a law, a commit, an event or an integrator.
 
-    kernel: "module:function" of a numba-compiled function, or the function itself. Its parameters are
+    kernel: "module:function" of a function with @compiled above it, or the function itself. Its parameters are
         bound by name: `<table>_<column>`, `time`, `dt`, an entry of `arrays`, or one of the quantities
         that the role provides. "": the system adds nothing to the step program.
     impulsive: it acts at instants, by impacts, at which steps have to end.

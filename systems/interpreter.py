@@ -17,6 +17,7 @@ import ast
 import copy
 import linecache
 import math
+import threading
 from collections.abc import Callable, Mapping
 from enum import IntEnum
 from itertools import count
@@ -27,10 +28,15 @@ import numpy as np
 
 Interpreted = Callable[..., Any]
 
+
+class NoPlainForm(Exception):
+    """A kernel that cannot be interpreted; the message says what in it, without a full stop."""
+
+
 # --- arithmetic ------------------------------------------------------------------------------------
 
 _NAN, _INFINITE = math.nan, math.inf
-_LEAST, _MOST = -(2**63), 9.2e18  # whole numbers of machine code
+_LEAST, _MOST = -(2**63), 2.0**63  # whole numbers of machine code: from, and less than
 
 
 def _quotient(x: float, y: float) -> float:
@@ -65,16 +71,50 @@ def _whole_power(x: float, n: int) -> float:
     return 1.0 / result if result else _quotient(1.0, result)
 
 
+def _inverse_power(x: float, n: int) -> float:
+    """x to a constant whole power below 0, which raises ZeroDivisionError as compiled."""
+    return 1.0 / _whole_power(x, -n)
+
+
 def _sqrt(x: float) -> float:
     return math.sqrt(x) if x >= 0.0 else _NAN
+
+
+def _root(x: float) -> float:
+    """x ** 0.5 as compiled: not pow() of the C library, but a root."""
+    return math.sqrt(x + 0.0) if x >= 0.0 else _INFINITE if x == -_INFINITE else _NAN
+
+
+def _floor_divided(x: Any, y: Any) -> Any:
+    if y:
+        return _in_64_bits(x // y)
+    return 0 if isinstance(y, int) else _quotient(x, y)
+
+
+def _remainder(x: Any, y: Any) -> Any:
+    if y:
+        return x % y
+    return 0 if isinstance(y, int) else _NAN
+
+
+def _in_64_bits(x: Any) -> Any:
+    """A whole number, or a float, as it is. Raises OverflowError where nobody knows what machine code computes."""
+    if isinstance(x, float) or _LEAST <= x < _MOST:
+        return x
+    raise OverflowError("a whole number of more than 64 bits")
+
+
+def _checked(rounding: Callable[[float], int]) -> Callable[[float], int]:
+    """A whole number. Raises OverflowError or ValueError for what has none in 64 bits: the optimiser makes up any."""
+    return lambda x: int(_in_64_bits(rounding(x)))
 
 
 def _hypot(x: float, y: float) -> float:
     """hypot() of the C library, by which Python takes the magnitude of complex numbers; its own differs in last bits."""
     try:
         return abs(complex(x, y))
-    except OverflowError:
-        return _INFINITE
+    except OverflowError:  # which Python also raises for what is no number, after another function overflowed
+        return _INFINITE if x == x and y == y else _NAN
 
 
 def _quiet(function: Callable[..., float], overflow: float = _INFINITE) -> Callable[..., float]:
@@ -91,8 +131,20 @@ def _quiet(function: Callable[..., float], overflow: float = _INFINITE) -> Calla
     return computed
 
 
-def _log(x: float) -> float:
-    return math.log(x) if x > 0.0 else -_INFINITE if x == 0.0 else _NAN
+def _logarithm(function: Callable[[float], float], pole: float = 0.0) -> Callable[[float], float]:
+    """A logarithm, with the place where it is infinite."""
+    return lambda x: function(x) if x > pole else -_INFINITE if x == pole else _NAN
+
+
+def _sinh(x: float) -> float:
+    try:
+        return math.sinh(x)
+    except OverflowError:
+        return math.copysign(_INFINITE, x)
+
+
+def _atanh(x: float) -> float:
+    return math.atanh(x) if -1.0 < x < 1.0 else _quotient(x, 0.0) if abs(x) == 1.0 else _NAN
 
 
 def _whole(rounding: Callable[[float], int]) -> Callable[[float], int]:
@@ -102,10 +154,6 @@ def _whole(rounding: Callable[[float], int]) -> Callable[[float], int]:
         return rounding(x) if -_MOST < x < _MOST else _LEAST
 
     return converted
-
-
-def _same_sign(x: float, y: float) -> float:
-    return math.copysign(x, y)
 
 
 def _zeros(shape: Any, *_: Any) -> list[Any]:
@@ -126,6 +174,11 @@ def _sum(rows: list[Any], column: int) -> float:
     return total
 
 
+def _rounded(rounding: Callable[[float], int]) -> Callable[[float], float]:
+    """A rounded float, with the sign that it had."""
+    return lambda x: math.copysign(float(rounding(x)), x) if abs(x) < 2.0**52 else x
+
+
 _SAME = {
     name: getattr(math, name) for name in ("copysign", "frexp", "fabs", "isnan", "isinf", "isfinite", "atan")
 }
@@ -135,21 +188,24 @@ _RAISING = (
     "tan",
     "asin",
     "acos",
-    "sinh",
     "cosh",
     "tanh",
     "asinh",
     "acosh",
-    "atanh",
     "fmod",
+    "degrees",
+    "radians",
     "expm1",
 )
 _IN_C: dict[str, Any] = {
     **_SAME,
-    **{name: _quiet(getattr(math, name)) for name in (*_RAISING, "exp", "ldexp", "atan2", "erf")},
+    **{name: _quiet(getattr(math, name)) for name in (*_RAISING, "exp", "exp2", "ldexp", "atan2", "erf")},
     "sqrt": _sqrt,
     "hypot": _hypot,
-    "log": _log,
+    "sinh": _sinh,
+    "atanh": _atanh,
+    **{name: _logarithm(getattr(math, name)) for name in ("log", "log2", "log10")},
+    "log1p": _logarithm(math.log1p, -1.0),
     "pow": _power,
     "floor": _whole(math.floor),
     "ceil": _whole(math.ceil),
@@ -157,8 +213,10 @@ _IN_C: dict[str, Any] = {
     "nextafter": math.nextafter,
 }
 _NUMPY = {
-    "abs": abs, "absolute": abs, "arctan": math.atan, "arctan2": _IN_C["atan2"], "arcsin": _IN_C["asin"],
-    "arccos": _IN_C["acos"], "sign": lambda x: float((x > 0.0) - (x < 0.0)) if x == x else _NAN, "power": _power,
+    "abs": abs, "absolute": abs, "arctan": math.atan, "arctan2": _IN_C["atan2"], "power": _power,
+    **{f"arc{name}": _IN_C[f"a{name}"] for name in ("sin", "cos", "sinh", "cosh", "tanh")},
+    "sign": lambda x: math.copysign(1.0, x) if x and x == x else x, "deg2rad": math.radians, "rad2deg": math.degrees,
+    **{name: _rounded(getattr(math, name)) for name in ("floor", "ceil", "trunc")},
     "minimum": lambda a, b: a if a <= b or a != a else b, "maximum": lambda a, b: a if a >= b or a != a else b,
     "float64": float, "int64": int, "intp": int, "bool_": bool, "zeros": _zeros, "empty": _zeros,
 }  # fmt: skip
@@ -170,9 +228,13 @@ def _like_machine_code(value: Any, name: str) -> Any:
         return _IN_C.get(name, getattr(math, name))
     if name in _NUMPY:
         return _NUMPY[name]
-    if name in ("floor", "ceil", "trunc"):
-        return lambda x: float(_IN_C[name](x)) if math.isfinite(x) else x
     return _IN_C.get(name, getattr(np, name))
+
+
+def library_of(value: Any) -> Any:
+    """math or numpy, if the value is a function of it; None otherwise."""
+    name = getattr(value, "__name__", "")
+    return next((library for library in (math, np) if name and getattr(library, name, None) is value), None)
 
 
 # --- rewriting -------------------------------------------------------------------------------------
@@ -202,9 +264,22 @@ _HELPERS = {
     "quotient__": _quotient,
     "power__": _power,
     "whole_power__": _whole_power,
+    "inverse_power__": _inverse_power,
+    "exp2__": _IN_C["exp2"],
     "root__": math.sqrt,
+    "half_power__": _root,
     "floor__": math.floor,
     "whole__": _whole(int),
+    **{
+        f"checked_{whole.__name__}__": _checked(whole)
+        for whole in (int, round, math.floor, math.ceil, math.trunc)
+    },
+    "float__": float,
+    "int_power__": pow,
+    "in_64_bits__": _in_64_bits,
+    "floor_divided__": _floor_divided,
+    "remainder__": _remainder,
+    "divided__": lambda x, y: (_floor_divided(x, y), _remainder(x, y)),
     "fill__": _fill,
     "part__": _Part,
     "sum__": _sum,
@@ -288,9 +363,15 @@ class _Rewriting(ast.NodeTransformer):
 
     def _raised(self, node: ast.BinOp) -> ast.expr:
         exponent = _constant(node.right)
-        if isinstance(exponent, int) and exponent == 2:
+        if exponent == 2:
             first, second = self._twice(node.left)
             return ast.copy_location(ast.BinOp(first, ast.Mult(), second), node)
+        if exponent == -1.0 and isinstance(exponent, float):
+            return self._divided(ast.copy_location(ast.BinOp(ast.Constant(1.0), ast.Div(), node.left), node))
+        if exponent == 0.5:
+            return ast.copy_location(_call("half_power__", node.left), node)
+        if _constant(node.left) == 2.0 and exponent is None:
+            return ast.copy_location(_call("exp2__", node.right), node)
         whole = isinstance(exponent, int) and not isinstance(_constant(node.left), int)
         return ast.copy_location(_call("whole_power__" if whole else "power__", node.left, node.right), node)
 
@@ -386,6 +467,7 @@ class _Rewriting(ast.NodeTransformer):
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
         node.decorator_list, node.returns = [], None
+        node.args.defaults = []  # they are taken from the function itself
         for argument in (*node.args.posonlyargs, *node.args.args):
             argument.annotation = None
         node.body = [self.visit(statement) for statement in node.body]
@@ -415,6 +497,10 @@ def _at_least_zero(node: ast.expr) -> ast.expr:
 
 # --- functions -------------------------------------------------------------------------------------
 
+FORMS = (
+    "plain_forms__"  # in a generated module: returns plain forms of kernels that it calls, by their names there
+)
+
 
 def plain_function(function: Callable[..., Any]) -> Callable[..., Any]:
     """What a kernel, or a function that numba's own decorators made, was declared as; other functions as they are."""
@@ -422,34 +508,43 @@ def plain_function(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 _rewritten: dict[Any, Interpreted] = {}  # by the function that was declared
+_rewriting = threading.RLock()
 
 
 def in_lists(function: Callable[..., Any]) -> Interpreted:
     """A kernel, and all that it calls, rewritten: it takes nested lists in place of arrays.
 
-    Raises OSError where its source is not known.
+    Raises NoPlainForm where its source is not known.
     """
     plain = plain_function(function)
     if plain not in _rewritten:
-        code, outside = plain.__code__, _outside(plain)
-        node = _definition(plain)
-        rewriting = _Rewriting(outside, {*code.co_varnames, *code.co_cellvars})
-        module = ast.Module([ast.fix_missing_locations(rewriting.visit(node))], [])
-        scope: dict[str, Any] = dict(_HELPERS)
-        exec(compile(module, plain.__code__.co_filename, "exec"), scope)
-        _rewritten[plain] = scope[node.name]
-        for name, value in rewriting.taken.items():
-            scope[name] = _in_scope(value)
+        _rewritten[plain] = rewritten(plain, definition(plain), plain.__globals__.get(FORMS, dict)())
     return _rewritten[plain]
+
+
+def rewritten(plain: Any, node: ast.FunctionDef, forms: Mapping[str, Interpreted]) -> Interpreted:
+    """A function of this definition in lists. forms: plain forms of what it calls, as far as they are known."""
+    code, outside = plain.__code__, outside_of(plain)
+    rewriting = _Rewriting(outside, {*code.co_varnames, *code.co_cellvars})
+    module = ast.Module([ast.fix_missing_locations(rewriting.visit(node))], [])
+    scope: dict[str, Any] = {**_HELPERS, **forms}
+    exec(compile(module, code.co_filename, "exec"), scope)
+    for name, value in rewriting.taken.items():
+        scope[name] = forms[name] if name in forms else _in_scope(value)
+    made: Any = scope[node.name]
+    made.__defaults__ = plain.__defaults__
+    return made  # type: ignore[no-any-return]
 
 
 def _in_scope(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
+    if (library := library_of(value)) is not None:
+        return _like_machine_code(library, value.__name__)
     return in_lists(value) if hasattr(value, "py_func") else value
 
 
-def _outside(plain: Any) -> Any:
+def outside_of(plain: Any) -> Any:
     if not plain.__closure__:
         return plain.__globals__
     enclosed = zip(plain.__code__.co_freevars, plain.__closure__, strict=True)
@@ -467,12 +562,12 @@ def _definitions(file: str) -> dict[int, list[_Defined]]:
     linecache.checkcache(file)
     lines = linecache.getlines(file)
     if not lines:
-        raise OSError(f"There is no source of {file}.")
+        raise NoPlainForm(f"there is no source of {file}")
     found: dict[int, list[_Defined]] = {}
     try:
         parsed = ast.parse("".join(lines))
     except SyntaxError as error:  # it is another text, such as a page with the function in it
-        raise OSError(f"{file} is no source: {error}.") from error
+        raise NoPlainForm(f"{file} is no source: {error}") from error
     for node in ast.walk(parsed):
         if isinstance(node, ast.FunctionDef):
             found.setdefault(min([node.lineno, *(d.lineno for d in node.decorator_list)]), []).append(node)
@@ -481,7 +576,7 @@ def _definitions(file: str) -> dict[int, list[_Defined]]:
     return found
 
 
-def _definition(plain: Any) -> ast.FunctionDef:
+def definition(plain: Any) -> ast.FunctionDef:
     """The definition of a function, to be changed: one that was changed before is read again."""
     code = plain.__code__
     node = _taken(code, _parsed.get(code.co_filename, {}))
@@ -489,7 +584,7 @@ def _definition(plain: Any) -> ast.FunctionDef:
         _parsed[code.co_filename] = _definitions(code.co_filename)
         node = _taken(code, _parsed[code.co_filename])
     if node is None:
-        raise OSError(f"There is no source of {plain.__qualname__} in {code.co_filename}.")
+        raise NoPlainForm(f"there is no source of {plain.__qualname__} in {code.co_filename}")
     if isinstance(node, ast.Lambda):
         body: list[ast.stmt] = [ast.Return(node.body)]
         return ast.copy_location(ast.FunctionDef("lambda__", node.args, body, []), node)
@@ -510,10 +605,9 @@ def _compiles_to(code: CodeType, node: _Defined) -> bool:
     """True if this is the function, of several on one line."""
     if not isinstance(node, ast.Lambda):
         return node.name == code.co_name
-    if code.co_name != "<lambda>":
-        return False
-    made = compile(ast.fix_missing_locations(ast.Expression(node)), "", "eval").co_consts[0]
-    return bool(made.co_code == code.co_code and made.co_consts == code.co_consts)
+    body = node.body
+    place = body.lineno, body.end_lineno, body.col_offset, body.end_col_offset
+    return code.co_name == "<lambda>" and place in code.co_positions()
 
 
 # --- arrays in, arrays out -------------------------------------------------------------------------
@@ -521,12 +615,14 @@ def _compiles_to(code: CodeType, node: _Defined) -> bool:
 
 def interpreted(function: Callable[..., Any]) -> Interpreted:
     """A kernel as Python calls it: with arrays, or named tuples of arrays, of which it may change the entries."""
-    rewritten = in_lists(function)
+    with _rewriting:
+        rewritten = in_lists(function)
 
-    def called(*given: Any) -> Any:
+    def called(*given: Any, **named: Any) -> Any:
         lists: dict[int, tuple[Any, Any]] = {}
         try:
-            return rewritten(*[_listed(argument, lists) for argument in given])
+            by_name = {name: _listed(argument, lists) for name, argument in named.items()}
+            return rewritten(*[_listed(argument, lists) for argument in given], **by_name)
         finally:
             for array, values in lists.values():
                 if array.flags.writeable and array.size:

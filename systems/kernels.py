@@ -53,9 +53,9 @@ class Kernel:
         """The plain form, to be called with arrays."""
         return interpreted(self.py_func)
 
-    def __call__(self, *given: Any) -> Any:
+    def __call__(self, *given: Any, **named: Any) -> Any:
         """Compute, interpreted."""
-        return self.interpreted(*given)
+        return self.interpreted(*given, **named)
 
 
 def _declared(use: Use, signature: str = "", **options: Any) -> Callable[[Callable[..., Any]], Kernel]:

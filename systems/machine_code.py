@@ -18,7 +18,7 @@ import hashlib
 import os
 import pickle
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from types import ModuleType
 from typing import Any
 
@@ -115,6 +115,20 @@ def adopt(module: ModuleType, name: str, kernels: Iterable[Any]) -> None:
             function.py_func.__module__ = name
     if "prange" in vars(module):
         vars(module)["prange"] = numba.prange
+
+
+def types_of(machine: Mapping[str, Any]) -> bytes:
+    """For which types of their arguments functions are compiled, by their names."""
+    made = {name: f.nopython_signatures for name, f in machine.items() if _is_compiled(f)}
+    return pickle.dumps({name: [signature.args for signature in some] for name, some in made.items()})
+
+
+def compile_for(function: Any, types: bytes, name: str) -> None:
+    """Have machine code of a function, from the cache if it is there, for all types that were found to be needed."""
+    if _is_compiled(function):
+        for given in pickle.loads(types)[name]:
+            if given not in function.overloads:
+                function.compile(given)
 
 
 def _is_compiled(function: Any) -> bool:

@@ -26,7 +26,7 @@ from game.documents.history.history import History
 from game.documents.history.timeline import Timeline
 from game.documents.open_documents import ModelFile, OpenDocument, OpenDocuments, Source, file_of
 from game.editor.clipboard import Part
-from game.editor.host import ProgramPreparation, Window
+from game.editor.host import ProgramPreparation, Waiting, Window
 from game.scripts.script import Script
 from systems.base import Mod
 from systems.collision.impacts import Impacts
@@ -246,8 +246,8 @@ class Context:
     notice: the last sentence said. copied: what was put on the clipboard last, as text and as data.
     window, autosave, preparation: what a window gives, see host.py; None without one. performing: a script is
     shown in the window, so input is not for the scenes and no time passes by itself. footer: the strip below
-    the picture meanwhile. lesson: the script that a person asked for. awaited: the simulation that cannot go on
-    before its step program is compiled. faults_seen: how many faults of mods were shown and taken away.
+    the picture meanwhile. lesson: the script that a person asked for. awaited: the simulation that is too large
+    to go on before its step program is compiled. faults_seen: how many faults of mods were shown and taken away.
     """
 
     def __init__(
@@ -461,12 +461,12 @@ class Context:
             self.document.live.frame(elapsed)
 
     def has_program(self, simulation: Simulation) -> bool:
-        """False while another process compiles the step program (see `awaited`); without a window it is compiled here."""
+        """False while a large model waits for another process to compile its step program (see `awaited`)."""
         self.awaited = None if self.waited_for(simulation) is None else simulation
         return self.awaited is None
 
-    def waited_for(self, simulation: Simulation) -> float | None:
-        """Seconds since the step program of a simulation was asked for; None if the program is ready."""
+    def waited_for(self, simulation: Simulation) -> Waiting | None:
+        """What a simulation waits for; None if it can go on."""
         return self.preparation.waits_for(simulation) if self.preparation is not None else None
 
     # --- editing -----------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol
 
 from systems.run.simulation import Simulation
@@ -26,8 +27,21 @@ class Window(Protocol):
         """Put a text on the system's clipboard."""
 
 
+@dataclass(frozen=True)
+class Waiting:
+    """That a large model waits for its program to be compiled: for how long already, and in all, probably (s)."""
+
+    seconds: float
+    expected: float
+
+    @property
+    def share(self) -> float:
+        """How much of that is over: from 0 on, and less than 1."""
+        return min(self.seconds / self.expected, 0.99)
+
+
 class ProgramPreparation(Protocol):
     """Compiles step programs in another process, so that the window goes on meanwhile."""
 
-    def waits_for(self, simulation: Simulation) -> float | None:
-        """Seconds since the program of a simulation was wanted, or None if it can be had at once."""
+    def waits_for(self, simulation: Simulation) -> Waiting | None:
+        """What a simulation waits for; None if it can go on, interpreted or compiled."""

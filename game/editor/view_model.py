@@ -8,13 +8,14 @@ from numpy.typing import NDArray
 from components.view import Preview, Status
 from game.editor.context import Context
 from game.editor.gestures.drawing import TOOL_HINTS
+from game.editor.host import Waiting
 from game.editor.readouts import own_readouts
 from systems.base import StopReason
 from systems.edit import Refusal
 from systems.input.bindings import LIVE, help_lines
 from systems.render.help import help_pages
 
-COMPILING = "Preparing the step program, which takes a while for the first model of its kind:"
+COMPILING = "Compiling the step program, which models of this size wait for once:"
 FLASH = 0.15  # s shown, for which an impact is marked
 MOST_FLASHES = 500  # impacts marked at a time
 
@@ -23,7 +24,8 @@ def show(context: Context) -> None:
     """Let the view show the session as it is now."""
     view, scene = context.view, context.scenes.active
     view.forces_known = context.waited_for(context.simulation) is None
-    said = _awaited(context) or (scene.message if scene.mod is not None else "") or context.notice
+    awaited = _awaited(context)
+    said = _told(awaited) or (scene.message if scene.mod is not None else "") or context.notice
     view.preview = _preview(context)
     view.flashes = _flashes(context)
     view.heading = scene.heading
@@ -39,6 +41,7 @@ def show(context: Context) -> None:
         hint=_drawing_hint(context) or scene.hint(context),
         problem=_problem(context),
         notice=said or " ".join(remark.message for remark in context.remarks),
+        share=awaited.share if awaited is not None else None,
     )
 
 
@@ -59,13 +62,20 @@ def _show_readouts(context: Context) -> None:
     }
 
 
-def _awaited(context: Context) -> str:
-    """The notice that a step program is compiled, "" if none is (any more)."""
+def _awaited(context: Context) -> Waiting | None:
+    """What the run waits for, None if it does not (any more)."""
     waited = context.waited_for(context.awaited) if context.awaited is not None else None
     if waited is None:
         context.awaited = None
+    return waited
+
+
+def _told(waited: Waiting | None) -> str:
+    """The notice that a step program is compiled, "" if none is."""
+    if waited is None:
         return ""
-    return f"{COMPILING} {waited:.0f} s."
+    left = waited.expected - waited.seconds
+    return f"{COMPILING} {f'some {left:.0f} s left' if left > 1.0 else 'nearly done'}."
 
 
 def _flashes(context: Context) -> NDArray[np.float64]:

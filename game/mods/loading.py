@@ -97,6 +97,11 @@ def _load(mod: Mod) -> None:
         if is_persons(error):
             raise
         mod.problem = mod.describe(error)
+        if isinstance(error, ModuleNotFoundError) and error.name == "numba":
+            mod.problem = (
+                f"It imports numba, which is not installed ({mod.place_of(error)}); declare kernels by @compiled of"
+                " game.api instead, which needs no compiler."
+            )
     sys.modules.update(modules)
     vars(sys).update(streams)
     if mod.off:

@@ -24,7 +24,8 @@ from systems.base import Commit, Event, Integrator, Law, StepSystem, System
 from systems.catalogue import all_systems
 from systems.input.bindings import BINDINGS, PAUSE, SIMULATION
 from systems.physics.integrators import INTEGRATORS
-from systems.program.binding import KERNELS, ProgramError, bind, problem_of
+from systems.program.binding import KERNELS, ProgramError, bind
+from systems.program.faults import problem_of
 from systems.program.writer import read_sources
 
 SIZES = ((640, 480, 1.0), (160, 120, 2.0))  # pixels, and pixels to a point, of the pictures

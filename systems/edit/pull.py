@@ -74,17 +74,18 @@ class Pull(Law):
 
     def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
         """Stiffness, damping and anchor for each particle, zero but for the one that is pulled."""
-        assert self.hand is not None
-        count, row = model.particles.count, self.hand.particle.row
+        count = model.particles.count
         if not self._arrays or len(self._arrays["edit_pull_anchor"]) != count:
             self._arrays = {
                 "edit_pull_stiffness": np.zeros(count),
                 "edit_pull_damping": np.zeros(count),
                 "edit_pull_anchor": np.zeros((count, 2)),
             }
-            self._arrays["edit_pull_stiffness"][row] = self.hand.stiffness
-            self._arrays["edit_pull_damping"][row] = self.hand.damping
-            self._arrays["edit_pull_anchor"][row] = self.hand.anchor
+            if self.hand is not None:  # else the program is got ready for one that may come
+                row = self.hand.particle.row
+                self._arrays["edit_pull_stiffness"][row] = self.hand.stiffness
+                self._arrays["edit_pull_damping"][row] = self.hand.damping
+                self._arrays["edit_pull_anchor"][row] = self.hand.anchor
         return self._arrays
 
     @property

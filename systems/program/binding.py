@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from components.field import Role
 from components.model import Model
 from components.wording import is_identifier
-from systems.base import Commit, Event, Integrator, Law, StepSystem
+from systems.base import Commit, Event, Law, StepSystem
 from systems.entries import ACCOUNTS
+from systems.interpreter import plain_function
 from systems.program.chance import source_of_chance
 
 _TO_COMMITS = ("elongation", "axial_force", "time", "dt")
@@ -39,18 +40,6 @@ KERNELS = ("kernel", "branch", "margin", "potential")  # of a system, as its att
 WIDEST_ROW = 64  # numbers of an array that a kernel gets, as a tuple; more would take long to compile
 
 _KINDS = ("rods", "particles", "pairs", "loads")
-_RESULTS = {
-    "rods": "one number, the axial force (kN)",
-    "particles": "a pair, the force (fx, fy) in kN",
-    "pairs": "a pair, the force (fx, fy) on the first particle in kN",
-    "potential": "one number, the energy of two particles (kN·m)",
-    "branch": "one number, the branch that the rod is on",
-    "margin": "one number, positive while the rod stays on its branch",
-    "loads": "one number, the factor of the load",
-    "commit": "a pair, the new value of the column and the energy dissipated (kN·m)",
-    "event of rods": "one number, whose sign counts",
-    "event of particles": "one number, whose sign counts",
-}
 
 
 class ProgramError(ValueError):
@@ -98,6 +87,11 @@ class Bound:
     def call(self) -> str:
         """The name of the kernel in the program."""
         return f"{self.kernel}_{self.prefix}"
+
+    @property
+    def is_ours(self) -> bool:
+        """True if its kernel is Pinjoint's own."""
+        return str(plain_function(self.function).__module__).startswith("systems.")
 
     @property
     def prefix(self) -> str:
@@ -364,58 +358,3 @@ def _check_parameter(b: Bound, parameter: str, model: Model) -> None:
 def _is_column(name: str, model: Model) -> bool:
     table, _, column = name.partition("_")
     return table in model.tables and column in model.tables[table].fields
-
-
-def explain(bound: Iterable[Bound], integrator: Integrator, model: Model, error: Exception) -> ProgramError:
-    """Why a program did not compile: the first kernel that fails by itself or returns something of a wrong type."""
-    for b in bound:
-        problem = problem_of(b, model)
-        if problem:
-            return ProgramError(problem, b.system)
-    return ProgramError(f"The step program of {integrator.name} does not compile: {_brief(error)}", integrator)
-
-
-def problem_of(b: Bound, model: Model) -> str:
-    """The fault of a kernel, compiled by itself, as a sentence; "" if there is none."""
-    try:
-        made = _result_type(b, model)
-    except Exception as failure:  # numba raises many kinds
-        return f"The kernel of {b.system.name} does not compile: {_brief(failure)}"
-    from numba import types
-
-    numbers = tuple(getattr(made, "types", (made,)))
-    wanted = 2 if b.purpose in ("particles", "pairs", "commit") else 1
-    if len(numbers) != wanted or not all(isinstance(n, types.Number | types.Boolean) for n in numbers):
-        return f"The kernel of {b.system.name} returns {made}; it must return {_RESULTS[b.purpose]}."
-    return ""
-
-
-def _brief(failure: Exception) -> str:
-    lines = [line.strip() for line in str(failure).splitlines() if line.strip()]
-    return f"{'; '.join(lines[1:4] or lines).rstrip('.')}."
-
-
-def _result_type(b: Bound, model: Model) -> Any:
-    """The numba type that a kernel returns when it is compiled by itself."""
-    from numba import types
-    from numba.np.numpy_support import from_dtype
-
-    from systems.machine_code import machine_code
-
-    def type_of(parameter: str) -> Any:
-        if parameter in PROVIDED:
-            made: Any = types.float64
-        elif parameter in b.arrays:
-            made = from_dtype(b.arrays[parameter].dtype)
-        else:
-            table, _, column = parameter.partition("_")
-            made = from_dtype(model.tables[table].fields[column].storage)
-        for width in reversed(shape_given(b, parameter, model)):
-            made = types.UniTuple(made, width)  # type: ignore[no-untyped-call]
-        return made
-
-    of_load = (types.float64, types.Array(types.float64, 1, "C", readonly=True), types.uint32)
-    signature = of_load if b.each == "loads" else tuple(map(type_of, b.parameters))
-    dispatcher = machine_code(b.function)
-    dispatcher.compile(signature)
-    return dispatcher.overloads[signature].signature.return_type

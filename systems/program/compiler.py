@@ -7,90 +7,30 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import importlib.metadata
 import inspect
 import linecache
 import logging
 import math
 import os
-import platform
-import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from enum import Enum, IntEnum
+from collections.abc import Callable, Mapping
+from enum import Enum
 from functools import cache as once
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
-from types import CodeType, ModuleType, SimpleNamespace
+from types import MappingProxyType, ModuleType, SimpleNamespace
 from typing import Any
 
-import numpy as np
-
+from components.mistake import Mistake
 from systems import cache
-from systems.interpreter import plain_function
-from systems.kernels import PLAIN, Kernel, Use
+from systems.interpreter import FORMS, NoPlainForm, plain_function
+from systems.kernels import Kernel, Use
+from systems.kinds import Kind, typed
+from systems.program.identity import key_of, reached_from
 
-
-def _meaning_of(functions: Iterable[Callable[..., Any]]) -> str:
-    """All that decides what these compiled functions compute: code, options, what they refer to or call.
-
-    Read from the functions in memory: their files may have changed since they were imported.
-    """
-    parts: list[str] = []
-    for function in _reached_from(functions):
-        if isinstance(function, type):
-            parts.append(_constant(function))
-            continue
-        plain = plain_function(function)
-        parts += [
-            f"{plain.__module__}.{plain.__qualname__}",
-            repr(getattr(function, "targetoptions", {})),
-            _described(plain.__code__),
-            *(f"{name} = {_constant(value)}" for name, value in sorted(_used_by(plain).items())),
-        ]
-    return "\n".join(parts)
-
-
-def _reached_from(functions: Iterable[Callable[..., Any]]) -> Iterator[Callable[..., Any]]:
-    """These functions and all compiled ones that they call, each once."""
-    pending, seen = list(functions), set[Callable[..., Any]]()
-    while pending:
-        function = pending.pop()
-        if function not in seen:
-            seen.add(function)
-            yield function
-            if not isinstance(function, type):
-                used = _used_by(plain_function(function))
-                pending += [value for _, value in sorted(used.items()) if hasattr(value, "py_func")]
-
-
-def _used_by(plain: Callable[..., Any]) -> dict[str, Any]:
-    """The names that a function takes from outside: closure, globals, and attributes of modules among these."""
-    outside = inspect.getclosurevars(plain)
-    used: dict[str, Any] = {**outside.globals, **outside.nonlocals}
-    for name, value in list(used.items()):
-        if isinstance(value, ModuleType):
-            names = plain.__code__.co_names
-            used |= {f"{name}.{n}": getattr(value, n) for n in names if hasattr(value, n)}
-    return used
-
-
-def _described(code: CodeType) -> str:
-    constants = [_described(c) if isinstance(c, CodeType) else repr(c) for c in code.co_consts]
-    return repr((code.co_code, code.co_names, code.co_varnames, constants))
-
-
-def _constant(value: Any) -> str:
-    if isinstance(value, np.ndarray):
-        return repr((value.dtype.str, value.shape, value.tobytes()))
-    if isinstance(value, type) and issubclass(value, IntEnum):
-        return repr((value.__name__, [(member.name, member.value) for member in value]))
-    plain = isinstance(value, bool | int | float | complex | str | tuple | None | np.generic)
-    return repr(value) if plain else type(value).__name__
-
-
-_LAYOUT = 3  # of what is kept on disk: raise it where former files are of no use any more
+Kinds = tuple[Kind, ...]
 
 
 # --- which form ------------------------------------------------------------------------------------
@@ -110,7 +50,7 @@ def _asked() -> Compile:
     try:
         return Compile(said)
     except ValueError:
-        raise ValueError(f"{VARIABLE} is '{said}'; set it to never or always, or leave it out.") from None
+        raise Mistake(f"{VARIABLE} is '{said}'; set it to never or always, or leave it out.") from None
 
 
 VARIABLE = "PINJOINT_COMPILE"
@@ -129,10 +69,21 @@ LOG = logging.getLogger("pinjoint.compiler")
 
 
 class Choice:
-    """Which form programs of this process run in; a window changes it to ELSEWHERE."""
+    """Which form programs of this process run in; a window changes it to ELSEWHERE.
+
+    changes: how often a program began, or changed its form, in this process; what steps cost is known until then.
+    deadline: the time (time.perf_counter, s) from which on a step that is interpreted, and can be gone on with, raises
+    Unfinished.
+    """
 
     compile = _asked()
+    changes = 0
+    deadline = math.inf
     spent = 0.0  # s of interpreting, of all modules
+
+
+class Unfinished(Exception):
+    """A step takes longer than a frame may: the next advance goes on with it."""
 
 
 # --- modules ---------------------------------------------------------------------------------------
@@ -151,13 +102,17 @@ class GeneratedModule:
         name: str,
         contents: Callable[[], tuple[str, Mapping[str, Callable[..., Any]]]],
         warm_up: Callable[[], object] = lambda: None,
+        kinds: Mapping[str, Kinds] = MappingProxyType({}),
     ) -> None:
         """name: of what it is for, which a process that compiles is given. contents: returns source and kernels; the
-        call imports them. warm_up: calls all functions; needed where types are not declared.
+        call imports them. warm_up: calls all functions; needed where types are not declared. kinds: of what kernels that
+        others wrote are given, by their names.
         """
         self.name = name
         self.spent = 0.0
+        self.refusal = ""
         self._contents = contents
+        self._kinds = kinds
         self.warm_up = warm_up
         self._form: Any = None
         self.portion = 1
@@ -177,7 +132,7 @@ class GeneratedModule:
     @cached_property
     def key(self) -> str:
         """The name of the module in the cache, which hashes everything that is compiled into it."""
-        return _key_of(*self._source_and_kernels)
+        return key_of(*self._source_and_kernels)
 
     @cached_property
     def module(self) -> ModuleType:
@@ -187,6 +142,7 @@ class GeneratedModule:
         linecache.cache[shown] = len(source), None, source.splitlines(keepends=True), shown  # for tracebacks
         module = ModuleType(shown)
         vars(module).update(kernels)
+        vars(module)[FORMS] = lambda: {n: typed(kernels[n], kinds).plain for n, kinds in self._kinds.items()}
         exec(compile(source, shown, "exec"), vars(module))
         return module
 
@@ -200,6 +156,7 @@ class GeneratedModule:
     def form(self) -> Any:
         """The functions by name, in the form that they run in now."""
         if self._form is None:
+            Choice.changes += 1
             if Choice.compile is Compile.ALWAYS:
                 self.load()
             else:
@@ -207,6 +164,15 @@ class GeneratedModule:
         elif self.spent > self._patience and Choice.spent > STARTING and not self._compiled:
             self._lose_patience()
         return self._form
+
+    @cached_property
+    def rewritten(self) -> dict[str, Callable[..., Any]] | None:
+        """The interpreted functions, not timed; None where a kernel has no plain form, and `refusal` says why."""
+        try:
+            return {name: function.interpreted for name, function in self.functions.items()}
+        except NoPlainForm as error:
+            self.refusal = f"{self.name} cannot be interpreted: {error}"
+            return None
 
     def begin(self, elements: int) -> None:
         """Choose the form for a model of so many elements: one of many would not get far interpreted."""
@@ -219,7 +185,7 @@ class GeneratedModule:
             self.load()
         except Exception as error:  # numba raises many kinds
             self._patience = math.inf
-            _tell(f"{self.name} goes on interpreted, and slower: it cannot be compiled ({error}).")
+            tell(f"{self.name} goes on interpreted, and slower: it cannot be compiled ({error}).")
 
     @property
     def is_loaded(self) -> bool:
@@ -227,12 +193,11 @@ class GeneratedModule:
         return self._compiled
 
     def _begin_interpreted(self) -> None:
-        """Use the interpreted form; where the source of a kernel is not known, machine code."""
-        try:
-            interpreted = {name: function.interpreted for name, function in self.functions.items()}
-        except OSError as error:
+        """Use the interpreted form; where a kernel has none, machine code."""
+        interpreted = self.rewritten
+        if interpreted is None:
             if Choice.compile is Compile.NEVER:
-                raise OSError(f"{self.name} cannot be interpreted: {error}") from error
+                raise NoPlainForm(self.refusal)
             self.load()
             return
 
@@ -249,6 +214,7 @@ class GeneratedModule:
             return called
 
         self._patience = LOADING
+        _interpreted.append(self)
         self._form = SimpleNamespace(**{name: timed(function) for name, function in interpreted.items()})
 
     def did(self, work: int) -> None:
@@ -273,48 +239,93 @@ class GeneratedModule:
         """How long compiling it will take, by what that took before on this machine."""
         return _seconds_per_byte() * self._size
 
-    @property
+    @cached_property
     def _size(self) -> int:
         """Bytes of the interpreter's code of all that is compiled."""
-        reached = _reached_from([*self.functions.values(), *self._source_and_kernels[1].values()])
+        reached = reached_from([*self.functions.values(), *self._source_and_kernels[1].values()])
         return sum(len(plain_function(f).__code__.co_code) for f in reached if not isinstance(f, type))
 
     def load(self) -> Any:
         """Go on with machine code from now on: compiled first if nobody has."""
         with _loading:
-            if not self._compiled:
-                self._load()
+            if not self.load_kept():
+                self._compile()
         return self._form
 
-    def _load(self) -> None:
+    def load_kept(self) -> bool:
+        """Go on with machine code if another process, or an earlier one, has kept it; False if it has not.
+
+        It calls nothing, so that a thread can load what another one interprets meanwhile.
+        """
+        with _loading:
+            if self._compiled:
+                return True
+            if not self.is_compiled():
+                return False
+            kept = cache.read(_types_of(self.key))
+            if kept is None:  # damaged: it is compiled anew
+                with contextlib.suppress(OSError):
+                    _note_of(self.key).unlink()
+                return False
+            from systems.machine_code import compile_for
+
+            machine = self._machine()
+            for name, function in vars(machine).items():
+                compile_for(function, kept, name)
+            self._form, self._compiled = machine, True
+            Choice.changes += 1
+            _keep_note(self.key, None)
+            return True
+
+    def _machine(self) -> SimpleNamespace:
+        """The functions, to be compiled when they are called."""
         from systems.machine_code import adopt, machine_code
 
-        before, known, began = self._form, self.is_compiled(), time.perf_counter()
-        adopt(self.module, self.key, _reached_from(self._source_and_kernels[1].values()))
-        self._form = SimpleNamespace(**{name: machine_code(f) for name, f in self.functions.items()})
-        self._compiled = True
+        adopt(self.module, self.key, reached_from(self._source_and_kernels[1].values()))
+        return SimpleNamespace(**{name: machine_code(f) for name, f in self.functions.items()})
+
+    def _compile(self) -> None:
+        """Compile by calling everything, and keep that."""
+        from systems.machine_code import types_of
+
+        before, began = self._form, time.perf_counter()
+        self._form, self._compiled = self._machine(), True
+        Choice.changes += 1
         try:
             self.warm_up()
         except BaseException:
             self._form, self._compiled = before, False
             raise
-        _keep_note(self.key, None if known else (time.perf_counter() - began, self._size))
+        cache.write(_types_of(self.key), types_of(vars(self._form)))
+        _keep_note(self.key, (time.perf_counter() - began, self._size))
 
 
-def _tell(sentence: str) -> None:
+def tell(sentence: str) -> None:
     if sentence not in UNCOMPILED:
         UNCOMPILED.append(sentence)
         LOG.warning(sentence)
 
 
+def interpreted_here() -> list[GeneratedModule]:
+    """What began interpreted in this process and has no machine code yet, the costliest first."""
+    _interpreted[:] = (module for module in _interpreted if not module.is_loaded)
+    return sorted(_interpreted, key=lambda module: -module.spent)
+
+
 _loading = threading.RLock()
-_modules: dict[Any, GeneratedModule] = {}  # by source and kernels
+_interpreted: list[GeneratedModule] = []
+_modules: dict[Any, GeneratedModule] = {}  # by source, kernels and kinds
 
 
-def generated(name: str, source: str, kernels: Mapping[str, Callable[..., Any]]) -> GeneratedModule:
-    """The module with this source, the same one each time."""
-    identity = source, *((called, id(kernel)) for called, kernel in sorted(kernels.items()))
-    return _modules.setdefault(identity, GeneratedModule(name, lambda: (source, kernels)))
+def generated(
+    name: str,
+    source: str,
+    kernels: Mapping[str, Callable[..., Any]],
+    kinds: Mapping[str, Kinds] = MappingProxyType({}),
+) -> GeneratedModule:
+    """The module with this source, the same one each time. kinds: of what kernels of others are given, by their names."""
+    called = ((name, id(kernel), kinds.get(name)) for name, kernel in sorted(kernels.items()))
+    return _modules.setdefault((source, *called), GeneratedModule(name, lambda: (source, kernels), kinds=kinds))
 
 
 def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str, Callable[..., Any]]]:
@@ -333,32 +344,14 @@ def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str
 # --- on disk ---------------------------------------------------------------------------------------
 
 
-def _key_of(source: str, kernels: Mapping[str, Callable[..., Any]]) -> str:
-    """numba's own cache would notice neither edits of functions that a cached one calls, nor another processor."""
-    meaning = _meaning_of(kernels[name] for name in sorted(kernels))
-    about = source, meaning, *_circumstances(), f"plain: {PLAIN}", f"layout: {_LAYOUT}"
-    return "pinjoint_program_" + hashlib.sha256("\n".join(about).encode()).hexdigest()[:24]
-
-
-@once
-def _circumstances() -> tuple[str, ...]:
-    """What else machine code depends on: compiler, interpreter, and processor, as far as is known without the compiler."""
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8", errors="replace") as file:
-            lines = file.read(8192).splitlines()
-        processor = [line for line in lines if line.startswith(("model name", "flags", "Features"))][:2]
-    except OSError:
-        processor = [platform.processor()]
-    try:
-        compiler = importlib.metadata.version("numba")
-    except importlib.metadata.PackageNotFoundError:
-        compiler = ""
-    return compiler, sys.version, platform.machine(), *processor
-
-
 def _note_of(key: str) -> Path:
     """A file that is there once all of a module is compiled and kept: it says how long that took, and how much it was."""
     return cache.folder() / f"{key}.done"
+
+
+def _types_of(key: str) -> str:
+    """The name of the file that says for which types the functions of a module are compiled."""
+    return f"{key}.types"
 
 
 def _keep_note(key: str, cost: tuple[float, int] | None) -> None:
@@ -371,20 +364,18 @@ def _keep_note(key: str, cost: tuple[float, int] | None) -> None:
                 _note_of(key).write_text(f"{cost[0]:.3f} s, {cost[1]} bytes", encoding="ascii")
 
 
+_NOTES = 50  # of those of former compilations that are read
+
+
 @once
 def _seconds_per_byte() -> float:
     """What compiling took on this machine; without experience, what it took where this was written."""
     seconds, size = 0.0, 0
-    for path in cache.folder().glob("*.done"):
+    for path in islice(cache.folder().glob("*.done"), _NOTES):
         with contextlib.suppress(OSError, ValueError):
             took, of = path.read_text(encoding="ascii").removesuffix(" bytes").split(" s, ")
             seconds, size = seconds + float(took), size + int(of)
     return seconds / size if size else SECONDS_PER_BYTE
-
-
-def is_blank() -> bool:
-    """True if nothing at all is compiled yet: the program is started for the first time."""
-    return next(cache.folder().glob("*.done"), None) is None
 
 
 def forget_unused(days: float = 60.0) -> None:

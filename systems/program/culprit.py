@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
+from components.field import Column
 from components.model import Model
 from components.snapshot import Snapshot
 from systems.base import REVIEW_INTERVAL, Mod, StepSystem
@@ -36,6 +37,9 @@ def find_culprit(program: Program, safe: Snapshot) -> Mod | None:
     model = program.model
     if not any(system.mod for system in program.systems):
         return None
+    if program.failure is not None and blame_mod(program.failure):
+        system = program.failure.system
+        return system.mod if system is not None else None
     if _finite(model):  # an integrator that controls its steps leaves a state before the bad step
         good = Snapshot.take(model)
         _move_ahead(model)
@@ -43,11 +47,10 @@ def find_culprit(program: Program, safe: Snapshot) -> Mod | None:
         good = _last_good(program, safe)
     led_to = {name: model.column(name).copy() for name in (*MOTION, "clock.time")}
     good.restore(model)
-    found = _bad_kernel(program, model)
-    if found is None:
-        for name, values in led_to.items():  # where these are finite
-            model.writable(name)[...] = np.where(np.isfinite(values), values, model.column(name))
-        found = _bad_kernel(program, model)
+    try:
+        found = _bad_kernel(program, model, led_to)
+    except ProgramError as error:  # which a kernel raised
+        return error.system.mod if error.system is not None and blame_mod(error) else None
     if found is None:
         return None
     system, element, value = found
@@ -82,11 +85,16 @@ def _last_good(program: Program, safe: Snapshot) -> Snapshot:
     return before
 
 
-def _bad_kernel(program: Program, model: Model) -> tuple[StepSystem, str, float] | None:
-    """The first system with a result that is not finite, the element, and the result."""
-    for system, given in in_turn(program.systems, model):
-        for row, column in np.argwhere(~np.isfinite(given))[:1].tolist():
-            return system, _element(system, model, row), float(given[row, column])
+def _bad_kernel(
+    program: Program, model: Model, led_to: Mapping[str, Column]
+) -> tuple[StepSystem, str, float] | None:
+    """The first system with a result that is not finite, now or in the state this led to, the element, the result."""
+    for columns in ({}, led_to):
+        for name, values in columns.items():  # where these are finite
+            model.writable(name)[...] = np.where(np.isfinite(values), values, model.column(name))
+        for system, given in in_turn(program.systems, model):
+            for row, column in np.argwhere(~np.isfinite(given))[:1].tolist():
+                return system, _element(system, model, row), float(given[row, column])
     return None
 
 

@@ -114,5 +114,5 @@ class BlockProgram(ReorderedProgram):
         return list((self.columns | nothing).values())
 
     def _load(self) -> None:
-        self._block_cores[0] = self._cores()
+        self._block_cores[0] = self._cores() if self.module.is_loaded else 1
         super()._load()

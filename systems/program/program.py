@@ -19,12 +19,14 @@ from components.model import Model
 from systems.base import Event, Integrator, StepSystem, StopReason
 from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
 from systems.physics.kernels import conserved
-from systems.program.binding import Bound, bind, explain
+from systems.program.binding import Bound, ProgramError, bind
 from systems.program.block_writer import BlockWriter
-from systems.program.compiler import GeneratedModule, generated
+from systems.program.compiler import Choice, Compile, GeneratedModule, generated
 from systems.program.controlled_writer import ControlledWriter
+from systems.program.faults import check_results, explain, failure_of, kinds_of
 from systems.program.near_pairs import NearPairs
-from systems.program.writer import STATE, VERY_MANY, Writer, form_of, sides_of
+from systems.program.reference_laws import in_turn
+from systems.program.writer import STATE, VERY_MANY, Writer, sides_of
 
 _ORIGIN = ("origin", "step_limit")
 _COUNTS = ("steps", "origin_steps")
@@ -50,14 +52,16 @@ def _writer(model: Model, systems: Sequence[StepSystem], integrator: Integrator,
     return (ControlledWriter if integrator.controlled else plain)(model, joining, integrator, form)
 
 
-def has_program(model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str = "") -> bool:
-    """True if the program of this plan, in the form that suits the model or another, need only be loaded."""
-    writer = _writer(model, systems, integrator, form or form_of(model, integrator, systems))
-    return _module(writer).is_compiled()
+def module_of(
+    model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str
+) -> GeneratedModule:
+    """The module of the program of a plan, in that form, which is only written."""
+    return _module(_writer(model, systems, integrator, form), model)
 
 
-def _module(writer: Writer) -> GeneratedModule:
-    return generated("the step program", writer.source(), writer.names)
+def _module(writer: Writer, model: Model) -> GeneratedModule:
+    kinds = {b.call: kinds_of(b, model) for b in writer.kernels if not b.is_ours}
+    return generated("the step program", writer.source(), writer.names, kinds)
 
 
 class Program:
@@ -66,6 +70,7 @@ class Program:
     source: the whole program as plain Python; to understand a step, read that of a small model first.
     measures: entries of Measure, of the state last observed.
     follows_state: forces follow from nothing but the state, loads apart, so that what is at rest stays at rest.
+    failure: what a kernel raised in a step, and which, if one did.
     module: its functions. tolerance: of each step; 0 where the error is not controlled.
     compile_seconds: time that writing it took, and compiling it, or loading it from the cache, if that was done at once.
     """
@@ -76,13 +81,16 @@ class Program:
         self.systems = tuple(system for system in systems if system.kernel)
         self.integrator = integrator
         self._writer = _writer(model, systems, integrator, form)
-        self.module = _module(self._writer)
+        self.module = _module(self._writer, model)
         self.measures = np.zeros(len(Measure))
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
+        self.failure: ProgramError | None = None
+        self._types: dict[str, Any] = {}
         self._state_revision = -1
         self.bind()
         present = weakref.ref(self)  # the module lives longer
         self.module.warm_up = lambda: program._call_all() if (program := present()) is not None else None
+        check_results(self._writer.kernels, model)
         self.module.begin(self._rows("rods"))
         if not self.module.is_loaded:
             self._call_all()
@@ -101,7 +109,21 @@ class Program:
                 state = [self._arrays[name][:0] for name in STATE]
                 self.module.form.commit(0.0, 0.0, *state, np.zeros(len(ACCOUNT)), *self._of_no_rods())
         except Exception as error:  # numba raises many kinds
-            raise explain(self._writer.kernels, self.integrator, self.model, error) from error
+            raise self._explained(error) from error
+
+    def _explained(self, error: Exception) -> ProgramError:
+        """Which kernel an error comes from: machine code does not tell, so that they are called one by one."""
+        compiled = self.module.is_loaded
+        found = explain(self._writer.kernels, self.integrator, self.model, error, compiled=compiled)
+        if found.system is not self.integrator:
+            return found
+        try:
+            for _ in in_turn(self.systems, self.model):
+                pass
+        except ProgramError as raised:
+            return raised
+        others = [b for b in self._writer.kernels if not b.is_ours]
+        return ProgramError(failure_of(others[0], error), others[0].system) if len(others) == 1 else found
 
     def _of_no_rods(self) -> list[Column]:
         whole = {"pair_reach": np.array([0.0, math.inf])}  # of no pairs there is no list
@@ -138,6 +160,7 @@ class Program:
         extra: dict[str, Any] = {}
         for system in self.systems:
             extra.update(bind(system, model).stored_arrays)
+        self._heed_types({name: array.dtype for name, array in extra.items()})
         written = {w.replace(".", "_", 1): w for b in self._writer.commits for w in b.system.writes}
         extra |= {name: self._storage(path) for name, path in written.items()}
         self._near = NearPairs(model, [b.cutoff for b in self._writer.pairs]) if self._writer.pairs else None
@@ -161,6 +184,12 @@ class Program:
         controls = self.integrator.estimates_error and settings.time_step is None
         self.tolerance = settings.tolerance if controls else 0.0
         self._state_revision = -1
+
+    def _heed_types(self, types: dict[str, Any]) -> None:
+        """Go on compiled where arrays of a system hold numbers of another type than before."""
+        if self._types not in ({}, types) and Choice.compile is not Compile.NEVER:
+            self.load()
+        self._types = types
 
     # --- events ------------------------------------------------------------------------------------
 
@@ -261,6 +290,23 @@ class Program:
         An integrator that controls its steps takes none that would end after `until` (s), and one that would
         pass `landing` (s) is cut to end there; for others the steps are clock.step_size long.
         """
+        try:
+            return self._advance(steps, until, landing)
+        except ProgramError:
+            raise
+        except Exception as error:
+            if all(b.is_ours for b in self._writer.kernels):
+                raise
+            return self._failed(error)
+
+    def _failed(self, error: Exception) -> tuple[int, StopReason]:
+        """End a step in which a kernel raised an error as one that led nowhere, so that the culprit is looked for."""
+        self.failure = self.failure or self._explained(error)
+        self._arrays["displacement"][...] = math.nan
+        self._mark_changes()
+        return 0, StopReason.DIVERGED
+
+    def _advance(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         if self.module.is_loaded:
             return self._take(steps, until, landing)
         total = 0
@@ -339,8 +385,15 @@ class Program:
             self._mark_changes()
 
     def observe(self) -> None:
-        """Bring the derived columns of rods and particles, and the measures, up to date."""
-        self._observe()
+        """Bring the derived columns of rods and particles, and the measures, up to date, unless a kernel fails."""
+        try:
+            self._observe()
+        except ProgramError:
+            raise
+        except Exception as error:  # the next step fails, too, and then the culprit is looked for
+            if all(b.is_ours for b in self._writer.kernels):
+                raise
+            self.failure = self._explained(error)
 
     def _observe(self) -> None:
         time, size = self._control[:2].tolist()

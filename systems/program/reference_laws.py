@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from components.field import Vector
 from components.model import Model
 from systems.base import StepSystem
-from systems.program.binding import Bound, StepRole, bind, by_role, written_row
-from systems.program.compiler import generated
+from systems.program.binding import Bound, ProgramError, StepRole, bind, by_role, written_row
+from systems.program.compiler import Choice, Compile, generated
+from systems.program.faults import failure_of, form_of
 from systems.program.loops import RodLoop
 from systems.program.near_pairs import pairs_within
 from systems.program.pasting import fragment
@@ -50,7 +51,11 @@ class KernelRows:
 
     def of(self, bound: Bound) -> Numbers:
         """What the kernel gives for each row, shape (rows, results)."""
-        rows = [np.atleast_1d(bound.function(*arguments)) for arguments in self._arguments(bound)]
+        called = form_of(bound, self.model)
+        try:
+            rows = [np.atleast_1d(called(*arguments)) for arguments in self._arguments(bound)]
+        except Exception as error:
+            raise ProgramError(failure_of(bound, error), bound.system) from error
         return np.array(rows, dtype=np.float64).reshape(len(rows), -1)
 
     def seconds_per_call(self, bound: Bound) -> float:
@@ -58,6 +63,8 @@ class KernelRows:
         if not self._count(bound):
             return 0.0
         columns = [np.resize(column, (CALLS, *column.shape[1:])) for column in self._columns(bound)]
+        if bound.each == "loads":
+            columns.append(bound.arrays[f"{bound.prefix}_values"])
         loop = _compiled_loop(bound, columns)
         return min(_seconds(loop, columns) for _ in range(TRIALS)) / CALLS
 
@@ -118,13 +125,11 @@ def _as_tuples(value: Any) -> Any:
 
 
 def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..., float]:
-    """A compiled function of these columns that calls the kernel for each row and adds up what it gives."""
+    """A function of these columns, of loads also their values, that calls the kernel for each row and adds up."""
     names = [f"c{index}" for index in range(len(columns))]
-    kernels: dict[str, Any] = {"kernel": bound.function}
     arguments = [written_row(n, "i", c.shape[1:]) for n, c in zip(names, columns, strict=True)]
     if bound.each == "loads":
-        kernels["values"] = bound.arrays[f"{bound.prefix}_values"]
-        arguments.insert(1, "values")
+        arguments = ["c0[i]", "c2", "c1[i]"]
     pair = bound.each in ("particles", "pairs", "")
     lines = [
         "from systems.kernels import kept",
@@ -136,7 +141,8 @@ def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..
         f"        total += {'made[0] + made[1]' if pair else 'made'}",
         "    return total",
     ]
-    loop: Callable[..., float] = generated("the timing of a kernel", "\n".join(lines), kernels).load().loop
+    module = generated("the timing of a kernel", "\n".join(lines), {"kernel": bound.function})
+    loop: Callable[..., float] = (module.form if Choice.compile is Compile.NEVER else module.load()).loop
     return loop
 
 

@@ -228,6 +228,19 @@ def draw_notice(sheet: Sheet, ends: tuple[float, float]) -> list[Mark]:
             Text(line, left + pad + icon + 10.0 * u, first + number * line_height(size), size, ink)
             for number, line in enumerate(lines)
         ),
+        *_progress(sheet, left + pad, upper + height - 5.0 * u, width - 2 * pad),
+    ]
+
+
+def _progress(sheet: Sheet, left: float, top: float, width: float) -> list[Mark]:
+    """A bar that says how much of what the notice tells of is done."""
+    status, thick, theme = sheet.view.status, 3.0 * sheet.unit, sheet.theme
+    if status.share is None or status.problem:
+        return []
+    done = max(status.share * width, thick)
+    return [
+        Panel(left, top, width, thick, thick / 2, theme.line, None),
+        Panel(left, top, done, thick, thick / 2, theme.text, None),
     ]
 
 

@@ -15,6 +15,7 @@ import pygame.gfxdraw
 from numpy.typing import NDArray
 
 from components.wording import UNPRINTABLE
+from systems.program.compiler import Choice, Compile
 from systems.render.coverage import stroke_coverage, stroke_pixels_estimate
 from systems.render.marks import Bars, Discs, Fills, Panel, Picture, Rectangles, Stamps, Strokes, Text
 from systems.render.raster import Clip, Pixels, Raster
@@ -34,12 +35,13 @@ class Canvas:
     """Draws pictures; keeps the texts, symbols and panels it has rendered.
 
     raster: returns the compiled drawing of large pictures, or None while it is being compiled; until then a
-        sketch with some of the elements is drawn. Without it all elements are drawn slowly.
+        sketch with some of the elements is drawn. Without it, or where nothing is compiled, all elements are drawn
+        slowly.
     """
 
     def __init__(self, raster: Callable[[], Raster | None] | None = None) -> None:
         self.sketch = False  # the last picture is a sketch
-        self._raster = raster
+        self._raster = raster if Choice.compile is not Compile.NEVER else None
         if not pygame.font.get_init():
             pygame.font.init()
         self._cache: dict[Any, Any] = {}

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import math
+import time
+
 from systems.physics.pace import natural_pace
+from systems.program.compiler import Choice, Unfinished
 from systems.run.simulation import Simulation
 
 LONGEST_FRAME = 0.1  # s of real time that one frame may catch up
 BUDGET = 0.012  # s of a frame that steps may take
-FIRST_STEPS = 1000  # that the first frame may take, when their cost is not known yet
+LONGEST_STEP = 0.02  # s after which a frame leaves a step in its midst, where that is possible
+AT_ONCE = 0.003  # s for which steps are planned at once
+GROWTH = 8  # times as many steps at once, at most, as have ever been taken at once at what they cost now
 FASTEST, SLOWEST = 1e3, 1e-5  # simulated seconds per second shown, times the natural pace at 1
 MANY, SHARE = 2000, 0.1  # above MANY elements, a change of their number by a smaller share keeps the pace
 SHORT = 0.125  # share of a frame that is left to the next where steps are as short: whole steps are shown
@@ -27,7 +33,7 @@ class TimeScale:
         self.lagging = False
         self.shown_pace = 1.0
         self.ahead = 0.0
-        self._seconds_per_step = 0.0
+        self.forget_cost()
 
     @property
     def pace(self) -> float:
@@ -42,21 +48,34 @@ class TimeScale:
         """Simulated time (s) to let pass in a frame that took `elapsed` seconds."""
         return min(elapsed, LONGEST_FRAME) * self.pace
 
-    @property
-    def affordable(self) -> int:
-        """Steps that the machine can take in a frame."""
-        known = self._seconds_per_step
-        return max(int(BUDGET / known), 1) if known > 0.0 else FIRST_STEPS
+    def forget_cost(self) -> None:
+        """Steps may cost another thing from now on: interpreted ones a hundred times as much as compiled ones."""
+        self._seconds_per_step = 0.0
+        self._most = 0  # steps that were taken at once
 
-    def took(self, due: float, passed: float, steps: int, seconds: float) -> None:
-        """Learn from a frame: time that was due and that passed in whole steps (s), and what these cost (s)."""
-        self.lagging = steps >= self.affordable
-        wanted = self.ahead + due
-        self.ahead = 0.0 if self.lagging else max(wanted - passed, 0.0)
-        self.shown_pace = self.pace * passed / wanted if self.lagging else self.pace
+    def affordable(self, seconds: float) -> int:
+        """Steps to take next where so many seconds are left: one at first, to learn what they cost, and never all.
+
+        Impacts make steps ten times as long from one moment to the next.
+        """
+        fitting = min(AT_ONCE, seconds) / max(self._seconds_per_step, 1e-9)
+        return int(min(fitting, GROWTH * self._most)) if self._most else 1
+
+    def cost(self, steps: int, seconds: float) -> None:
+        """Learn what steps took that were taken at once."""
         if steps > 0:
-            cost, known = seconds / steps, self._seconds_per_step
-            self._seconds_per_step = cost if known == 0.0 else 0.8 * known + 0.2 * cost
+            self._seconds_per_step = seconds / steps
+            self._most = max(self._most, steps)
+
+    def took(self, due: float, passed: float, *, lagging: bool) -> None:
+        """Learn from a frame: time that was due and that passed in whole steps (s).
+
+        lagging: the frame ended before all that was due had passed.
+        """
+        self.lagging = lagging
+        wanted = self.ahead + due
+        self.ahead = 0.0 if lagging else max(wanted - passed, 0.0)
+        self.shown_pace = self.pace * passed / wanted if lagging else self.pace
 
 
 class RealTimeRunner:
@@ -71,6 +90,8 @@ class RealTimeRunner:
         self.clock = TimeScale()
         self._pace_revision = -1
         self._pace_size = 0
+        self._changes = -1  # of the forms of programs, when the cost of steps was last unknown
+        self._unfinished = False  # the last frame left a step in its midst
         self._waited = False  # the last frame took no steps, so that the edit was drawn first
 
     def frame(self, elapsed: float) -> None:
@@ -91,10 +112,36 @@ class RealTimeRunner:
             return
         if self._find_pace() and self._large:
             return
-        start, before = simulation.model.clock.time, simulation.compute_seconds
-        due = clock.due(elapsed)
-        taken = simulation.run_to(start + clock.ahead + due, clock.affordable, whole=self._steps_are_short(due))
-        clock.took(due, simulation.model.clock.time - start, taken, simulation.compute_seconds - before)
+        start, due = simulation.model.clock.time, clock.due(elapsed)
+        lagging = self._take_steps(start + clock.ahead + due, self._steps_are_short(due))
+        clock.took(due, simulation.model.clock.time - start, lagging=lagging)
+
+    def _take_steps(self, target: float, whole: bool) -> bool:
+        """Let time pass to a target (s) as far as the frame allows; True if it does not allow all of it."""
+        simulation, clock, left = self.simulation, self.clock, BUDGET
+        if self._changes != Choice.changes:
+            self._changes = Choice.changes
+            clock.forget_cost()
+        Choice.deadline = time.perf_counter() + LONGEST_STEP
+        try:
+            some = max(clock.affordable(left), 1)
+            while some > 0:
+                before = simulation.compute_seconds
+                taken = simulation.run_to(target, some, whole=whole or self._unfinished)
+                self._unfinished = False
+                seconds = simulation.compute_seconds - before
+                clock.cost(taken, seconds)
+                if taken < some:
+                    return False
+                left -= seconds
+                some = clock.affordable(left) if left > 0.0 else 0
+        except Unfinished:
+            self._unfinished = True
+            clock.forget_cost()
+            return True
+        finally:
+            Choice.deadline = math.inf
+        return not simulation.halted and simulation.model.clock.time < target
 
     def _steps_are_short(self, due: float) -> bool:
         """True if whole steps follow the time of frames closely enough; in large models, each moment between is dear."""

@@ -1,7 +1,8 @@
-"""How long one waits for the program: from its start to a picture, to a run, and after edits of a running model.
+"""How long one waits for the program: from its start to a picture, from Space to the first step, for edits, commands.
 
-Each row is a process of its own, first with an empty cache, then with what that left in it. The window is one of
-SDL's dummy driver unless the environment names another: SDL_VIDEODRIVER=x11 with a DISPLAY opens real ones.
+Each row is a process of its own with folders of its own, first with an empty cache, then with what that left in it. The
+window is one of SDL's dummy driver unless the environment names another: SDL_VIDEODRIVER=x11 with a DISPLAY opens real
+ones.
 """
 
 from __future__ import annotations
@@ -13,51 +14,75 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
-
-from game import Session
-from game.preparation import AHEAD
-from systems.collision.driven.compiled import DRIVEN
-from systems.program.writer import form_of
 
 Row = dict[str, Any]
 
 PATIENCE = 120.0  # s that anything may take
+THINKING = 0.5  # s of frames between the first picture and Space, and between two edits
 SETTLED = 1.0  # s for which frames are watched after what was waited for
-JOURNEYS = {
-    "triangle, plasticity on": ("isostatic", "plasticity"),
-    "triangle, one rod more": ("isostatic", "rod"),
-    "bridge": ("warren_bridge", ""),
-    "billiards": ("billiards_break", ""),
-    "ball on a truss": ("ball_on_truss", ""),
-}
+QUICK = ("isostatic", "ball_on_truss")
+EDITS = ("plasticity", "rod", "break", "pull", "statics")  # in mid run; see _Edits
 BEGAN = "PINJOINT_BENCH_BEGAN"
+ASSETS = Path(__file__).parents[2] / "assets"
+MODELS, MODS = ASSETS / "models", ASSETS / "mods"
+SCRIPT = "from game import Session; s = Session.open('hyperstatic'); assert s.run(until='rest') == 'at rest'"
+LAW = (
+    "from game import Session; s = Session.open('isostatic', mods=['{}']);"
+    " s.rods['AB'].stiffening_cubic = 9.0; s.run(time=0.01)"
+)
+COMMANDS = {
+    "import game": ["-c", "import game"],
+    "pinjoint --help": ["-m", "game", "--help"],
+    "pinjoint run isostatic": ["-m", "game", "run", "isostatic"],
+    "pinjoint run isostatic --static": ["-m", "game", "run", "isostatic", "--static"],
+    "pinjoint run collision_iii --at 0.2": ["-m", "game", "run", "collision_iii", "--at", "0.2"],
+    "a script: hyperstatic to rest": ["-c", SCRIPT],
+    "a script with a mod's law": ["-c", LAW.format(MODS / "stiffening")],
+}
 
 
 def report(*, quick: bool) -> dict[str, list[Row]]:
-    """The tables: seconds from the start to a picture and to a run, longest gaps between frames; compiling; commands."""
-    names = list(JOURNEYS)[:2] if quick else list(JOURNEYS)
+    """The tables: first pictures and steps of models, edits of a running one, on busy cores, without a window."""
+    models = QUICK if quick else tuple(sorted(path.stem for path in MODELS.glob("*.json")))
+    edits = EDITS[:2] if quick else EDITS
     return {
-        "window": [row for name in names for row in journeys(name)],
-        "compiling": compiling((DRIVEN.name,) if quick else ("isostatic", "ball_on_truss", *_ahead())),
-        "commands": commands(),
+        "models": [row for name in models for row in _cold_and_warm(name, "")],
+        "edits": [row for edit in edits for row in _cold_and_warm("isostatic", edit)],
+        "two busy cores": list(_busily(QUICK[:1] if quick else QUICK)),
+        "commands": [row for name in list(COMMANDS)[quick * 2 :] for row in _command(name)],
     }
 
 
-def journeys(name: str) -> list[Row]:
-    """One with an empty cache and one with a full one."""
+def _busily(models: tuple[str, ...]) -> Iterator[Row]:
+    """Windows beside two processes that take all they can get."""
+    for name in models:
+        with _burning(2):
+            yield from _cold_and_warm(name, "rod", again=False)
+
+
+@contextmanager
+def _burning(count: int) -> Iterator[None]:
+    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
+    try:
+        yield
+    finally:
+        for process in busy:
+            process.kill()
+            process.wait()
+
+
+def _cold_and_warm(model: str, edit: str, *, again: bool = True) -> Iterator[Row]:
+    """A window with an empty cache, and one with a full one."""
     with tempfile.TemporaryDirectory() as folder:
-        return [_in_a_process(name, cache, Path(folder)) for cache in ("empty", "full")]
-
-
-def _in_a_process(name: str, cache: str, folder: Path) -> Row:
-    cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    words = [sys.executable, "-m", "tests.benchmarks.start", *JOURNEYS[name]]
-    done = subprocess.run(words, env=_environment(folder), check=True, stdout=subprocess.PIPE, text=True)
-    cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - cpu
-    return {"journey": name, "cache": cache, **json.loads(done.stdout.splitlines()[-1]), "cpu_s": cpu}
+        for cache in ("empty", "full") if again else ("empty",):
+            words = [sys.executable, "-m", "tests.benchmarks.start", model, edit]
+            environment = _environment(Path(folder))
+            done = subprocess.run(words, env=environment, check=True, stdout=subprocess.PIPE, text=True)
+            yield {"model": model, "edit": edit, "cache": cache, **json.loads(done.stdout.splitlines()[-1])}
 
 
 def _environment(folder: Path) -> dict[str, str]:
@@ -67,56 +92,18 @@ def _environment(folder: Path) -> dict[str, str]:
     return {**usual, **homes, BEGAN: repr(time.time())}
 
 
-def compiling(whats: Sequence[str]) -> list[Row]:
-    """Processor seconds, with an empty cache, of processes that compile ahead of need: programs of models, or parts."""
-    rows, ahead = [], _ahead()
-    for what in whats:
-        job = ahead.get(what) or _job(Session.open(what))
-        with tempfile.TemporaryDirectory() as folder:
-            cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-            words = [sys.executable, "-m", "game.prepare", "--no-mods", *job]
-            subprocess.run(words, env=_environment(Path(folder)), check=True, stdout=subprocess.DEVNULL)
-            rows.append({"what": what, "cpu_s": resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - cpu})
-    return rows
+def _command(name: str) -> Iterator[Row]:
+    """Seconds of a fresh process, with an empty cache; then with what some runs left there, the best of three."""
+    with tempfile.TemporaryDirectory() as folder:
+        costs = [_cost(COMMANDS[name], Path(folder)) for _ in range(4)]
+    for cache, (seconds, cpu) in (("empty", costs[0]), ("full", min(costs[1:]))):
+        yield {"command": name, "cache": cache, "seconds": seconds, "cpu_s": cpu}
 
 
-def _ahead() -> dict[str, list[str]]:
-    """The names of the units that each process compiles ahead of need."""
-    return {" ".join(unit.name for unit in units): [unit.name for unit in units] for units in AHEAD}
-
-
-def _job(session: Session) -> list[str]:
-    """What compiles the program of its model."""
-    simulation = session.simulation
-    plan = simulation.plan
-    return [
-        simulation.integrator.key,
-        form_of(session.model, simulation.integrator),
-        *(system.name for system in plan),
-    ]
-
-
-def commands() -> list[Row]:
-    """Seconds of commands and imports in a fresh process, everything compiled already; the best of three."""
-    words = {
-        "import numpy, esper": ["-c", "import numpy, esper"],
-        "import game": ["-c", "import numpy, esper, game"],
-        "pinjoint --help": ["-m", "game", "--help"],
-        "pinjoint run isostatic --static": ["-m", "game", "run", "isostatic", "--static"],
-        "pinjoint run isostatic": ["-m", "game", "run", "isostatic"],
-    }
-    rows = []
-    for name, some in words.items():
-        seconds, cpu = zip(*(_cost(some) for _ in range(3)), strict=True)
-        rows.append({"command": name, "seconds": min(seconds), "cpu_s": min(cpu)})
-    return rows
-
-
-def _cost(words: list[str]) -> tuple[float, float]:
+def _cost(words: list[str], folder: Path) -> tuple[float, float]:
     """Seconds by the clock, and of the processor."""
     began, cpu = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": ""}
-    subprocess.run([sys.executable, *words], env=environment, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([sys.executable, *words], env=_environment(folder), check=True, stdout=subprocess.DEVNULL)
     return time.perf_counter() - began, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - cpu
 
 
@@ -124,7 +111,7 @@ def _cost(words: list[str]) -> tuple[float, float]:
 
 
 class Watched:
-    """A window whose frames are timed.
+    """A window whose frames are timed while it runs.
 
     gap: the longest between two frames. work: most that one took of the processor. Both in s; on a busy
     machine the first is longer than it need be.
@@ -143,20 +130,35 @@ class Watched:
         """Frames at 60 Hz until something is met, or so many seconds are over; returns how many were."""
         began = before = time.perf_counter()
         while not met() and before - began < longest:
-            work = time.thread_time()
+            work, busy = time.thread_time(), self.session.busy  # a window that waits for a person sleeps
             self.app.next_frame()
             now = time.perf_counter()
-            self.gap, before = max(self.gap, now - before), now
-            self.work = max(self.work, time.thread_time() - work)
+            if busy and self.session.busy:
+                self.gap, self.work = max(self.gap, now - before), max(self.work, time.thread_time() - work)
+            before = now
         return before - began
 
-    def frames_until_it_runs(self) -> Row:
-        """Frames until steps are taken, and some more: how long that took, the longest gap and work of a frame."""
+    def frames_until_it_runs(self, act: Callable[[], object]) -> Row:
+        """Do something, then frames until a step of what moves is on the screen, and until all of it is compiled."""
         self.gap = self.work = 0.0
-        steps = self.session.model.clock.steps
-        seconds = self.frames_until(lambda: bool(self.session.model.clock.steps > steps))
+        began = time.perf_counter()
+        act()
+        before = self._moment
+        self.frames_until(lambda: self._moment != before)
+        first = time.perf_counter() - began
         self.frames_until(lambda: False, SETTLED)
-        return {"run_after_s": seconds, "longest_gap_ms": 1e3 * self.gap, "most_work_ms": 1e3 * self.work}
+        asked = self.app.preparation.elsewhere  # type: ignore[union-attr]
+        compiled = SETTLED + self.frames_until(lambda: asked.has_loaded_all)
+        return {
+            "first_step_s": first,
+            "compiled_s": compiled,
+            "longest_gap_ms": 1e3 * self.gap,
+            "most_work_ms": 1e3 * self.work,
+        }
+
+    @property
+    def _moment(self) -> tuple[float, ...]:
+        return tuple(model.clock.time for model, _ in self.session.stages if hasattr(model, "clock"))
 
 
 def _main(model: str, edit: str) -> None:
@@ -165,20 +167,12 @@ def _main(model: str, edit: str) -> None:
     if edit == "plasticity":
         session.settings.plasticity = False
     watched.app.frame(0.0)
-    after = time.time() - float(os.environ[BEGAN])
-    row: Row = {"picture_after_s": after, "picture_cpu_s": time.process_time()}
-    session.press("space")
-    row |= watched.frames_until_it_runs()
-    if edit == "plasticity":
-        session.settings.plasticity = True
-    elif edit == "rod":
-        _add_a_rod(session)
-    edited = (
-        watched.frames_until_it_runs()
-        if edit
-        else dict.fromkeys(("run_after_s", "longest_gap_ms", "most_work_ms"), "–")
-    )
-    row |= {f"edit_{name}": value for name, value in edited.items()}
+    row: Row = {"picture_s": time.time() - float(os.environ[BEGAN])}
+    watched.frames_until(lambda: False, THINKING)
+    if edit:
+        session.press("space")
+        watched.frames_until(lambda: False, THINKING)
+    row |= watched.frames_until_it_runs(_ACTS[edit](session))
     watched.app.preparation.close()  # type: ignore[union-attr]
     print(json.dumps(row))
 
@@ -190,7 +184,23 @@ def _add_a_rod(session: Any) -> None:
 
     with session.model.transaction("rod"):
         session.model.create(Particle, 1, position=[(1.0, 2.0)], fixed=[(True, True)])
-        spawn_rods(session.model, [(1, session.particles.count - 1)])
+        spawn_rods(session.model, [(0, session.particles.count - 1)])
+
+
+def _pull(session: Any) -> None:
+    x, y = session.particles[1].position
+    session.grab(x, y)
+    session.drag_to(x + 0.1, y)
+
+
+_ACTS: dict[str, Callable[[Any], Callable[[], object]]] = {
+    "": lambda session: lambda: session.press("space"),
+    "plasticity": lambda session: lambda: setattr(session.settings, "plasticity", True),
+    "rod": lambda session: lambda: _add_a_rod(session),
+    "break": lambda session: lambda: session.model.delete([session.rods[0]]),
+    "pull": lambda session: lambda: _pull(session),
+    "statics": lambda session: lambda: session.press("k"),
+}
 
 
 if __name__ == "__main__":

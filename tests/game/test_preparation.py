@@ -1,4 +1,4 @@
-"""A window goes on while its step program is compiled elsewhere, and what was compiled there is used."""
+"""A window begins runs interpreted while another process compiles, and goes on with what was compiled there."""
 
 from __future__ import annotations
 
@@ -17,57 +17,105 @@ import pygame
 import pytest
 
 from components.field import Role
-from game import preparation
+from game import elsewhere, preparation
 from game.app import App
 from game.documents import models
 from game.editor.view_model import COMPILING
-from game.preparation import Preparation
-from game.prepare import Job, _example
+from game.preparation import Preparation, _job, _jobs_of, is_live
+from game.prepare import Job, example, problem_of
 from game.session import Session
 from systems import cache
-from systems.collision.driven import compiled as driven_kernels
 from systems.input import pygame_input
-from systems.program.compiler import GeneratedModule, forget_unused
+from systems.program import compiler as programs
+from systems.program.compiler import Choice, Compile, GeneratedModule, forget_unused
 from systems.program.program import _writer
 from systems.program.writer import FEW, form_of
+from systems.render.raster import RASTER
+from tests.benchmarks.models import lattice, mesh
+
+RAW_LOAD = GeneratedModule.load_kept
+
+
+class Process:
+    """In place of a process that compiles: it ends when told to."""
+
+    def __init__(self, jobs: list[Job], status: int | None) -> None:
+        self.jobs = jobs
+        self.returncode = status
+        self.said = ""
+
+    def poll(self) -> int | None:
+        return self.returncode
+
+    def terminate(self) -> None:
+        self.returncode = -15
+
+    def communicate(self) -> tuple[str, None]:
+        return self.said, None
 
 
 class Compiler:
-    """In place of the process that compiles: it ends when told to."""
+    """All of them, in order; and what is compiled, by the names of jobs: nothing at first."""
 
     def __init__(self) -> None:
-        self.jobs: list[tuple[str, ...]] = []
-        self.status: int | None = None
+        self.processes: list[Process] = []
+        self.status: int | None = None  # with which those end that are started from now on
+        self.compiled = False
+        self.loaded: list[GeneratedModule] = []
 
-    def start(self, job: tuple[str, ...]) -> Compiler:
-        self.jobs.append(job)
-        return self
+    def start(self, jobs: list[Job], urgent: bool) -> Process:
+        self.processes.append(Process(jobs, self.status))
+        return self.processes[-1]
 
-    def poll(self) -> int | None:
-        return self.status
+    def load(self, module: GeneratedModule) -> bool:
+        if self.compiled and module not in self.loaded:
+            if module is RASTER:
+                RAW_LOAD(module) or module._compile()
+            self.loaded.append(module)
+        return self.compiled
 
 
 @pytest.fixture
 def compiler(monkeypatch: pytest.MonkeyPatch) -> Compiler:
-    """Nothing is compiled yet."""
+    """Nothing is compiled yet, and nothing was interpreted."""
     found = Compiler()
-    monkeypatch.setattr(preparation, "_started", found.start)
-    monkeypatch.setattr(preparation, "has_program", lambda *plan: False)
-    monkeypatch.setattr(GeneratedModule, "is_compiled", lambda unit: False)
-    monkeypatch.setattr(preparation, "is_blank", lambda: False)
+    monkeypatch.setattr(elsewhere, "started", found.start)
+    monkeypatch.setattr(elsewhere, "INTERVAL", 0.001)
     monkeypatch.setattr(preparation, "AHEAD", ())
+    monkeypatch.setattr(GeneratedModule, "is_compiled", lambda module: found.compiled)
+    monkeypatch.setattr(GeneratedModule, "load_kept", lambda module: found.load(module))
+    monkeypatch.setattr(GeneratedModule, "is_loaded", property(lambda module: module in found.loaded))
+    monkeypatch.setattr(Choice, "compile", Compile.SOON)
+    monkeypatch.setattr(programs, "UNCOMPILED", [])
+    monkeypatch.setattr(preparation, "UNCOMPILED", programs.UNCOMPILED)
+    monkeypatch.setattr(pygame_input, "IDLE_PAUSE", 0.0)
     return found
 
 
 @pytest.fixture
-def app(monkeypatch: pytest.MonkeyPatch, compiler: Compiler) -> Iterator[App]:
-    monkeypatch.setattr(pygame_input, "IDLE_PAUSE", 0.0)
+def app(compiler: Compiler) -> Iterator[App]:
     window = App(models.load("isostatic"), preparation=Preparation())
-    frames(window, 3)
-    window.preparation._compiler.join()  # type: ignore[union-attr]
-    frames(window, 1)
+    until(window, lambda: bool(compiler.processes))
     yield window
+    assert window.preparation is not None
+    window.preparation.close()
     window.close()
+
+
+@pytest.fixture
+def large(compiler: Compiler) -> Iterator[App]:
+    """A model that waits."""
+    window = App(lattice(600, damping=1.0), preparation=Preparation())
+    until(window, lambda: bool(compiler.processes))
+    yield window
+    assert window.preparation is not None
+    window.preparation.close()
+    window.close()
+
+
+def end(process: Process, said: str = "\n", status: int = 0) -> None:
+    process.said = said
+    process.returncode = status
 
 
 def frames(app: App, count: int) -> None:
@@ -75,145 +123,217 @@ def frames(app: App, count: int) -> None:
         app.frame(1 / 60)
 
 
-def test_it_begins_with_the_model_that_is_open(app: App, compiler: Compiler) -> None:
-    (job,) = compiler.jobs
-    plan = app.session.simulation.plan
-    assert job == (app.session.simulation.integrator.key, FEW, *(system.name for system in plan))
+def until(app: App, met: Callable[[], bool]) -> None:
+    """Frames until something is met, which a thread brings about."""
+    late = time.monotonic() + 20.0
+    while not met():
+        assert time.monotonic() < late
+        app.frame(1 / 60)
+        time.sleep(0.001)
 
 
-def test_on_a_first_start_it_begins_before_the_compiler_is_loaded(
-    monkeypatch: pytest.MonkeyPatch, compiler: Compiler
-) -> None:
-    monkeypatch.setattr(preparation, "is_blank", lambda: True)
-    window = App(models.load("isostatic"), preparation=Preparation())
-    frames(window, 1)
-    assert len(compiler.jobs) == 1
-    compiler.status = 0
-    frames(window, 1)
-    assert window.session.model.clock.steps == 0
-    assert not window.session.view.forces_known  # what is compiled cannot be loaded yet
+# --- small models ----------------------------------------------------------------------------------------
 
 
-def test_where_particles_may_meet_that_is_waited_for_too(app: App, compiler: Compiler) -> None:
+def test_a_run_begins_at_once_and_says_nothing_of_compiling(app: App, compiler: Compiler) -> None:
     session = app.session
-    session.open_here("ball_on_truss")
-    frames(app, 1)
-    program, driven, resting = compiler.jobs[1:]
-    assert program[0] == session.simulation.integrator.key
-    assert driven == ("driven_collisions",)
-    assert resting == (*program, "collision.support")  # from when on the ball lies on the truss
     session.press("space")
-    frames(app, 3)
-    assert session.model.clock.steps == 0
-    compiler.status = 0
-    frames(app, 4)
-    assert session.model.clock.steps > 0
-    loaded = driven_kernels.kernels()  # though nothing has met yet
-    for name in ("gaps", "kinds", "path_deviation", "time_of_impact", "compliance", "forces", "resolve"):
-        assert getattr(loaded, name).signatures
-
-
-def test_a_model_in_which_nothing_is_loose_does_not_wait_for_what_may_rest_on_it(
-    app: App, compiler: Compiler
-) -> None:
-    app.session.open_here("warren_bridge")
-    frames(app, 1)
-    assert ("driven_collisions",) in compiler.jobs
-    assert not any("collision.support" in job for job in compiler.jobs)
-
-
-def test_what_other_models_may_need_comes_when_nothing_else_is_compiled(
-    monkeypatch: pytest.MonkeyPatch, app: App, compiler: Compiler
-) -> None:
-    units = tuple((GeneratedModule(name, lambda: ("", {})),) for name in ("one", "two", "three"))
-    monkeypatch.setattr(preparation, "AHEAD", units)
-    monkeypatch.setattr(GeneratedModule, "is_compiled", lambda unit: unit.name == "two")
     frames(app, 2)
-    assert len(compiler.jobs) == 1
-    compiler.status = 0
-    frames(app, 4)
-    assert compiler.jobs[-2:] == [("one",), ("three",)]
-
-
-def test_a_run_waits_and_says_so_and_goes_on(app: App, compiler: Compiler) -> None:
-    session = app.session
-    session.press("space")
-    frames(app, 3)
-    session.press("i")  # a key meanwhile
-    frames(app, 3)
-    assert session.model.clock.steps == 0
-    assert session.view.status.notice.startswith(COMPILING)
-    assert session.view.status.state == "preparing"
-    assert not session.view.forces_known
-    compiler.status = 0
-    frames(app, 3)
     assert session.model.clock.steps > 0
     assert session.view.status.state == "running"
     assert session.view.status.notice == ""
     assert session.view.forces_known
-    assert compiler.jobs[1] == (*compiler.jobs[0], "edit.pull")  # next, in case that it is pulled
+    assert compiler.loaded == []
+
+
+@pytest.mark.parametrize("action", [".", "k"])
+def test_stepping_and_the_force_method_begin_at_once_too(app: App, action: str) -> None:
+    session = app.session
+    session.press(action)
+    frames(app, 2)
+    moved = session.model if action == "." else session.scenes.active.guide.moving[0].model  # type: ignore[attr-defined]
+    assert moved.clock.steps > 0
+    assert COMPILING not in session.view.status.notice
+
+
+def test_what_the_open_model_needs_is_compiled_first(app: App, compiler: Compiler) -> None:
+    simulation = app.session.simulation
+    first = _job(simulation, simulation.plan)
+    assert compiler.processes[0].jobs == [first]
+    assert first[:2] == (simulation.integrator.key, FEW)
+    end(compiler.processes[0])
+    until(app, lambda: len(compiler.processes) > 1)
+    later = compiler.processes[1].jobs
+    assert [set(job) - set(first) for job in later] == [{"edit.pull"}, {"loads.ramp"}]
+
+
+def test_plasticity_is_compiled_before_it_is_switched_on(app: App, compiler: Compiler) -> None:
+    session = app.session
+    session.settings.plasticity = False
+    frames(app, 3)
+    soon = list(preparation._jobs_later(session.simulation))
+    session.settings.plasticity = True
+    assert _jobs_of(session.simulation)[0] in soon
+
+
+def test_what_is_needed_comes_before_what_may_be(app: App, compiler: Compiler) -> None:
+    end(compiler.processes[0])
+    until(app, lambda: len(compiler.processes) > 1)  # for later
+    app.session.open_here("ball_on_truss")
+    until(app, lambda: len(compiler.processes) > 2)
+    program, driven, resting = compiler.processes[2].jobs
+    assert compiler.processes[1].returncode == -15
+    assert driven == ("driven_collisions",)
+    assert resting == (*program, "collision.support")  # from when on the ball lies on the truss
+
+
+def test_a_model_in_which_nothing_is_loose_does_not_need_what_rests_on_it(app: App) -> None:
+    app.session.open_here("warren_bridge")
+    jobs = _jobs_of(app.session.simulation)
+    assert ("driven_collisions",) in jobs
+    assert not any("collision.support" in job for job in jobs)
+
+
+def test_free_particles_need_piles_once_something_pulls(app: App) -> None:
+    app.session.adopt(models.load("collision_i"))
+    assert _jobs_of(app.session.simulation) == [("fly",), ("open_horizon",)]
+    app.session.environment.acceleration = (0.0, -9.81)
+    assert _jobs_of(app.session.simulation) == [("fly",), ("open_horizon",), ("take_steps",)]
+
+
+def test_the_program_is_made_before_a_key_needs_it(app: App) -> None:
+    for rod in app.session.rods:
+        rod.tensile_strength = rod.compressive_strength = None  # so that no picture needs the program
+    simulation, before = app.session.simulation, app.session.model.newest(Role.DOCUMENT)
+    until(app, lambda: simulation.programs.ready)
+    assert app.session.model.newest(Role.DOCUMENT) == before
+
+
+def test_machine_code_is_loaded_as_soon_as_it_is_there(app: App, compiler: Compiler) -> None:
+    simulation = app.session.simulation
+    app.session.press("space")
+    frames(app, 2)
+    compiler.compiled = True
+    until(app, lambda: simulation.programs.compiled.module in compiler.loaded)
+
+
+# --- large models ----------------------------------------------------------------------------------------
+
+
+def test_a_large_model_waits_and_shows_how_much_is_done(large: App, compiler: Compiler) -> None:
+    session = large.session
+    session.press("space")
+    frames(large, 3)
+    session.press("i")  # a key meanwhile
+    frames(large, 3)
+    assert session.model.clock.steps == 0
+    status = session.view.status
+    assert (status.state, status.notice.startswith(COMPILING)) == ("preparing", True)
+    assert status.share is not None
+    assert 0.0 <= status.share < 1.0
+    assert not session.view.forces_known
+    compiler.compiled = True
+    until(large, lambda: session.model.clock.steps > 0)
+    frames(large, 1)
+    assert (session.view.status.notice, session.view.status.share) == ("", None)
+    assert session.view.forces_known
 
 
 def test_while_a_run_waits_frames_are_few(
-    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
+    large: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """They would take a fifth of a core from what compiles."""
+    large.session.press("space")
+    frames(large, 2)
     looks: list[float] = []
-    monkeypatch.setattr(time, "sleep", looks.append)
-    app.session.press("space")
-    frames(app, 2)
-    looks.clear()
-    frames(app, 1)
-    assert len(looks) == pygame_input.WAITING_LOOKS
-    compiler.status = 0
-    frames(app, 3)
-    looks.clear()
-    frames(app, 1)
-    assert app.session.view.status.state == "running"
-    assert looks == []
+    monkeypatch.setattr(pygame_input.time, "sleep", looks.append)  # type: ignore[attr-defined]
+    monkeypatch.setattr(elsewhere, "INTERVAL", 1.0)
+    frames(large, 1)
+    assert len(looks) >= pygame_input.WAITING_LOOKS
 
 
-def test_what_cannot_be_compiled_there_is_compiled_here(app: App, compiler: Compiler) -> None:
-    compiler.status = 1
+def test_what_is_awaited_and_cannot_be_compiled_there_is_compiled_here(
+    large: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here: list[Job] = []
+    monkeypatch.setattr(preparation, "problem_of", lambda job: here.append(job) or "")
+    large.session.press("space")
+    compiler.status = compiler.processes[0].returncode = 1
+    until(large, lambda: bool(here))
+    assert here[0] == _jobs_of(large.session.simulation)[0]
+    until(large, lambda: large.session.model.clock.steps > 0)
+
+
+@pytest.mark.parametrize(("count", "live"), [(250, True), (600, False)])
+def test_models_wait_from_a_size_on(count: int, live: bool) -> None:
+    assert is_live(lattice(count)) == live
+
+
+# --- faults ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("said", "status", "told"),
+    [
+        ("", -9, "the process that compiles ended with status -9"),
+        ("numba cannot be imported (No module)\n", 0, "numba cannot be imported (No module)."),
+        ("Compiled programs cannot be kept\n", 0, "Compiled programs cannot be kept."),
+        ("\n", 0, "what was compiled was not kept"),
+    ],
+)
+def test_a_fault_of_the_compiler_costs_no_run_and_is_said_once(
+    app: App, compiler: Compiler, said: str, status: int, told: str
+) -> None:
+    session = app.session
+    session.press("space")
+    end(compiler.processes[0], said, status)
+    until(app, lambda: bool(session.notice))
+    assert told in session.notice
+    session.notice, steps = "", session.model.clock.steps
+    frames(app, 5)
+    assert session.model.clock.steps > steps
+    assert session.notice == ""
+    assert sum(process.jobs == compiler.processes[0].jobs for process in compiler.processes) == 1
+
+
+def test_machine_code_that_cannot_be_loaded_costs_no_run(
+    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(module: GeneratedModule) -> bool:
+        raise ImportError("numba needs another NumPy")
+
+    monkeypatch.setattr(GeneratedModule, "load_kept", broken)
     app.session.press("space")
+    compiler.compiled = True
+    until(app, lambda: "numba needs another NumPy" in app.session.notice)
     frames(app, 3)
     assert app.session.model.clock.steps > 0
 
 
-def test_what_is_compiled_is_loaded_before_a_key_needs_it(
-    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
+def test_nothing_is_compiled_where_that_is_not_wanted(
+    compiler: Compiler, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for rod in app.session.rods:
-        rod.tensile_strength = rod.compressive_strength = None  # so that no picture needs the program
-    simulation, before = app.session.simulation, app.session.model.newest(Role.DOCUMENT)
-    saved = app.session.document.unsaved
-    compiler.status = 0
-    frames(app, 2)
-    assert (
-        not simulation.programs.ready
-    )  # it could not be compiled there; here it is when it must be, not before
-    monkeypatch.setattr(preparation, "has_program", lambda *plan: True)
-    frames(app, 1)
-    assert simulation.programs.ready
-    assert app.session.model.newest(Role.DOCUMENT) == before
-    assert app.session.document.unsaved == saved
+    monkeypatch.setattr(Choice, "compile", Compile.NEVER)
+    window = App(lattice(400, damping=1.0), preparation=Preparation())
+    window.session.press("space")
+    until(window, lambda: bool(window.session.model.clock.steps > 0))
+    window.preparation.close()  # type: ignore[union-attr]
+    window.close()
+    assert compiler.processes == []
+    assert Choice.compile is Compile.NEVER
 
 
-def test_what_a_hand_needs_is_loaded_while_nothing_happens(
-    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    loaded: list[Job] = []
-    monkeypatch.setattr(preparation, "is_prepared", lambda job: True)
-    monkeypatch.setattr(preparation, "load_program", loaded.append)
-    session = app.session
-    session.press("space")
-    compiler.status = 0
-    frames(app, 6)
-    assert session.model.clock.steps > 0
-    assert loaded == []  # it would hold up a picture
-    session.press("space")
-    frames(app, 6)
-    assert loaded == [(*compiler.jobs[0], "edit.pull")]
+def test_a_window_leaves_the_choice_of_the_form_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Choice, "compile", Compile.SOON)
+    before, window = Choice.compile, Preparation()
+    assert Choice.compile is before
+    window.open()
+    assert Choice.compile is Compile.ELSEWHERE
+    window.close()
+    assert Choice.compile is before
+
+
+# --- jobs ------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", ["isostatic", "tower", "ball_on_truss", "hanging_net"])
@@ -223,96 +343,20 @@ def test_what_another_process_compiles_is_what_the_model_needs(name: str, warmth
     session.model.assign(list(session.rods), "temperature_change", warmth)
     simulation = session.simulation
     plan = session.simulation.plan
-    example, same_plan, integrator, form = _example(preparation._job(simulation, plan))
-    there = _writer(example.model, same_plan, integrator, form)
+    there = example(_job(simulation, plan))
     here = _writer(session.model, plan, simulation.integrator, form_of(session.model, simulation.integrator))
-    assert there.source() == here.source()
-    assert there.names == here.names
-
-
-def test_free_particles_have_their_program_loaded_too(
-    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(GeneratedModule, "is_compiled", lambda unit: True)
-    app.session.adopt(models.load("collision_i"))
-    compiler.status = 0
-    frames(app, 3)
-    assert app.session.simulation.programs.ready
-
-
-def test_what_free_particles_need_is_compiled_by_two_processes_at_once(
-    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    compiled = set[str]()
-    monkeypatch.setattr(GeneratedModule, "is_compiled", lambda unit: unit.name in compiled)
-    app.session.adopt(models.load("collision_i"))
-    frames(app, 2)
-    assert compiler.jobs[1:] == [("fly",), ("open_horizon",)]
-    compiled.add("fly")
-    app.session.press("space")
-    frames(app, 2)
-    assert app.session.model.clock.steps == 0  # for want of the other half
-    compiler.status = 0
-    frames(app, 3)
-    assert app.session.model.clock.steps > 0
-
-
-def test_what_piles_need_is_waited_for_once_something_pulls(
-    app: App, compiler: Compiler, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(GeneratedModule, "is_compiled", lambda unit: unit.name != "take_steps")
-    app.session.adopt(models.load("collision_i"))
-    app.session.press("space")
-    frames(app, 4)
-    steps = app.session.model.clock.steps
-    assert steps > 0
-    app.session.environment.acceleration = (0.0, -9.81)
-    frames(app, 3)
-    assert compiler.jobs[1:] == [("open_horizon", "take_steps")]
-    assert app.session.model.clock.steps == steps
-    compiler.status = 0
-    frames(app, 3)
-    assert app.session.model.clock.steps > steps
-
-
-def test_stepping_waits_too(app: App, compiler: Compiler) -> None:
-    app.session.press(".")
-    frames(app, 1)
-    assert app.session.model.clock.steps == 0
-    assert app.session.view.status.notice.startswith(COMPILING)
-    compiler.status = 0
-    app.session.press(".")
-    assert app.session.model.clock.steps == 1
-
-
-def test_the_force_method_waits_too(app: App, compiler: Compiler) -> None:
-    session = app.session
-    session.press("k")
-    frames(app, 2)
-    (structure,) = session.scenes.active.guide.moving  # type: ignore[attr-defined]
-    assert not structure.view.forces_known
-    assert structure.model.clock.steps == 0
-    assert session.view.status.notice.startswith(COMPILING)
-    compiler.status = 0
-    frames(app, 3)
-    assert structure.view.forces_known
-    assert structure.model.clock.steps > 0
+    assert there.source == here.source()
+    assert there.module is preparation._module_of(_job(simulation, plan), simulation)
 
 
 def test_a_large_picture_is_a_sketch_until_its_drawing_is_compiled(app: App, compiler: Compiler) -> None:
-    from tests.benchmarks.models import mesh
-
     large = App(mesh(10_000), preparation=app.preparation)
     frames(large, 4)
     assert not large.render.drawn
-    assert ("raster",) in compiler.jobs
     sketch = pygame.surfarray.array2d(large.render.surface)
-    compiler.status = 0
-    frames(large, 1)
-    assert large.render.drawn
+    compiler.compiled = True
+    until(large, lambda: large.render.drawn)
     whole = pygame.surfarray.array2d(large.render.surface)
-    frames(large, 1)
-    assert not large.render.drawn
     background = whole[-300, 60]
     assert (whole != background).sum() > 1.5 * (sketch != background).sum()
 
@@ -323,7 +367,8 @@ from game import Session
 session = Session.open({ALONE})
 session.simulation.program
 module = session.simulation.programs.compiled.module
-for entry in (module.advance, module.observe):
+print(module.load_kept())
+for entry in (module.form.advance, module.form.observe):
     print(sum(entry.stats.cache_hits.values()), sum(entry.stats.cache_misses.values()))
 """
 
@@ -346,7 +391,26 @@ def test_another_process_compiles_what_this_one_loads(tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-c", CHECK], env=os.environ | folders, check=True, capture_output=True, text=True
     )
-    assert done.stdout.split() == ["1", "0"] * 2
+    assert done.stdout.split() == ["True", *["1", "0"] * 2]
+
+
+def test_where_it_is_not_known_what_was_compiled_it_is_compiled_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cache, "folder", lambda: tmp_path)
+    module = GeneratedModule("test", lambda: ("", {}))
+    (tmp_path / f"{module.key}.done").touch()
+    cache.write(f"{module.key}.types", b"damaged")
+    (tmp_path / f"{module.key}.types").write_bytes(b"cut")
+    assert not module.load_kept()
+    assert not module.is_compiled()
+
+
+def test_without_numba_all_jobs_have_the_same_problem(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "systems.machine_code", None)
+    problems = {problem_of(job) for job in [("raster",), ("dop853", FEW, "physics.elasticity")]}
+    assert len(problems) == 1
+    assert "numba cannot be imported" in problems.pop()
 
 
 SMALL = """
@@ -398,28 +462,6 @@ def test_a_folder_of_somebody_else_is_not_used(tmp_path: Path, monkeypatch: pyte
     monkeypatch.setattr(os, "getuid", lambda: 12345)
     find: Callable[[], Path] = cache.folder.__wrapped__
     assert find().parent != tmp_path or find().name != "pinjoint-programs-12345"
-
-
-PARTS = """
-from systems.collision.free.discs import EVENTS, PILES, HORIZONS, engine
-
-engine()
-print(*(unit.is_compiled() for unit in (EVENTS, HORIZONS, PILES)))
-"""
-
-
-def test_parts_that_nobody_has_called_are_not_taken_for_compiled(tmp_path: Path) -> None:
-    """The window compiled the steps of piles itself, and stood still for 8 s, for discs that cannot pile up."""
-    folders = {"XDG_CACHE_HOME": str(tmp_path), "LOCALAPPDATA": str(tmp_path), "HOME": str(tmp_path)}
-    done = subprocess.run(
-        [sys.executable, "-c", PARTS],
-        env=os.environ | folders,
-        check=True,
-        capture_output=True,
-        text=True,
-        timeout=300,
-    )
-    assert done.stdout.split() == ["False"] * 3
 
 
 def test_a_cache_that_cannot_be_written_is_said_once(app: App, monkeypatch: pytest.MonkeyPatch) -> None:

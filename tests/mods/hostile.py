@@ -310,6 +310,14 @@ HOSTILE: dict[str, Hostile] = {
     "a kernel that imports": Hostile(
         law("import json\n    return 0.0, 0.0"), "The kernel of bad.law does not compile", (RUN,)
     ),
+    "a kernel that raises": Hostile(
+        law("if particles_mass > 0.0:\n        raise ValueError('no')\n    return 0.0, 0.0"),
+        "The kernel of bad.law failed: ValueError: no (bad/__init__.py, line",
+        (RUN,),
+    ),
+    "a kernel that returns too much": Hostile(
+        law("return 0.0, 0.0, 0.0"), "it must return a pair, the force (fx, fy) in kN", (RUN,)
+    ),
     "arrays that are a list": Hostile(
         law("return 0.0, 0.0", "def arrays(self, model): return [1]"), "a dictionary", (RUN,)
     ),

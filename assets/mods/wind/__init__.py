@@ -4,26 +4,16 @@ from __future__ import annotations
 
 import math
 
-from game.api import (
-    App,
-    Component,
-    Context,
-    Environment,
-    Field,
-    Law,
-    Model,
-    Particle,
-    Readout,
-    Vector,
-    compiled,
-)
+from game.api import App, Component, Context, Environment, Field, Law, Model, Particle, Readout, compiled
 
 DENSITY = 1.2  # kg/m³, of air
 
 
 class Air(Component):
     of = Environment
-    velocity: Field[Vector] = Field("m/s", shape=(2,), title="wind velocity", doc="Of the air, everywhere.")
+    velocity: Field[tuple[float, float]] = Field(
+        "m/s", shape=(2,), title="wind velocity", doc="Of the air, everywhere."
+    )
 
 
 class Sail(Component):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -38,7 +39,7 @@ from systems.collision.columns import (
     Report,
 )
 from systems.collision.system import REST_HEIGHT
-from systems.program.compiler import GeneratedModule, entries_to
+from systems.program.compiler import Choice, GeneratedModule, entries_to
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
 REPORTED_AT_ONCE = 512  # impacts; fetched before more are reported
@@ -145,7 +146,7 @@ class Discs:
     # --- time -------------------------------------------------------------------------------------
 
     def advance(self, until: float, most_events: int = 2**62) -> tuple[Reason, ImpactColumns]:
-        """Let everything happen up to a time (s), at most `most_events` events.
+        """Let everything happen up to a time (s), at most `most_events` events, and not for longer than Choice allows.
 
         Returns DONE or BUSY, and the impacts.
         """
@@ -156,7 +157,8 @@ class Discs:
             reason = self._go_on(float(until), min(left, max(WORK_AT_ONCE // (self.count + 1), 1)))
             if self.counts[Count.REPORTED]:
                 taken.append(self._take())
-            if reason is Reason.DONE or (reason is Reason.BUSY and self.counts[Count.EVENTS] >= last):
+            late = self.counts[Count.EVENTS] >= last or perf_counter() > Choice.deadline
+            if reason is Reason.DONE or (reason is Reason.BUSY and late):
                 pairs, details = (np.concatenate(parts) for parts in zip(*taken, strict=True))
                 time, impulse, loss = details[:, : Detail.X].T
                 return reason, ImpactColumns(pairs, time, impulse, loss, details[:, Detail.X :])

@@ -19,9 +19,10 @@ from components.model import Model
 from components.obstacles import obstacles
 from systems.base import REVIEW_INTERVAL, Event, StopReason
 from systems.collision.columns import FLIGHT, PILE_COUNTS, PILE_NUMBERS, Disc, Reason
-from systems.collision.free.discs import EVENTS, HORIZONS, Discs, state_on
+from systems.collision.free.discs import EVENTS, HORIZONS, Discs, ImpactColumns, state_on
 from systems.collision.impacts import MOST_KEPT, Impacts, TooManyImpacts
 from systems.entries import Measure
+from systems.program.compiler import Choice, Unfinished
 
 EVENTS_AT_ONCE = 2**18  # of which the impacts are gathered
 CHECK_INTERVAL = 128  # steps, at multiples of which a run may end at rest
@@ -96,6 +97,8 @@ class Flight:
     def discs(self) -> Discs:
         """The flying discs, in the present state of the model."""
         if not self._fresh:
+            self._found: deque[ImpactColumns] = deque()  # by a step that is not finished
+            self._happened = 0
             particles, clock = self.model.particles, self.model.clock
             self._flying = Discs(
                 particles.position,
@@ -200,34 +203,30 @@ class Flight:
     def _fly(self, target: float) -> Discs:
         """Advance the discs and record the impacts, the last ones where there are too many.
 
-        Where that is interrupted, or the impacts are more than anybody waits for, nothing has happened.
+        Raises Unfinished; and TooManyImpacts, after which nothing has happened.
         """
-        try:
-            discs, parts, happened = self._gathered(target)
-        except BaseException:
-            self._flying = None
-            raise
-        kept = sum(map(len, parts))
-        if happened:
-            self._impacts.record(np.concatenate(parts), happened - kept)
-            self.model.writable("clock.collisions")[0] = self.model.clock.collisions + happened
-        return discs
-
-    def _gathered(self, target: float) -> tuple[Discs, deque[NDArray[np.float64]], int]:
-        """The discs, advanced; their last impacts, in parts; and how many there were. Raises TooManyImpacts."""
-        discs, reason = self.discs, Reason.BUSY
-        parts: deque[NDArray[np.float64]] = deque()
-        kept = happened = 0
+        if self._fresh and self.discs.now > target:  # that step went further before it was left
+            self.bind()
+        discs, found, reason = self.discs, self._found, Reason.BUSY
         while reason is Reason.BUSY:
-            if happened > self._impacts.most_awaited:
-                raise TooManyImpacts(happened)
-            reason, found = discs.advance(target, EVENTS_AT_ONCE)
-            columns = (found.time, found.pairs, found.impulse, found.loss, found.point)
-            parts.append(np.column_stack(columns))
-            kept, happened = kept + len(found), happened + len(found)
-            while kept - len(parts[0]) >= MOST_KEPT:
-                kept -= len(parts.popleft())
-        return discs, parts, happened
+            reason, some = discs.advance(target, EVENTS_AT_ONCE)
+            found.append(some)
+            self._happened += len(some)
+            if self._happened > self._impacts.most_awaited:
+                self.bind()
+                raise TooManyImpacts
+            while sum(map(len, found)) - len(found[0]) >= MOST_KEPT:
+                found.popleft()
+            if reason is Reason.BUSY and self._pull is None and time.perf_counter() > Choice.deadline:
+                raise Unfinished
+        if happened := self._happened:
+            columns = [np.column_stack([f.time, f.pairs, f.impulse, f.loss, f.point]) for f in found]
+            kept = np.concatenate(columns)
+            self._impacts.record(kept, happened - len(kept))
+            self.model.writable("clock.collisions")[0] = self.model.clock.collisions + happened
+        found.clear()
+        self._happened = 0
+        return discs
 
     def _steps_until_rest(self, discs: Discs) -> float:
         """In how many steps a check will find everything at rest; infinite if it moves."""

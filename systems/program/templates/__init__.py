@@ -1,7 +1,7 @@
 """Templates: the source of step programs as far as it is the same for all models.
 
 A template is Python in which some words stand for others, which the writer puts in as it pastes a function into a
-program. Only numba ever runs it, and only there.
+program. It runs only there.
 
     *columns    the model's columns that the program takes, one after the other: particles_mobility, …
     *state      displacement, velocity, force, resisting, direction

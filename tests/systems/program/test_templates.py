@@ -11,7 +11,7 @@ from game import Session
 from systems.base import StopReason
 from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
 from systems.program.binding import StepRole, bind, by_role
-from systems.program.compiler import _meaning_of
+from systems.program.identity import meaning_of
 from systems.program.pasting import expanded, fragment, pasted
 from systems.program.program import _writer
 from systems.program.writer import FEW, MANY, VERY_MANY
@@ -97,7 +97,7 @@ def test_a_program_is_compiled_anew_when_an_entry_moves() -> None:
         WORK = 0
 
     Moved.__name__ = Stayed.__name__ = "Account"
-    assert _meaning_of([Moved]) != _meaning_of([Stayed])
+    assert meaning_of([Moved]) != meaning_of([Stayed])
 
 
 def test_entries_are_numbered_without_gaps() -> None:

@@ -1,0 +1,168 @@
+"""Faults of kernels that others write: found before a program runs, and named, in whichever form it runs."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from components.model import Model
+from systems.base import Integrator
+from systems.interpreter import NoPlainForm, plain_function
+from systems.kinds import Array, Kind, kind_of_dtype, typed
+from systems.program.binding import PROVIDED, Bound, ProgramError, shape_given
+from systems.program.compiler import Choice, Compile
+
+_RESULTS = {
+    "rods": "one number, the axial force (kN)",
+    "particles": "a pair, the force (fx, fy) in kN",
+    "pairs": "a pair, the force (fx, fy) on the first particle in kN",
+    "potential": "one number, the energy of two particles (kN·m)",
+    "branch": "one number, the branch that the rod is on",
+    "margin": "one number, positive while the rod stays on its branch",
+    "loads": "one number, the factor of the load",
+    "commit": "a pair, the new value of the column and the energy dissipated (kN·m)",
+    "event of rods": "one number, whose sign counts",
+    "event of particles": "one number, whose sign counts",
+}
+
+
+def _dtype_of(b: Bound, parameter: str, model: Model) -> Any:
+    """The type of the numbers that a kernel gets for a parameter; None for those that Pinjoint provides."""
+    if parameter in PROVIDED:
+        return None
+    if parameter in b.arrays:
+        return b.arrays[parameter].dtype
+    table, _, column = parameter.partition("_")
+    return model.tables[table].fields[column].storage
+
+
+def kinds_of(b: Bound, model: Model) -> tuple[Kind, ...]:
+    """The kinds of what a kernel gets."""
+    if b.each == "loads":
+        return "f", Array("f", 1), "i"
+
+    def kind_of(parameter: str) -> Kind:
+        dtype = _dtype_of(b, parameter, model)
+        kind: Kind = "f" if dtype is None else kind_of_dtype(dtype)
+        for width in reversed(shape_given(b, parameter, model)):
+            kind = (kind,) * width
+        return kind
+
+    return tuple(map(kind_of, b.parameters))
+
+
+def check_results(bound: Iterable[Bound], model: Model) -> None:
+    """Raise ProgramError for the first kernel of others that, interpreted, does not return what it must."""
+    for b in bound:
+        if not b.is_ours and (problem := _problem_interpreted(b, model)):
+            raise ProgramError(problem, b.system)
+
+
+def _problem_interpreted(b: Bound, model: Model) -> str:
+    try:
+        made = typed(b.function, kinds_of(b, model)).result
+    except NoPlainForm as reason:
+        if Choice.compile is not Compile.NEVER:
+            return ""  # it is compiled at once
+        return f"The kernel of {b.system.name} cannot be interpreted: {reason}; PINJOINT_COMPILE=never allows nothing else."
+    numbers = made if isinstance(made, tuple) else (made,)
+    if len(numbers) == _count(b) and all(isinstance(kind, str) and kind for kind in numbers):
+        return ""
+    nested = any(isinstance(kind, tuple) for kind in numbers)
+    said = "nothing" if not made else "tuples" if nested else f"{len(numbers)} number{'s' * (len(numbers) > 1)}"
+    return f"The kernel of {b.system.name} returns {said}; it must return {_RESULTS[b.purpose]}."
+
+
+def _count(b: Bound) -> int:
+    """How many numbers a kernel must return."""
+    return 2 if b.purpose in ("particles", "pairs", "commit") else 1
+
+
+def explain(
+    bound: Iterable[Bound], integrator: Integrator, model: Model, error: Exception, *, compiled: bool
+) -> ProgramError:
+    """Why a program failed: the first kernel that fails by itself or returns something of a wrong type."""
+    if isinstance(error, ProgramError):
+        return error
+    for b in bound:
+        problem = problem_of(b, model) if compiled else failure_of(b, error) if _lines(b, error) else ""
+        if problem:
+            return ProgramError(problem, b.system)
+    does = "does not compile" if compiled else "cannot be interpreted"
+    return ProgramError(f"The step program of {integrator.name} {does}: {_brief(error)}", integrator)
+
+
+def _lines(b: Bound, error: Exception) -> list[int]:
+    """The lines of a kernel in which an error was raised."""
+    code = plain_function(b.function).__code__
+    last = max((line for *_, line in code.co_lines() if line), default=0)
+    frames = traceback.extract_tb(error.__traceback__)
+    here = [f.lineno for f in frames if f.filename == code.co_filename and f.lineno]
+    return [line for line in here if code.co_firstlineno <= line <= last]
+
+
+def failure_of(b: Bound, error: Exception) -> str:
+    """An error that a kernel raised, as a sentence."""
+    code = plain_function(b.function).__code__
+    line = (_lines(b, error) or [code.co_firstlineno])[-1]
+    place = f"{'/'.join(code.co_filename.split('/')[-2:])}, line {line}"
+    return f"The kernel of {b.system.name} failed: {type(error).__name__}: {error} ({place})."
+
+
+def form_of(b: Bound, model: Model) -> Callable[..., Any]:
+    """A kernel as Python calls it with numbers: interpreted, or compiled where it has machine code only."""
+    try:
+        plain = typed(b.function, kinds_of(b, model)).plain
+    except NoPlainForm:
+        if b.is_ours:
+            return b.function
+        if Choice.compile is Compile.NEVER:
+            raise
+        from systems.machine_code import machine_code
+
+        compiled: Callable[..., Any] = machine_code(b.function)
+        return compiled
+    return plain if b.each != "loads" else lambda time, values, first: plain(time, values.tolist(), first)
+
+
+def problem_of(b: Bound, model: Model) -> str:
+    """The fault of a kernel, compiled by itself, as a sentence; "" if there is none."""
+    if Choice.compile is Compile.NEVER:
+        return "" if b.is_ours else _problem_interpreted(b, model)
+    try:
+        made = _result_type(b, model)
+    except Exception as failure:  # numba raises many kinds
+        return f"The kernel of {b.system.name} does not compile: {_brief(failure)}"
+    from numba import types
+
+    numbers = tuple(getattr(made, "types", (made,)))
+    if len(numbers) != _count(b) or not all(isinstance(n, types.Number | types.Boolean) for n in numbers):
+        return f"The kernel of {b.system.name} returns {made}; it must return {_RESULTS[b.purpose]}."
+    return ""
+
+
+def _brief(failure: Exception) -> str:
+    lines = [line.strip() for line in str(failure).splitlines() if line.strip()]
+    return f"{'; '.join(lines[1:4] or lines).rstrip('.')}."
+
+
+def _result_type(b: Bound, model: Model) -> Any:
+    """The numba type that a kernel returns when it is compiled by itself."""
+    from numba import types
+    from numba.np.numpy_support import from_dtype
+
+    from systems.machine_code import machine_code
+
+    def type_of(parameter: str) -> Any:
+        dtype = _dtype_of(b, parameter, model)
+        made: Any = types.float64 if dtype is None else from_dtype(dtype)
+        for width in reversed(shape_given(b, parameter, model)):
+            made = types.UniTuple(made, width)  # type: ignore[no-untyped-call]
+        return made
+
+    of_load = (types.float64, types.Array(types.float64, 1, "C", readonly=True), types.uint32)
+    signature = of_load if b.each == "loads" else tuple(map(type_of, b.parameters))
+    dispatcher = machine_code(b.function)
+    dispatcher.compile(signature)
+    return dispatcher.overloads[signature].signature.return_type

@@ -1,0 +1,182 @@
+"""Laws of mods in both forms: what may be interpreted, what is compiled at once, and faults that both tell alike."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from game import Session, mods
+from game.sweeps.batch_program import BatchProgram
+from systems.interpreter import NoPlainForm
+from systems.program.compiler import UNCOMPILED, Choice, Compile
+from tests.mods.conftest import Write
+from tests.mods.test_isolation import TRUSS
+
+LAW = """
+import math
+import numpy as np
+from game.api import Law, compiled
+from numba import njit
+
+{kernel}
+
+class Force(Law):
+    name = "apple.force"
+    each = "particles"
+    kernel = force
+    reads = ("particles.position", "particles.displacement", "particles.velocity", "particles.mass")
+
+    def arrays(self, model):
+        return {arrays}
+
+def plugin(app):
+    app.system(Force)
+"""
+
+
+@pytest.fixture
+def opened(write_mod: Write, monkeypatch: pytest.MonkeyPatch) -> Any:
+    def opened_in(form: Compile, kernel: str, arrays: str = "{}") -> Session:
+        monkeypatch.setattr(Choice, "compile", form)
+        return Session.open(TRUSS, mods=[write_mod("apple", LAW.format(kernel=kernel, arrays=arrays))])
+
+    return opened_in
+
+
+def is_interpreted(session: Session) -> bool:
+    return not session.simulation.programs.compiled.module.is_loaded
+
+
+INTERPRETED = """
+def factory(k):
+    @njit
+    def made(velocity):
+        return -k * velocity[0]
+    return made
+
+drag, half = factory(0.5), compiled(lambda x: 0.5 * x)
+
+@compiled
+def size(x, scale=2):
+    return abs(x) ** 1.5 * scale
+
+class Forces:
+    @compiled
+    def push(particles_mass, particles_velocity, particles_displacement, dt):
+        s = 0
+        for part in particles_displacement:
+            s += size(scale=half(part), x=part)
+        return drag(particles_velocity) + s, -0.1 * particles_mass ** 0.5 + dt // 1
+
+force = Forces.push
+"""
+
+
+def test_runs_begin_interpreted_and_end_in_the_same_bits(opened: Any) -> None:
+    """Kernels made by factories, in classes, of lambdas; called with keywords and defaults."""
+    session = opened(Compile.NEVER, INTERPRETED)
+    session.run(steps=30)
+    assert is_interpreted(session)
+    before = session.particles.displacement.tobytes()
+    session.undo()
+    session.simulation.programs.compiled.load()
+    session.run(steps=30)
+    assert not is_interpreted(session)
+    assert session.particles.displacement.tobytes() == before
+
+
+COMPILED = [
+    ("exec('def plain(particles_mass): return 0.1, 0.0')\nforce = compiled(plain)", "{}", "there is no source"),
+    (
+        "@njit(fastmath=True)\ndef force(particles_mass):\n    return 0.1, 0.0",
+        "{}",
+        "is compiled with fastmath",
+    ),
+    (
+        "@compiled\ndef force(particles_mass):\n    return np.float32(0.1), 0.0",
+        "{}",
+        "a call of 'np.float32' in line 9",
+    ),
+    (
+        "@compiled\ndef force(code):\n    return code - 0.5, 0.0",
+        "{'code': np.zeros(3, dtype=np.uint8)}",
+        "is given numbers of the type uint8",
+    ),
+]
+
+
+@pytest.mark.parametrize(("kernel", "arrays", "said"), COMPILED[:2])
+def test_what_could_differ_interpreted_is_compiled_at_once(
+    opened: Any, kernel: str, arrays: str, said: str
+) -> None:
+    session = opened(Compile.SOON, kernel, arrays)
+    assert session.run(steps=5) == "time reached"
+    assert not is_interpreted(session)
+    assert not UNCOMPILED
+
+
+@pytest.mark.parametrize(("kernel", "arrays", "said"), COMPILED)
+def test_without_a_compiler_it_is_named(opened: Any, kernel: str, arrays: str, said: str) -> None:
+    session = opened(Compile.NEVER, kernel, arrays)
+    with pytest.raises(mods.ModError, match=r"The kernel of apple\.force cannot be interpreted: ") as caught:
+        session.run(steps=5)
+    assert said in str(caught.value)
+    assert "PINJOINT_COMPILE=never" in str(caught.value)
+    assert session.run(steps=5) == "time reached"
+
+
+def test_sweeps_of_what_could_differ_are_compiled_at_once(opened: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    session = opened(Compile.SOON, COMPILED[1][0])
+    module = session.simulation.programs.compiled.module
+    monkeypatch.setattr(module, "_compiled", False)
+    variants = BatchProgram(session.simulation.programs.compiled, 1)
+    monkeypatch.setattr(Choice, "compile", Compile.NEVER)
+    with pytest.raises(NoPlainForm, match="is compiled with fastmath"):
+        _ = variants._module.form
+
+
+FAULTS = [
+    ("return particles_displacement[0] - particles_displacement[0], particles_mass, 0.0", "it must return a pair"),
+    ("return particles_displacement", ""),
+    ("return (0.0 * particles_mass) ** -2, 0.0", "failed: ZeroDivisionError"),
+    ("return particles_displacement[int(particles_mass) + 5], 0.0", "failed: IndexError: tuple index out of range"),
+    ("if particles_displacement[0] > 1e-7:\n        raise ValueError('x')\n    return 0.0, 0.0", "failed: ValueError: x"),
+    ("assert particles_displacement[0] < 1e-7, 'too far'\n    return 0.0, 0.0", "failed: AssertionError: too far"),
+    ("return (0.5e-7 - particles_displacement[0]) ** 0.5, 0.0", "gave nan for particle C"),
+    ("return 0.1 / (particles_mass - particles_mass), 0.0", "gave inf for particle A"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("form", "body", "said"),
+    [
+        *((Compile.NEVER, *fault) for fault in FAULTS),
+        *((Compile.SOON, *fault) for fault in FAULTS if "raise" in fault[0]),
+        *((Compile.ALWAYS, *fault) for fault in FAULTS if "**" in fault[0]),
+    ],
+)
+def test_faults_are_told_alike(opened: Any, form: Compile, body: str, said: str) -> None:
+    if form is Compile.NEVER and ("raise" in body or "assert" in body):
+        said = "cannot be interpreted: a statement"
+    kernel = f"@compiled\ndef force(particles_displacement, particles_mass):\n    {body}"
+    session = opened(form, kernel)
+    if not said:
+        assert session.run(steps=5) == "time reached"
+        return
+    with pytest.raises(mods.ModError, match="The mod 'apple' was switched off: ") as caught:
+        session.run(steps=200)
+    assert said in str(caught.value)
+    assert "apple" in str(caught.value)
+    assert session.run(steps=5) == "time reached"
+
+
+def test_arrays_of_another_type_are_heeded(opened: Any) -> None:
+    kernel = "@compiled\ndef force(power):\n    return 0.001 * power, 0.0"
+    arrays = "{'power': np.ones(3, dtype=float if model.particles.mass[2] == 2.5 else int)}"
+    session = opened(Compile.SOON, kernel, arrays)
+    session.run(steps=5)
+    assert is_interpreted(session)
+    session.particles["C"].mass = 2.5
+    session.run(steps=5)
+    assert not is_interpreted(session)
