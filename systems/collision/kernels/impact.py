@@ -18,14 +18,8 @@ from systems.collision.kernels.projection import (
     push_apart,
 )
 
-REFLECTIONS_BEFORE_JAM_TEST = (
-    256  # in one impact, after which, and after twice as many …, a test shows if they can end
-)
-MOST_WORK = (
-    1e8  # on one impact, as `project` counts it, about a second; after it, or where reflections never end, the
-)
-# rest of the impact is plastic
-MARGINAL_WORK = 100.0  # on each reflection, besides its projection
+REFLECTIONS_BEFORE_JAM_TEST = 256  # in one impact, after which a test shows whether they can ever end
+MOST_REFLECTIONS = 1000000  # after these, or where they never end, the rest of the impact is plastic
 
 
 @compiled
@@ -63,13 +57,9 @@ def _respond_alone(restitution, group):
 def _reflect(members, count, group):
     """The elastic impact."""
     contacts, motion, start = group.contacts, group.motion, group.start
-    turn, test, work = 0, REFLECTIONS_BEFORE_JAM_TEST, 0.0
-    while work < MOST_WORK:
-        if turn == test:
-            if _is_jammed(members, count, group):
-                break
-            test = 2 * test
-        turn += 1
+    for turn in range(MOST_REFLECTIONS):
+        if turn == REFLECTIONS_BEFORE_JAM_TEST and _is_jammed(members, count, group):
+            break
         approaching = 0
         for c in range(count):
             contacts[c, Contact.IMPULSE] = 0.0
@@ -79,7 +69,7 @@ def _reflect(members, count, group):
                 approaching += 1
         if approaching == 0:
             return
-        work += MARGINAL_WORK + project(members, approaching, 0.0, MOST_SWEEPS, group)
+        project(members, approaching, 0.0, MOST_SWEEPS, group)
         for m in range(members):
             for d in range(2):
                 motion[m, d] += motion[m, d] - start[m, d]

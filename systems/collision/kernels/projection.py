@@ -85,36 +85,31 @@ def project(members, active, tolerance, most, group):
     """Project the motion for the first `active` contacts of marks[ACTIVE]; impulses in column IMPULSE.
 
     tolerance: rate at which a contact of a large group may still close. most: sweeps over its contacts. Large groups
-    start from the impulses that IMPULSE holds, small ones from none. Returns the work that this took, about 1e-8 s each:
-    contacts relaxed, and entries of the matrix solved.
+    start from the impulses that IMPULSE holds, small ones from none.
     """
     copy_motion(group.motion, group.start, members)
-    solved = 0
     if active <= DIRECT:
         for k in range(active):
             c = group.marks[Mark.ACTIVE, k]
             group.contacts[c, Contact.IMPULSE] = 0.0
             group.marks[Mark.STATE, c] = IDLE
-        solved = _solve_by_active_set(members, active, group)
+        _solve_by_active_set(members, active, group)
         tolerance = 0.0
     else:
         for k in range(active):
             c = group.marks[Mark.ACTIVE, k]
             push_apart(c, group.contacts[c, Contact.IMPULSE], group)
-    return float(solved * active * active + 2 * active * sweep(active, most, tolerance, group))
+    sweep(active, most, tolerance, group)
 
 
 @compiled
 def _solve_by_active_set(members, active, group):
-    """Non-negative least squares after Lawson and Hanson, Solving Least Squares Problems (1974), chapter 23.
-
-    Returns how often the chosen contacts changed.
-    """
+    """Non-negative least squares after Lawson and Hanson, Solving Least Squares Problems (1974), chapter 23."""
     fitted = 0
-    for turn in range(8 * DIRECT):
+    for _ in range(8 * DIRECT):
         worst = _worst(active, group)
         if worst < 0:
-            return turn
+            return
         group.marks[Mark.CHOSEN, fitted] = worst
         group.marks[Mark.STATE, worst] = FITTED
         fitted = _fit(fitted + 1, group)
@@ -122,7 +117,6 @@ def _solve_by_active_set(members, active, group):
         for r in range(fitted):
             c = group.marks[Mark.CHOSEN, r]
             push_apart(c, group.contacts[c, Contact.IMPULSE], group)
-    return 8 * DIRECT
 
 
 @compiled
@@ -206,7 +200,7 @@ def sweep(active, most, tolerance, group):
     """Gauss–Seidel, to and fro, from the impulses so far, until rates change by less than the tolerance.
 
     Accelerated by conjugate directions: Silcowitz, Niebe, Erleben, "A nonsmooth nonlinear conjugate gradient method for
-    interactive contact force problems", Vis. Comput. 26 (2010). Returns how many sweeps there were.
+    interactive contact force problems", Vis. Comput. 26 (2010).
     """
     contacts, size = group.contacts, 0.0
     for turn in range(most):
@@ -215,7 +209,7 @@ def sweep(active, most, tolerance, group):
             contacts[c, Contact.PREVIOUS] = contacts[c, Contact.IMPULSE]
         settled = _relax_all(active, 1, tolerance, group)
         if settled:
-            return turn + 1
+            return
         _relax_all(active, -1, tolerance, group)
         previous, size = size, 0.0
         for k in range(active):
@@ -232,7 +226,6 @@ def sweep(active, most, tolerance, group):
             if more != 0.0:
                 contacts[c, Contact.IMPULSE] += more
                 push_apart(c, more, group)
-    return most
 
 
 @compiled
