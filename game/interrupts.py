@@ -89,8 +89,9 @@ def is_persons(error: BaseException) -> bool:
     """True for an interrupt by the person; False for other errors, and for a KeyboardInterrupt that code raised."""
     if not isinstance(error, KeyboardInterrupt):
         return False
-    ours = getattr(signal.getsignal(signal.SIGINT), "__module__", "") == __name__  # it raises nothing else
-    return isinstance(error, Interrupt) or not ours
+    handler = signal.getsignal(signal.SIGINT)
+    ours = getattr(handler, "__module__", "") == __name__  # it raises nothing else
+    return isinstance(error, Interrupt) or not (ours or handler is signal.SIG_IGN)  # ignored: none can come
 
 
 def ended_with(status: int) -> int:
