@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.model import Model
@@ -25,6 +27,7 @@ MOST_OF_HEIGHT = 0.45  # of the window that the equations and the table take at 
 LARGE = 500  # rods; work on larger structures is announced in a picture first
 LOW = 1.8  # width / height of a place from which a structure stands beside its caption
 LEAST_WIDTH, LEAST_HEIGHT, LEAST_LOW = 140.0, 160.0, 90.0  # points of a set; below or beside its caption
+MOVED = 0.08  # of the size of a structure: about what drawn displacements add to it
 CAPTION, SCALE, MARGIN = 66.0, 28.0, 40.0  # points above, below and at most about a structure in its set
 
 
@@ -238,13 +241,17 @@ def _place(view: View, viewport: Viewport, ratio: float) -> None:
 def _fit(model: Model, view: View) -> None:
     """Show the whole model below or, in a low place, beside the caption, which grows from part to part.
 
-    Around its original positions, so that the picture does not depend on how far frames have moved it.
+    Around its original positions and a little more, so that the picture does not depend on how far frames have moved it.
     """
     v, u = view.camera.viewport, view.pixel_ratio
     left, above = (v.width // 3, 0) if _is_low(v) else (0, round(min(CAPTION * u, 0.4 * v.height)))
     below = round(min(SCALE * u, 0.1 * v.height))
     within = Viewport(v.left + left, v.top + above, v.width - left, max(v.height - above - below, 1))
-    view.camera.fit(model.particles.position, min(MARGIN, 0.2 * v.height / u), within, u)
+    original = model.particles.position
+    reserve = MOVED * float(np.ptp(original, axis=0).max()) if len(original) else 0.0
+    view.camera.fit(
+        np.concatenate([original - reserve, original + reserve]), min(MARGIN, 0.2 * v.height / u), within, u
+    )
 
 
 def _readable(place: Viewport, ratio: float) -> bool:

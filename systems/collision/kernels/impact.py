@@ -18,8 +18,12 @@ from systems.collision.kernels.projection import (
     push_apart,
 )
 
-REFLECTIONS_BEFORE_JAM_TEST = 256  # in one impact, after which a test shows whether they can ever end
-MOST_REFLECTIONS = 1000000  # after these, or where they never end, the rest of the impact is plastic
+REFLECTIONS_BEFORE_JAM_TEST = (
+    256  # after which, and after twice as many, …, a test shows whether they can ever end
+)
+MOST_REFLECTIONS = (
+    1000000  # of contacts; after these, or where they never end, the rest of the impact is plastic
+)
 
 
 @compiled
@@ -57,9 +61,12 @@ def _respond_alone(restitution, group):
 def _reflect(members, count, group):
     """The elastic impact."""
     contacts, motion, start = group.contacts, group.motion, group.start
-    for turn in range(MOST_REFLECTIONS):
-        if turn == REFLECTIONS_BEFORE_JAM_TEST and _is_jammed(members, count, group):
-            break
+    test = REFLECTIONS_BEFORE_JAM_TEST
+    for turn in range(MOST_REFLECTIONS // count):
+        if turn == test:
+            test = 2 * turn
+            if _is_jammed(members, count, group):
+                break
         approaching = 0
         for c in range(count):
             contacts[c, Contact.IMPULSE] = 0.0
