@@ -358,22 +358,22 @@ class _Rewriting(ast.NodeTransformer):
         if isinstance(node.right, ast.Constant) and node.right.value != 0:
             return node
         first, second = self._twice(node.right)
-        divided, otherwise = ast.BinOp(node.left, ast.Div(), second), _call("quotient__", node.left, second)
+        divided, otherwise = ast.BinOp(node.left, ast.Div(), second), call_of("quotient__", node.left, second)
         return ast.copy_location(ast.IfExp(first, divided, otherwise), node)
 
     def _raised(self, node: ast.BinOp) -> ast.expr:
-        exponent = _constant(node.right)
+        exponent = literal(node.right)
         if exponent == 2:
             first, second = self._twice(node.left)
             return ast.copy_location(ast.BinOp(first, ast.Mult(), second), node)
         if exponent == -1.0 and isinstance(exponent, float):
             return self._divided(ast.copy_location(ast.BinOp(ast.Constant(1.0), ast.Div(), node.left), node))
         if exponent == 0.5:
-            return ast.copy_location(_call("half_power__", node.left), node)
-        if _constant(node.left) == 2.0 and exponent is None:
-            return ast.copy_location(_call("exp2__", node.right), node)
-        whole = isinstance(exponent, int) and not isinstance(_constant(node.left), int)
-        return ast.copy_location(_call("whole_power__" if whole else "power__", node.left, node.right), node)
+            return ast.copy_location(call_of("half_power__", node.left), node)
+        if literal(node.left) == 2.0 and exponent is None:
+            return ast.copy_location(call_of("exp2__", node.right), node)
+        whole = isinstance(exponent, int) and not isinstance(literal(node.left), int)
+        return ast.copy_location(call_of("whole_power__" if whole else "power__", node.left, node.right), node)
 
     def visit_AugAssign(self, node: ast.AugAssign) -> ast.stmt:
         if not isinstance(node.op, ast.Div | ast.Pow):
@@ -389,7 +389,7 @@ class _Rewriting(ast.NodeTransformer):
         called = self._value(node.func)
         if called is math.sqrt or called is np.sqrt:
             first, second = self._twice(self.visit(node.args[0]))
-            computed = ast.IfExp(_at_least_zero(first), _call("root__", second), ast.Constant(_NAN))
+            computed = ast.IfExp(_at_least_zero(first), call_of("root__", second), ast.Constant(_NAN))
             return ast.copy_location(computed, node)
         if called is math.floor and len(node.args) == 1:
             return self._floor(node)
@@ -400,7 +400,7 @@ class _Rewriting(ast.NodeTransformer):
             column = node.func.value  # a[:, k]
             if isinstance(column, ast.Subscript) and isinstance(column.slice, ast.Tuple):
                 rows, place = self.visit(column.value), self.visit(column.slice.elts[1])
-                return ast.copy_location(_call("sum__", rows, place), node)
+                return ast.copy_location(call_of("sum__", rows, place), node)
         self.generic_visit(node)
         if name == "int" and len(node.args) == 1:
             node.func = ast.Name("whole__", ast.Load())
@@ -410,7 +410,7 @@ class _Rewriting(ast.NodeTransformer):
         """As _whole(), without a call."""
         first, second = self._twice(self.visit(node.args[0]))
         within = ast.Compare(ast.Constant(-_MOST), [ast.Lt(), ast.Lt()], [first, ast.Constant(_MOST)])
-        return ast.copy_location(ast.IfExp(within, _call("floor__", second), ast.Constant(_LEAST)), node)
+        return ast.copy_location(ast.IfExp(within, call_of("floor__", second), ast.Constant(_LEAST)), node)
 
     def _least_or_most(self, node: ast.Call, better: ast.cmpop) -> ast.expr:
         """The second argument where it is better, else the first; numbers that are none never are."""
@@ -435,16 +435,16 @@ class _Rewriting(ast.NodeTransformer):
 
     def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
         if isinstance(node.value, ast.Attribute) and node.value.attr == "shape":
-            depth = _constant(node.slice)
+            depth = literal(node.slice)
             if isinstance(depth, int):
                 row = self.visit(node.value.value)
                 for _ in range(depth):
                     row = ast.Subscript(row, ast.Constant(0), ast.Load())
-                return ast.copy_location(_call("len", row), node)
+                return ast.copy_location(call_of("len", row), node)
         if isinstance(node.slice, ast.Slice):
             self.generic_visit(node)
             ends = [part or ast.Constant(None) for part in (node.slice.lower, node.slice.upper)]
-            return ast.copy_location(_call("part__", node.value, *ends), node)
+            return ast.copy_location(call_of("part__", node.value, *ends), node)
         if isinstance(node.slice, ast.Tuple):
             *outer, last = (self.visit(index) for index in node.slice.elts)
             row = self.visit(node.value)
@@ -459,7 +459,7 @@ class _Rewriting(ast.NodeTransformer):
         if isinstance(target, ast.Subscript) and isinstance(target.slice, ast.Slice):
             span = target.slice
             ends = [part or ast.Constant(None) for part in (span.lower, span.upper, span.step)]
-            filled = ast.Expr(_call("fill__", target.value, _call("slice", *ends), node.value))
+            filled = ast.Expr(call_of("fill__", target.value, call_of("slice", *ends), node.value))
             rewritten: ast.stmt = self.visit(ast.fix_missing_locations(ast.copy_location(filled, node)))
             return rewritten
         self.generic_visit(node)
@@ -478,16 +478,18 @@ def _plain(value: Any) -> Any:
     return int(value) if isinstance(value, IntEnum) else value
 
 
-def _constant(node: ast.expr) -> Any:
+def literal(node: ast.expr) -> Any:
+    """The number, or another constant, that an expression is; None if it is none."""
     if isinstance(node, ast.Constant):
         return node.value
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-        value = _constant(node.operand)
+        value = literal(node.operand)
         return -value if isinstance(value, int | float) else None
     return None
 
 
-def _call(name: str, *arguments: ast.expr) -> ast.Call:
+def call_of(name: str, *arguments: ast.expr) -> ast.Call:
+    """The call of a function by name."""
     return ast.Call(ast.Name(name, ast.Load()), list(arguments), [])
 
 

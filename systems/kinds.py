@@ -25,7 +25,16 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from systems.interpreter import NoPlainForm, definition, library_of, outside_of, plain_function, rewritten
+from systems.interpreter import (
+    NoPlainForm,
+    call_of,
+    definition,
+    library_of,
+    literal,
+    outside_of,
+    plain_function,
+    rewritten,
+)
 
 NOTHING = ""
 MOST_POWER = 64  # constant whole exponents, by which machine code multiplies
@@ -177,18 +186,6 @@ def _joined(a: Kind, b: Kind) -> Kind | None:
     if len(kinds) > 1 and kinds != {"i", "f"}:
         return None
     return min(kinds).upper() if a.isupper() and b.isupper() else min(kinds)
-
-
-def _call(name: str, *arguments: ast.expr) -> ast.Call:
-    return ast.Call(ast.Name(name, ast.Load()), list(arguments), [])
-
-
-def _literal(node: ast.expr) -> Any:
-    """The number that an expression is, if it is one; None otherwise."""
-    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-        value = _literal(node.operand)
-        return None if value is None else -value
-    return node.value if isinstance(node, ast.Constant) else None
 
 
 class _Inference:
@@ -365,7 +362,7 @@ class _Inference:
             made.test, _ = self._tested(copy.deepcopy(node.test), head)
 
         made = copy.copy(node)
-        return self._loop(node, made, env, begin, endless=_literal(node.test) is True)
+        return self._loop(node, made, env, begin, endless=literal(node.test) is True)
 
     def _do_For(self, node: ast.For, env: Environment) -> tuple[list[ast.stmt], Environment | None]:
         made = copy.copy(node)
@@ -376,7 +373,7 @@ class _Inference:
             ends = [self._read(end, env) for end in node.iter.args]
             if node.iter.keywords or not all(_low(kind) == "i" for _, kind in ends):
                 self._refuse(node, "a range of what are no whole numbers")
-            made.iter, each = _call("range", *(end for end, _ in ends)), "i"
+            made.iter, each = call_of("range", *(end for end, _ in ends)), "i"
         else:
             made.iter, kind = self._read(node.iter, env)
             kinds = {*kind} if isinstance(kind, tuple) else set()
@@ -446,8 +443,8 @@ class _Inference:
         if _low(kind) == _low(wanted):
             return value
         if isinstance(wanted, str):
-            number = _literal(value)
-            made: ast.expr = _call("float__", value) if number is None else ast.Constant(float(number))
+            number = literal(value)
+            made: ast.expr = call_of("float__", value) if number is None else ast.Constant(float(number))
             return ast.copy_location(made, value) if hasattr(value, "lineno") else made
         if not isinstance(value, ast.Tuple):
             self._refuse(node, "pairs of several kinds")
@@ -498,13 +495,13 @@ class _Inference:
             return node, "B" if kind.isupper() else "b"
         if isinstance(node.op, ast.Invert) or kind.lower() == "b":
             self._refuse(node, "an operation on bits")
-        number = _literal(node)
+        number = literal(node)
         made = node if number is None else ast.copy_location(ast.Constant(number), node)
         return self._whole(made, kind), kind
 
     def _whole(self, node: ast.expr, kind: str) -> ast.expr:
         """A number; whole ones of at most 64 bits."""
-        return node if kind.lower() == "f" or _literal(node) is not None else _call("in_64_bits__", node)
+        return node if kind.lower() == "f" or literal(node) is not None else call_of("in_64_bits__", node)
 
     def _of_BinOp(self, node: ast.BinOp, env: Environment) -> Rewritten:
         if isinstance(node.op, ast.Pow):
@@ -519,10 +516,10 @@ class _Inference:
             if "b" in (a.lower(), b.lower()):
                 self._refuse(node, "a quotient of truth values")
             helper = "floor_divided__" if isinstance(node.op, ast.FloorDiv) else "remainder__"
-            return _call(helper, left, right), kind
+            return call_of(helper, left, right), kind
         if type(node.op) not in _ARITHMETIC:
             self._refuse(node, f"an operation '{type(node.op).__name__.lower()}'")
-        x, y = _literal(left), _literal(right)
+        x, y = literal(left), literal(right)
         if x is None or y is None or (y == 0 and isinstance(node.op, ast.Div)):
             return self._whole(ast.BinOp(left, node.op, right), kind), kind
         number = _ARITHMETIC[type(node.op)](x, y)  # as Python itself does, before numba comes to see it
@@ -536,14 +533,14 @@ class _Inference:
     ) -> Rewritten:
         """A power. Where the optimiser knows base or exponent, it takes other ways to compute it."""
         (x, of_x), (y, of_y) = base, exponent
-        known, number = _literal(x), _literal(y)
+        known, number = literal(x), literal(y)
         if of_y.lower() == "i" and isinstance(number, int) and known is None:
             if of_x.lower() == "i" and 0 <= number <= MOST_POWER:
-                return _call("in_64_bits__", _call("int_power__", x, y)), "i"
+                return call_of("in_64_bits__", call_of("int_power__", x, y)), "i"
             if of_x.lower() == "f" and 0 <= number <= MOST_POWER:
                 return ast.BinOp(x, ast.Pow(), y), "f"
             if of_x.lower() == "f" and -MOST_POWER <= number < 0:
-                return _call("inverse_power__", x, y), "f"
+                return call_of("inverse_power__", x, y), "f"
         elif of_y.lower() == "f" and of_x.lower() in ("i", "f") and (known is None or number is None):
             exact = known is None or known == 2 or (known > 0 and math.frexp(known)[0] != 0.5)
             varies = of_y.islower() and not self._has_choice(y) and (known is not None or of_x.islower())
@@ -603,7 +600,7 @@ class _Inference:
             node.slice = made[0] if len(made) == 1 else ast.Tuple(made, ast.Load())
             return node, kind.kind
         node.slice, of_index = self._scalar(node.slice, env)
-        place = _literal(node.slice)
+        place = literal(node.slice)
         if isinstance(kind, tuple) and of_index.lower() == "i":
             if isinstance(place, int) and -len(kind) <= place < len(kind):
                 return node, kind[place]
@@ -645,7 +642,7 @@ class _Inference:
         found = typed(kernel, kinds)
         name = f"kernel{len(self._called)}__"
         self._called[name] = found.plain
-        return _call(name, *(argument for argument, _ in read)), found.result
+        return call_of(name, *(argument for argument, _ in read)), found.result
 
     def _of_library(self, node: ast.Call, library: Any, name: str, env: Environment) -> Rewritten:
         """A function of floats."""
@@ -665,7 +662,7 @@ class _Inference:
                 self._refuse(node, f"a call of '{name}' with a constant, or with what is no float")
         node.args = [self._as(node, value, kind, "f") for value, kind in read]
         if result == "i":
-            return _call(f"checked_{name}__", *node.args), "i"
+            return call_of(f"checked_{name}__", *node.args), "i"
         return node, result.upper() if all(kind.isupper() for _, kind in read) else result
 
     def _single(self, node: ast.Call, env: Environment) -> tuple[ast.expr, str]:
@@ -677,30 +674,30 @@ class _Inference:
         argument, kind = self._single(node, env)
         if kind.lower() == "b":
             self._refuse(node, "the size of a truth value")
-        return self._whole(_call("abs", argument), kind), kind
+        return self._whole(call_of("abs", argument), kind), kind
 
     def _call_float(self, node: ast.Call, env: Environment) -> Rewritten:
         argument, kind = self._single(node, env)
         if kind.lower() == "b":
             self._refuse(node, "a float from a truth value")
-        return _call("float__", argument), "F" if kind.isupper() else "f"
+        return call_of("float__", argument), "F" if kind.isupper() else "f"
 
     def _call_int(self, node: ast.Call, env: Environment) -> Rewritten:
         argument, kind = self._single(node, env)
         if kind == "F":  # beyond 64 bits it would be whatever the optimiser likes
             self._refuse(node, "a whole number from a constant")
-        made = argument if kind.lower() == "i" else _call("checked_int__", argument)
+        made = argument if kind.lower() == "i" else call_of("checked_int__", argument)
         return made, "I" if kind.isupper() else "i"
 
     def _call_bool(self, node: ast.Call, env: Environment) -> Rewritten:
         argument, kind = self._single(node, env)
-        return _call("bool", argument), "B" if kind.isupper() else "b"
+        return call_of("bool", argument), "B" if kind.isupper() else "b"
 
     def _call_round(self, node: ast.Call, env: Environment) -> Rewritten:
         argument, kind = self._single(node, env)
         if kind != "f":
             self._refuse(node, "a rounded constant or whole number")
-        return _call("checked_round__", argument), "i"
+        return call_of("checked_round__", argument), "i"
 
     def _call_min(self, node: ast.Call, env: Environment) -> Rewritten:
         node.args, kind = self._scalars(node.args, env)
@@ -719,12 +716,12 @@ class _Inference:
         node.args, kind = self._scalars(node.args, env)
         if len(node.args) != 2 or kind.lower() == "b":
             self._refuse(node, "a quotient")
-        return _call("divided__", *node.args), (kind, kind)
+        return call_of("divided__", *node.args), (kind, kind)
 
     def _call_len(self, node: ast.Call, env: Environment) -> Rewritten:
         value, kind = self._read(node.args[0], env)
         if isinstance(kind, tuple):
             return ast.Constant(len(kind)), "I"
         if isinstance(kind, Array):
-            return _call("len", value), "i"
+            return call_of("len", value), "i"
         self._refuse(node, "the length of what has none")

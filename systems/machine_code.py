@@ -5,7 +5,7 @@ is called from Python. Here a part is only translated to LLVM code; the entry is
 and compiled as a whole, in a fraction of the time. Only the entry's parts call one another, so that arguments which a
 part does not use are dropped: an array has nine, which would cost steps of a few rods a third of their time.
 
-This uses inner classes of numba (below `dispatcher_of`). With the environment variable PINJOINT_PLAIN_NUMBA=1 all
+This uses inner classes of numba (from `_MachineCode` on). With the environment variable PINJOINT_PLAIN_NUMBA=1 all
 kernels are compiled by numba's own `njit` with the same options: programs compute the same bits and take longer to
 compile.
 """
@@ -51,7 +51,6 @@ from systems import cache
 from systems.kernels import PLAIN, Kernel, Use
 
 _PROCESSOR = repr(cpu_target.target_context.codegen().magic_tuple())
-
 
 _NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _FURTHER: dict[Use, dict[str, Any]] = {
