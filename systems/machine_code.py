@@ -19,6 +19,7 @@ import os
 import pickle
 import sys
 from collections.abc import Callable, Iterable, Mapping
+from functools import lru_cache
 from types import ModuleType
 from typing import Any
 
@@ -34,7 +35,7 @@ from numba.core.compiler_machinery import PassManager
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.serialize import dumps
 from numba.core.typed_passes import InlineOverloads, NopythonRewrites
-from numba.core.types import Function, unliteral
+from numba.core.types import Function, WrapperAddressProtocol, unliteral
 from numba.core.typing.context import Context
 from numba.core.untyped_passes import (
     FindLiterallyCalls,
@@ -128,6 +129,28 @@ def compile_for(function: Any, types: bytes, name: str) -> None:
         for given in pickle.loads(types)[name]:
             if given not in function.overloads:
                 function.compile(given)
+
+
+class _Addressed(WrapperAddressProtocol):
+    """A compiled function that others call by its address, so that it is no part of them."""
+
+    def __init__(self, function: Any) -> None:
+        (self._signature,) = function.nopython_signatures
+        made = function.get_compile_result(self._signature)
+        self._address = made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name)
+
+    def __wrapper_address__(self) -> int:
+        return int(self._address)
+
+    def signature(self) -> Any:
+        """The types of its arguments and of what it returns."""
+        return self._signature
+
+
+@lru_cache
+def addressed(function: Any) -> Any:
+    """What to give a compiled function that calls this one, which was compiled for one kind of arguments."""
+    return _Addressed(function)
 
 
 def _is_compiled(function: Any) -> bool:
