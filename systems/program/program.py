@@ -298,6 +298,8 @@ class Program:
         }
         kept |= {name: self.columns[name] for name in self._writer.written}
         copies = {f"kept_{name}": np.zeros_like(array) for name, array in kept.items()}
+        copies |= {f"own_{name}": np.zeros_like(kept["force"]) for name in ("acceleration", "support")}
+        copies["every"] = np.arange(self._rows("particles"))
         self._arguments = (*self._after("loads_end", "drive", **copies), *self._columns)
 
     def _bind_observed(self) -> None:

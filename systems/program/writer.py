@@ -54,6 +54,7 @@ _OBSERVED = (
     *("fixed", "tension", "compression", "yields"),  # read
 )
 _ENTRIES = (Account, Control, Mark, Measure, Search, Side, StopReason)
+_KEPT = ("kept_force", "kept_resisting", "kept_power", "own_acceleration", "own_support", "every")
 _DRIVEN_ENTRIES = (Order, Real, Whole)
 PUSHED = ("support", "unpushed")  # arrays of programs whose particles may meet
 
@@ -229,7 +230,7 @@ class Writer:
             "scratch": self.scratch,
             "bounds": ("breaks", "until", "landing"),
             "limits": self._limits,
-            "kept": ("kept_force", "kept_resisting", "kept_power", *(f"kept_{name}" for name in self.written)),
+            "kept": (*_KEPT, *(f"kept_{name}" for name in self.written)),
             "observed": _OBSERVED,
             "columns": self.columns,
         }

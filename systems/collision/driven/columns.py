@@ -77,12 +77,11 @@ class Whole(IntEnum):
     REGULAR = 19  # 1: the slope of the search is that of both ends of the step
     TRIES = 20  # of the end of a step that ends at an impact
     MET = 21  # 1: it ends at an impact
-    LOOSE = 22  # particles that are no nodes
-    BOUNCY = 23  # 1: some restitution is below 1
-    IMPACTS = 24  # of the run
-    REPORTED = 25
-    STEPS = 26  # to take at once
-    EXAMINE = 27  # 1: the next step is one that is looked through, though nothing seems near
+    BOUNCY = 22  # 1: some restitution is below 1
+    REPORTED = 23  # impacts
+    STEPS = 24  # to take at once
+    PUSHED = 25  # 1: contact forces acted in the last step
+    EXAMINE = 26  # 1: the next step is one that is looked through, though nothing seems near
 
 
 class Real(IntEnum):
@@ -127,15 +126,16 @@ class Driven(NamedTuple):
     """Driven particles, n of them, the obstacles after them, and the step that they are in the midst of.
 
     Of the document: position, span, weight (inverse mass, 1/kg, 0 where held), shape (n + obstacles, 2); radius, size
-    (the radius, ∞ for obstacles), restitution, node (1: of a structure), shape (n + obstacles,); asleep, and pull,
+    (the radius, ∞ for obstacles), restitution, node (1: of a structure), shape (n + obstacles,); loose: the particles that are no nodes; asleep, and pull,
     acceleration by constant forces (m/s²), shape (n,).
-    Of the list: pairs, shape (p, 2), and of each pair lasting (1: a persistent contact), forces (N), normal, slow (speed
+    Of the list: near: the particles in pairs; pairs, shape (p, 2), and of each pair lasting (1: a persistent contact), forces (N), normal, slow (speed
     below which it stays in contact, m/s), rate (at which it opens, m/s); listed: displacements when it was made, margin
     (m): how far each particle may move from there.
     Of the step: before, velocity: the state it begins with; ahead, ahead_speed: where it leads, as foreseen;
     acceleration, at its start; path_error (m); support: contact forces (kN); kept: control and account at the start.
     Of the search for contact forces: chosen, the pairs in persistent contact; search, with the rows of Tried; start, end:
-    their normals at both ends of the step; slope, learnt (m/N); matrix, sides: work space.
+    their normals at both ends of the step; block: the first contact of its block and the one after the last, as only
+    contacts of particles that others connect depend on one another; slope, learnt (m/N); matrix, sides: work space.
     Of impacts: group, report; touching: the pairs that touch; parent, chain: work space, by which they are grouped.
     """
 
@@ -146,8 +146,10 @@ class Driven(NamedTuple):
     size: Floats
     restitution: Floats
     node: Integers
+    loose: Integers
     asleep: NDArray[np.bool_]
     pull: Floats
+    near: Integers
     pairs: Integers
     lasting: Integers
     forces: Floats
@@ -171,6 +173,7 @@ class Driven(NamedTuple):
     slope: Floats
     learnt: Floats
     matrix: Floats
+    block: Integers
     sides: Integers
     group: Group
     report: Report
@@ -185,6 +188,7 @@ class Driven(NamedTuple):
         """Arrays of n particles, of which some are given, with room for so many pairs and persistent contacts."""
         every = len(of_document["radius"])
         shapes: dict[str, tuple[tuple[int, ...], Any]] = {
+            "near": ((0,), np.int64),
             "pairs": ((pairs, 2), np.int64),
             **dict.fromkeys(("lasting", "touching", "chain"), ((pairs,), np.int64)),
             **dict.fromkeys(("forces", "slow", "rate"), ((pairs,), np.float64)),
@@ -200,6 +204,7 @@ class Driven(NamedTuple):
             **dict.fromkeys(("start", "end"), ((contacts, 2), np.float64)),
             **dict.fromkeys(("slope", "learnt"), ((contacts, contacts), np.float64)),
             "matrix": ((contacts, contacts + 1), np.float64),
+            "block": ((2, contacts), np.int64),
             "sides": ((2, contacts), np.int64),
             "parent": ((every,), np.int64),
             "whole": ((len(Whole),), np.int64),

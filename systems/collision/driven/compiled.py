@@ -44,7 +44,11 @@ def idle() -> Driven:
     none, vectors = np.zeros(0), np.zeros((0, 2))
     of_document = dict.fromkeys(("position", "span", "weight"), vectors)
     of_document |= dict.fromkeys(("radius", "size", "restitution", "pull"), none)
-    whole = {"node": np.zeros(0, dtype=np.int64), "asleep": np.zeros(0, dtype=bool)}
+    whole = {
+        "node": np.zeros(0, dtype=np.int64),
+        "loose": np.zeros(0, dtype=np.int64),
+        "asleep": np.zeros(0, dtype=bool),
+    }
     return Driven.empty({**of_document, **whole}, 0, 0, 0)
 
 

@@ -45,7 +45,7 @@ class CrowdStepper:
         """The contacts and impacts of the next whole step, of pairs that the list holds."""
         near, driven = self._neighbours, self._neighbours.driven
         longest = min(self.model.clock.step_size, float(driven.real[Real.CROWD_STEP]))
-        fastest = float(np.hypot(*near.velocity.T).max())
+        fastest = float(np.hypot(*near.velocity[driven.loose].T).max())
         travel = longest * (2.0 * fastest + longest * float(driven.real[Real.STRONGEST]))
         gap, normal = near.gaps(near.pairs, near.displacement)
         close = np.flatnonzero(gap <= 2.0 * travel)

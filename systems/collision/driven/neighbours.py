@@ -19,6 +19,8 @@ from systems.collision.driven.compiled import kernels
 from systems.collision.system import persistent_contacts
 
 LISTED_AROUND = 0.5  # of the radius of a particle: the least margin within which others are listed
+FEWEST_STEPS = 512  # for which the list is to last, at the present speed of a particle,
+FARTHEST = 4.0  # where that is no farther than so many of its radii
 WIDER, MOST_WIDENED = 4.0, 4  # times the margin, as long as nothing is within it
 CONTACTS = 8  # room at first
 
@@ -55,7 +57,6 @@ class NeighbourList:
         self.driven = Driven.empty(self._of_document(), self.count, 0, CONTACTS)
         self.driven.margin[:] = -1.0  # no pair is listed yet
         whole, real = self.driven.whole, self.driven.real
-        whole[Whole.LOOSE] = self.count - np.count_nonzero(self.driven.node[: self.count])
         whole[Whole.BOUNCY] = (self.driven.restitution < 1.0).any()
         real[Real.LONGEST] = np.inf
         pull = self.driven.pull
@@ -79,6 +80,7 @@ class NeighbourList:
             "size": np.concatenate([particles.radius, np.full(len(others), np.inf)]),
             "restitution": np.concatenate([alike, others.restitution]),
             "node": node,
+            "loose": np.flatnonzero(node[: self.count] == 0),
             "asleep": self.model.tables["particles"].storage("asleep"),
             "pull": np.hypot(*(particles.mobility * particles.constant_force).T),
         }
@@ -98,8 +100,11 @@ class NeighbourList:
     def list_within(self, span: float) -> None:
         """List the pairs that can meet before any particle has moved by `span` (m) from where the step began, or now."""
         midst = self.driven.whole[Whole.PHASE] != Phase.BETWEEN
-        displacement = self.driven.before if midst else self.displacement
-        margin = np.maximum(self._least, 2.0 * span)
+        taken = midst and not self.driven.whole[Whole.FORESEEN]
+        displacement = self.driven.before if taken else self.displacement
+        radius, speed = self.driven.radius[: self.count], np.hypot(*self.velocity.T)
+        far = np.minimum(FEWEST_STEPS * self.model.clock.step_size * speed, FARTHEST * radius)
+        margin = np.maximum(np.maximum(self._least, far), 2.0 * span)
         pairs = self._near(displacement, margin)
         for _ in range(MOST_WIDENED):
             wider = WIDER * margin
@@ -144,13 +149,28 @@ class NeighbourList:
             "group",
             "report",
         )
-        self.driven = old._replace(**{name: getattr(new, name) for name in of_pairs})
+        members = np.unique(pairs)
+        near = np.ascontiguousarray(members[members < self.count])
+        self.driven = old._replace(near=near, **{name: getattr(new, name) for name in of_pairs})
+        self.driven.support[:] = 0.0
+        self.driven.whole[Whole.PUSHED] = 1
         number = int(old.whole[Whole.CHOSEN])
         chosen = np.searchsorted(self._keys(pairs), self._keys(old.pairs[old.chosen[:number]]))
         self.driven.chosen[:number] = chosen
 
     def _kept(self) -> dict[str, Any]:
-        names = ("position", "span", "weight", "radius", "size", "restitution", "node", "asleep", "pull")
+        names = (
+            "position",
+            "span",
+            "weight",
+            "radius",
+            "size",
+            "restitution",
+            "node",
+            "loose",
+            "asleep",
+            "pull",
+        )
         return {name: getattr(self.driven, name) for name in names}
 
     def make_room(self) -> None:
@@ -158,7 +178,7 @@ class NeighbourList:
         if self.driven.lasting.sum() <= len(self.driven.chosen):
             return
         new = Driven.empty(self._kept(), self.count, len(self.pairs), 2 * len(self.driven.chosen))
-        of_contacts = ("chosen", "search", "start", "end", "slope", "learnt", "matrix", "sides")
+        of_contacts = ("chosen", "search", "start", "end", "slope", "learnt", "matrix", "block", "sides")
         room = {name: getattr(new, name) for name in of_contacts}
         for name in ("chosen", "search", "start"):
             there = getattr(self.driven, name)

@@ -41,6 +41,8 @@ def drive(
     real = driven.real
     alone = whole[Whole.ALONE] == 1
     coming = 0
+    acceleration = driven.acceleration if rows.shape[0] == 0 else own_acceleration
+    pressing = driven.support if rows.shape[0] == 0 else own_support
     order = Order.TAKE.value
     if not alone:
         order = collide(driven, control, account, place, speed)
@@ -61,22 +63,29 @@ def drive(
             while breaks[coming] <= control[Control.TIME]:
                 coming += 1
             real[Real.BREAK] = breaks[coming]
-            for i in range(displacement.shape[0]):
-                row = rows[i] if rows.shape[0] > 0 else i
+            near = driven.near if rows.shape[0] == 0 and driven.near.shape[0] > 0 else every
+            for p in range(near.shape[0]):
+                i = near[p]
                 for d in range(2):
                     total = unpushed[i, d] + resisting[i, d] if RATES else unpushed[i, d]
-                    driven.acceleration[row, d] = total * particles_mobility[i, d]
+                    acceleration[i, d] = total * particles_mobility[i, d]
+            for i in range(rows.shape[0]):
+                for d in range(2):
+                    driven.acceleration[rows[i], d] = acceleration[i, d]
         else:
             if whole[Whole.KEEP] == 1:
                 insert(keep)
                 whole[Whole.KEEP] = 0
-            if not alone:
-                for i in range(displacement.shape[0]):
-                    row = rows[i] if rows.shape[0] > 0 else i
+            if not alone and whole[Whole.PUSHED] == 1:
+                for i in range(rows.shape[0]):
                     for d in range(2):
-                        support[i, d] = driven.support[row, d]
+                        pressing[i, d] = driven.support[rows[i], d]
+                for i in range(displacement.shape[0]):
+                    for d in range(2):
+                        support[i, d] = pressing[i, d]
                         force[i, d] = unpushed[i, d] + support[i, d]
                 insert(pushed)
+                whole[Whole.PUSHED] = whole[Whole.CHOSEN] > 0
             insert(take)
             whole[Whole.FRESH] = 1
             if alone:
@@ -125,20 +134,26 @@ def evaluate_fixed():
 
 
 def take_fixed():
-    """Take whole steps, or one that ends at Real.END, from which on steps are counted then."""
+    """Take whole steps, or one that ends at Real.END, from which on steps are counted then.
+
+    How old the run is, by which it is checked, stays the same: impacts do not make it a new one.
+    """
     size = control[Control.STEP_SIZE]
     total = whole[Whole.TOTAL]
     if real[Real.END] < math.inf:
         began = control[Control.TIME]
         dt = real[Real.END] - began
-        measure(displacement, velocity, force, resisting, measures, *columns)
-        account[Account.GUARD_ENERGY] = conserved(measures, account, dt, SHADOW)
+        age = min(total - whole[Whole.SINCE], CHECK_INTERVAL)
+        if is_check_due(total + 1, age + 1):
+            measure(displacement, velocity, force, resisting, measures, *columns)
+            account[Account.GUARD_ENERGY] = conserved(measures, account, dt, SHADOW)
         taken, reason = advance(
-            1, True, total, 0, began, dt, breaks, loads_end, *state, *scratch, account, measures, *columns
+            1, True, total, age, began - age * dt, dt, breaks, loads_end, *state, *scratch, account, measures, *columns
         )
+        age = min(age + taken, CHECK_INTERVAL)
         control[Control.TIME] = real[Real.END]
-        real[Real.ORIGIN] = real[Real.END]
-        whole[Whole.SINCE] = total + taken
+        real[Real.ORIGIN] = real[Real.END] - age * size
+        whole[Whole.SINCE] = total + taken - age
         measure(displacement, velocity, force, resisting, measures, *columns)
         account[Account.GUARD_ENERGY] = conserved(measures, account, size, SHADOW)
     else:

@@ -17,7 +17,7 @@ def complementary(slope: np.ndarray, gap: np.ndarray, forces: np.ndarray) -> tup
     search = np.zeros((len(Tried), count))
     search[Tried.GAP], search[Tried.FORCES] = gap, forces
     work = np.zeros((count, count + 1)), np.zeros((2, count), dtype=np.int64)
-    found = complementarity.complementary(count, slope, search, *work)
+    found = complementarity.complementary(0, count, slope, search, *work)
     return search[Tried.FOUND], bool(found)
 
 

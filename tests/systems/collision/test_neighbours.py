@@ -56,7 +56,9 @@ def test_no_discs_are_near_no_discs() -> None:
 # --- steps in which nothing can meet ---------------------------------------------------------------------------
 
 
-def test_what_flies_away_from_a_structure_is_not_looked_at_in_every_step(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_flies_away_from_a_structure_is_not_looked_at_in_every_step(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """A ball slips off a node: of the 10 s in which it falls 450 m, the list is made anew some times, not thousands."""
     session = Session.open(truss({"position": [1.03, 0.65]}, integrator="velocity_verlet"))
     listed: list[float] = []
@@ -90,7 +92,15 @@ def test_a_spring_that_snaps_back_within_clear_steps_is_not_missed(integrator: s
                 {"name": "node", "position": [1.0, 0.0], "fixed": [False, True], "mass": 1e-3, "radius": 0.01},
                 {"name": "ball", "position": [1.4, 0.0], "fixed": [True, True], "radius": 0.1},
             ],
-            "rods": [{"name": "spring", "between": ["pin", "node"], "stiffness": 100.0, "damping": 0.0, "rest_length": 1.5}],
+            "rods": [
+                {
+                    "name": "spring",
+                    "between": ["pin", "node"],
+                    "stiffness": 100.0,
+                    "damping": 0.0,
+                    "rest_length": 1.5,
+                }
+            ],
         }
     )
     session.run(time=0.01)

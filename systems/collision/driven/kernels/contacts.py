@@ -14,8 +14,10 @@ h²/2 N₀ᵀ M⁻¹ N₀ from then on, for which forces always exist.
 import math
 
 from systems.base import StopReason
+from systems.collision.columns import NONE
 from systems.collision.driven.columns import Order, Phase, Real, Tried, Whole
 from systems.collision.driven.kernels.complementarity import complementary
+from systems.collision.driven.kernels.groups import chain_groups, end_groups, root_of
 from systems.collision.driven.kernels.paths import foresee, opening, take_back
 from systems.collision.kernels import compiled
 from systems.collision.kernels.pairs import gap_of
@@ -36,21 +38,41 @@ SETTLING_HEIGHT = 1e-3  # replaces REST_HEIGHT from then on: of the smaller radi
 
 @compiled
 def choose_contacts(driven, place):
-    """Note the persistent contacts, their gaps and lines of centres as a step begins; False if there is no room."""
-    number = 0
+    """Note the persistent contacts, their gaps and lines of centres as a step begins; False if there is no room.
+
+    They are noted block by block.
+    """
+    count, number, n = 0, 0, place.shape[0]
     for k in range(driven.pairs.shape[0]):
-        if driven.lasting[k] == 0:
+        if driven.lasting[k]:
+            driven.touching[count] = k
+            count += 1
+    if count > driven.chosen.shape[0]:
+        return False
+    chain_groups(driven, count, n)
+    for t in range(count):
+        root = root_of(driven, driven.touching[t], n)
+        if driven.group.place[root] != t:
             continue
-        if number == driven.chosen.shape[0]:
-            return False
-        i, j = driven.pairs[k, 0], driven.pairs[k, 1]
-        gap, nx, ny = gap_of(i, j, driven.position, place, driven.radius, driven.span)
-        driven.chosen[number] = k
-        driven.search[Tried.LEAST, number] = min(gap, 0.0)
-        driven.start[number, 0], driven.start[number, 1] = nx, ny
-        number += 1
+        first, u = number, t
+        while u != NONE:
+            _choose(driven, number, driven.touching[u], place)
+            number += 1
+            u = driven.chain[u]
+        for c in range(first, number):
+            driven.block[0, c], driven.block[1, c] = first, number
+    end_groups(driven, count, n)
     driven.whole[Whole.CHOSEN] = number
     return True
+
+
+@compiled
+def _choose(driven, c, k, place):
+    i, j = driven.pairs[k, 0], driven.pairs[k, 1]
+    gap, nx, ny = gap_of(i, j, driven.position, place, driven.radius, driven.span)
+    driven.chosen[c] = k
+    driven.search[Tried.LEAST, c] = min(gap, 0.0)
+    driven.start[c, 0], driven.start[c, 1] = nx, ny
 
 
 @compiled
@@ -60,7 +82,7 @@ def begin_search(driven):
     whole[Whole.TURN], whole[Whole.REGULAR] = 0, 1
     for c in range(number):
         driven.search[Tried.FORCES, c] = driven.forces[driven.chosen[c]]
-        for d in range(number):
+        for d in range(driven.block[0, c], driven.block[1, c]):
             driven.learnt[c, d] = 0.0
             driven.slope[c, d] = 0.0
 
@@ -68,8 +90,9 @@ def begin_search(driven):
 @compiled
 def clear_support(driven):
     """Let no contact force act."""
-    for i in range(driven.support.shape[0]):
-        driven.support[i, 0], driven.support[i, 1] = 0.0, 0.0
+    if driven.whole[Whole.PUSHED]:
+        for p in range(driven.near.shape[0]):
+            driven.support[driven.near[p], 0], driven.support[driven.near[p], 1] = 0.0, 0.0
 
 
 @compiled
@@ -90,6 +113,8 @@ def try_forces(driven, control, account, place, speed):
             if j < driven.support.shape[0]:
                 driven.support[j, d] += driven.start[c, d] * (0.001 * force)
     account[Account.ENERGY_SCALE] = max(account[Account.ENERGY_SCALE], energy)
+    if whole[Whole.CHOSEN] > 0:
+        whole[Whole.PUSHED] = 1
     whole[Whole.PHASE] = Phase.TRIED
     if whole[Whole.FORESEEN]:
         foresee(driven, control)
@@ -149,7 +174,7 @@ def _measure(driven, after):
         gap -= search[Tried.LEAST, c]
         driven.end[c, 0], driven.end[c, 1] = nx, ny
         moved = 0.0
-        for d in range(number):
+        for d in range(driven.block[0, c], driven.block[1, c]):
             moved += abs(driven.slope[c, d]) * search[Tried.FORCES, d]
         allowed = closed * min(driven.size[i], driven.size[j]) + COMPLIANCE_GAP * moved
         search[Tried.GAP, c], search[Tried.ALLOWED, c] = gap, allowed
@@ -170,7 +195,7 @@ def _improve(driven, h):
     if whole[Whole.REGULAR]:
         _set_slope(driven, free, driven.end)
         for c in range(number):
-            for d in range(number):
+            for d in range(driven.block[0, c], driven.block[1, c]):
                 driven.slope[c, d] += driven.learnt[c, d]
         whole[Whole.REGULAR] = _complementary(driven, number)
     if not whole[Whole.REGULAR]:
@@ -185,23 +210,30 @@ def _improve(driven, h):
 
 @compiled
 def _complementary(driven, number):
-    return complementary(number, driven.slope, driven.search, driven.matrix, driven.sides)
+    """Find the forces block by block; False if there are none in one of them."""
+    first, found = 0, True
+    while first < number:
+        end = driven.block[1, first]
+        if not complementary(first, end, driven.slope, driven.search, driven.matrix, driven.sides):
+            found = False
+        first = end
+    return found
 
 
 @compiled
 def _learn(driven, number):
     """Broyden's update: what the last change of the forces did to the gaps beyond the slope."""
-    search, squared = driven.search, 0.0
+    search = driven.search
     for c in range(number):
-        moved = search[Tried.FORCES, c] - search[Tried.OLD_FORCES, c]
-        squared += moved * moved
-    for c in range(number):
-        missed = search[Tried.GAP, c] - search[Tried.OLD_GAP, c]
-        for d in range(number):
-            missed -= driven.slope[c, d] * (search[Tried.FORCES, d] - search[Tried.OLD_FORCES, d])
-        if abs(missed) <= search[Tried.ALLOWED, c]:
+        first, end = driven.block[0, c], driven.block[1, c]
+        missed, squared = search[Tried.GAP, c] - search[Tried.OLD_GAP, c], 0.0
+        for d in range(first, end):
+            moved = search[Tried.FORCES, d] - search[Tried.OLD_FORCES, d]
+            missed -= driven.slope[c, d] * moved
+            squared += moved * moved
+        if squared == 0.0 or abs(missed) <= search[Tried.ALLOWED, c]:
             continue
-        for d in range(number):
+        for d in range(first, end):
             moved = search[Tried.FORCES, d] - search[Tried.OLD_FORCES, d]
             driven.learnt[c, d] += missed * moved / squared
 
@@ -211,7 +243,7 @@ def _set_slope(driven, free, normal):
     """The slope of free particles: gaps along `normal`, forces along the lines of centres at the start."""
     start = driven.start
     for c in range(driven.whole[Whole.CHOSEN]):
-        for d in range(driven.whole[Whole.CHOSEN]):
+        for d in range(driven.block[0, c], driven.block[1, c]):
             ends = driven.pairs[driven.chosen[c]], driven.pairs[driven.chosen[d]]
             along = coupling(ends, normal[c, 0], normal[c, 1], start[d, 0], start[d, 1], driven.weight)
             driven.slope[c, d] = free * along

@@ -5,8 +5,8 @@ no longer pay.
 import math
 
 from systems.collision.columns import SHORTEST_SHARE, TRAVEL
-from systems.collision.driven.columns import Need, Real, Whole
-from systems.collision.driven.kernels.paths import is_listed, opening
+from systems.collision.driven.columns import Need, Real
+from systems.collision.driven.kernels.paths import opening
 from systems.collision.kernels import compiled
 from systems.collision.kernels.pairs import gap_of
 from systems.entries import Control
@@ -21,17 +21,21 @@ def is_crowd(driven, control, place, speed):
 
     It is none where nodes of a structure are near, since a structure answers to forces in its own way.
     """
-    whole, real, pairs = driven.whole, driven.real, driven.pairs
-    if whole[Whole.LOOSE] < CROWD_PARTICLES:
+    real, pairs = driven.real, driven.pairs
+    if driven.loose.shape[0] < CROWD_PARTICLES:
         return Need.NOTHING
     longest = min(control[Control.STEP_SIZE], real[Real.CROWD_STEP])
     fastest = 0.0
-    for i in range(speed.shape[0]):
+    for p in range(driven.loose.shape[0]):
+        i = driven.loose[p]
         fastest = max(fastest, speed[i, 0] * speed[i, 0] + speed[i, 1] * speed[i, 1])
     travel = longest * (2.0 * math.sqrt(fastest) + longest * real[Real.STRONGEST])
-    if not is_listed(driven, place, travel):
-        real[Real.SPAN] = travel
-        return Need.LIST
+    for p in range(driven.loose.shape[0]):
+        i = driven.loose[p]
+        x, y = place[i, 0] - driven.listed[i, 0], place[i, 1] - driven.listed[i, 1]
+        if math.sqrt(x * x + y * y) + 2.0 * travel > driven.margin[i]:
+            real[Real.SPAN] = 2.0 * travel
+            return Need.LIST
     if pairs.shape[0] < CROWD_CONTACTS:
         return Need.NOTHING
     h = longest

@@ -5,6 +5,7 @@ import math
 from systems.collision.columns import NONE, Contact, Detail
 from systems.collision.driven.columns import Need, Real, Whole
 from systems.collision.driven.kernels.contacts import SETTLING_CONTACTS, SETTLING_HEIGHT
+from systems.collision.driven.kernels.groups import chain_groups, end_groups, root_of
 from systems.collision.driven.kernels.joint_impacts import resolve
 from systems.collision.driven.kernels.paths import TOUCHING_GAP, is_left_alone, opening
 from systems.collision.kernels import compiled
@@ -73,49 +74,14 @@ def resolve_touching(driven, control, account, place, speed):
         acts = acts or driven.lasting[k] == 0 or driven.rate[k] < -noise
     if not acts:
         return False
-    _chain_groups(driven, count, speed.shape[0])
+    chain_groups(driven, count, speed.shape[0])
     for t in range(count):
-        i = driven.pairs[driven.touching[t], 0]
-        if driven.group.place[_root(driven, i)] == t:
+        if driven.group.place[root_of(driven, driven.touching[t], speed.shape[0])] == t:
             _resolve_group(driven, t, control, account, place, speed)
-    _end_groups(driven, count, speed.shape[0])
+    end_groups(driven, count, speed.shape[0])
     _begin_contacts(driven, count, control, speed)
     driven.whole[Whole.FRESH] = 0
     return True
-
-
-@compiled
-def _root(driven, i):
-    while driven.parent[i] != NONE:
-        i = driven.parent[i]
-    return i
-
-
-@compiled
-def _chain_groups(driven, count, n):
-    """Chain the touching pairs that shared particles connect: `place` of the group's root is the first; obstacles connect none."""
-    for t in range(count):
-        k = driven.touching[t]
-        i, j = driven.pairs[k, 0], driven.pairs[k, 1]
-        if j < n:
-            first, second = _root(driven, i), _root(driven, j)
-            if first != second:
-                driven.parent[max(first, second)] = min(first, second)
-    for t in range(count - 1, -1, -1):
-        root = _root(driven, driven.pairs[driven.touching[t], 0])
-        driven.chain[t] = driven.group.place[root]
-        driven.group.place[root] = t
-
-
-@compiled
-def _end_groups(driven, count, n):
-    for t in range(count):
-        k = driven.touching[t]
-        for e in range(2):
-            i = driven.pairs[k, e]
-            if i < n:
-                driven.parent[i] = NONE
-                driven.group.place[i] = NONE
 
 
 @compiled

@@ -15,6 +15,8 @@ DOUBT = 1e-3  # of a radius, by which a path may differ from a parabola where pa
 CUBIC_DEVIATION = 0.15  # of h |Δv|: distance of a cubic path from the parabola through its ends (4/27)
 DOUBTFUL = -1.0  # instead of a time of impact
 NOISE = 16.0 * EPSILON  # of speeds and accelerations: slower approaches are round-off
+SQUARE = 0.7  # of a radius: half the side of a square that fits into a circle
+AHEAD = 4.0  # times the speeds of now that those of the next step, if it is foreseen, may reach
 SAFE = 8.0  # times the speeds and accelerations of now that those of clear steps may reach
 FEWEST_CLEAR, MOST_CLEAR = 4, 256  # clear steps at once
 SLOWEST = 1e-300  # m/s; avoids division by zero
@@ -39,6 +41,7 @@ def take_back(driven, control, account, place, speed):
     driven.real[Real.ORIGIN] = driven.real[Real.KEPT_ORIGIN]
     whole[Whole.REASON] = StopReason.DONE
     whole[Whole.BACK] = 1
+    whole[Whole.PUSHED] = 1
     whole[Whole.FRESH] = 1
 
 
@@ -50,11 +53,14 @@ def foresee(driven, control):
     h = control[Control.STEP_SIZE] if real[Real.END] == math.inf else real[Real.END] - start
     real[Real.NOW] = start + h
     push = real[Real.PUSH] * h
-    for i in range(driven.before.shape[0]):
+    before, velocity, ahead, ahead_speed = driven.before, driven.velocity, driven.ahead, driven.ahead_speed
+    acceleration, weight, support = driven.acceleration, driven.weight, driven.support
+    for p in range(driven.near.shape[0]):
+        i = driven.near[p]
         for d in range(2):
-            a = driven.acceleration[i, d] + 1000.0 * driven.weight[i, d] * driven.support[i, d]
-            driven.ahead[i, d] = driven.before[i, d] + h * (driven.velocity[i, d] + push * a)
-            driven.ahead_speed[i, d] = driven.velocity[i, d] + h * a
+            a = acceleration[i, d] + 1000.0 * weight[i, d] * support[i, d]
+            ahead[i, d] = before[i, d] + h * (velocity[i, d] + push * a)
+            ahead_speed[i, d] = velocity[i, d] + h * a
 
 
 @compiled
@@ -67,7 +73,7 @@ def plan_clear_steps(driven, control, place, speed):
     room, fastest, strongest = math.inf, 0.0, 0.0
     for i in range(place.shape[0]):
         x, y = place[i, 0] - driven.listed[i, 0], place[i, 1] - driven.listed[i, 1]
-        room = min(room, driven.margin[i] - math.sqrt(x * x + y * y))
+        room = min(room, SQUARE * driven.margin[i] - math.sqrt(x * x + y * y))
         fastest = max(fastest, speed[i, 0] * speed[i, 0] + speed[i, 1] * speed[i, 1])
         ax, ay = driven.acceleration[i, 0], driven.acceleration[i, 1]
         strongest = max(strongest, ax * ax + ay * ay)
@@ -101,35 +107,52 @@ def went_too_far(driven, place, speed):
 @compiled
 def is_listed(driven, place, travel):
     """True if the list holds all pairs that can meet before any particle has moved farther than `travel` (m) from here."""
+    listed, margin, outside = driven.listed, driven.margin, 0
     for i in range(place.shape[0]):
-        room = driven.margin[i] - travel
-        x, y = place[i, 0] - driven.listed[i, 0], place[i, 1] - driven.listed[i, 1]
-        if room < 0.0 or x * x + y * y > room * room:
-            return False
-    return True
+        room = SQUARE * margin[i] - travel
+        x, y = abs(place[i, 0] - listed[i, 0]), abs(place[i, 1] - listed[i, 1])
+        outside += 1 if x > room or y > room else 0
+    return outside == 0
 
 
 @compiled
 def span_to_list(driven, h, after, later):
-    """Bounds of the distance of paths in a step of h seconds from the parabolas that `first_impact` assumes, into path_error.
+    """The margin within which pairs must be listed for a step of h seconds (m), or 0 where the list is complete.
 
-    Returns the margin within which pairs must be listed (m), or 0 where the list is complete.
+    path_error ← bounds of the distance of paths from the parabolas that `first_impact` assumes.
     """
     before, velocity = driven.before, driven.velocity
     turn, most, travel = 0.0, 0.0, 0.0
-    foreseen = driven.whole[Whole.FORESEEN] == 1
     for i in range(before.shape[0]):
         x, y = after[i, 0] - before[i, 0], after[i, 1] - before[i, 1]
         tx, ty = later[i, 0] - velocity[i, 0], later[i, 1] - velocity[i, 1]
         travel = max(travel, x * x + y * y)
         turn = max(turn, tx * tx + ty * ty)
-        if not foreseen:
-            bx = h * (later[i, 0] + velocity[i, 0]) - 2.0 * x
-            by = h * (later[i, 1] + velocity[i, 1]) - 2.0 * y
-            driven.path_error[i] = CUBIC_DEVIATION * math.sqrt(bx * bx + by * by)
-            most = max(most, driven.path_error[i])
+        bx = h * (later[i, 0] + velocity[i, 0]) - 2.0 * x
+        by = h * (later[i, 1] + velocity[i, 1]) - 2.0 * y
+        driven.path_error[i] = CUBIC_DEVIATION * math.sqrt(bx * bx + by * by)
+        most = max(most, driven.path_error[i])
     swing = (h * math.sqrt(turn) + 4.0 * most) * (1.0 + ROUND_OFF_OF_PATHS)
-    return 0.0 if is_listed(driven, after, swing) else math.sqrt(travel) * (1.0 + ROUND_OFF_OF_PATHS) + swing
+    if is_listed(driven, after, swing):
+        return 0.0
+    return math.sqrt(travel) * (1.0 + ROUND_OFF_OF_PATHS) + swing
+
+
+@compiled
+def foreseen_span(driven, h, place, speed):
+    """As span_to_list(), before a step that is foreseen: particles are taken to go AHEAD times as far as their speeds say."""
+    listed, margin, outside, far = driven.listed, driven.margin, 0, AHEAD * h
+    for i in range(place.shape[0]):
+        room = SQUARE * margin[i]
+        x = abs(place[i, 0] - listed[i, 0]) + far * abs(speed[i, 0])
+        y = abs(place[i, 1] - listed[i, 1]) + far * abs(speed[i, 1])
+        outside += 1 if x > room or y > room else 0
+    if outside == 0:
+        return 0.0
+    fastest = 0.0
+    for i in range(place.shape[0]):
+        fastest = max(fastest, speed[i, 0] * speed[i, 0] + speed[i, 1] * speed[i, 1])
+    return 2.0 * far * math.sqrt(fastest) + SLOWEST
 
 
 @compiled
@@ -185,12 +208,17 @@ def _impact_of(driven, k, h, after):
         moving += abs(velocity[j, 0]) + abs(velocity[j, 1])
         away += abs(before[j, 0]) + abs(before[j, 1])
     dx, dy = (position[j, 0] - position[i, 0]) + sx, (position[j, 1] - position[i, 1]) + sy
+    reach = driven.radius[i] + driven.radius[j]
+    tx, ty = driven.span[j, 0], driven.span[j, 1]
+    if tx == 0.0 and ty == 0.0 and not overlapping:  # too far to meet in this step?
+        mx, my = ux - sx, uy - sy
+        far = reach + abs(mx) + abs(my) + abs(h * vx - mx) + abs(h * vy - my)
+        if dx * dx + dy * dy > far * far * (1.0 + ROUND_OFF_OF_PATHS):
+            return INFINITY
     ax, ay = 2.0 * ((ux - sx) / h - vx) / h, 2.0 * ((uy - sy) / h - vy) / h
     if abs(ax) + abs(ay) <= 64.0 * EPSILON * (away / h + moving) / h:
         ax, ay = 0.0, 0.0
-    reach = driven.radius[i] + driven.radius[j]
     growth = NOISE * (abs(ax) + abs(ay))
-    tx, ty = driven.span[j, 0], driven.span[j, 1]
     path = (dx, dy, vx, vy, ax, ay)
     return first_touch(path, tx, ty, 0.0, reach, NOISE * moving, growth, h, overlapping)
 

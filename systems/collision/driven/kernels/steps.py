@@ -14,7 +14,6 @@ from systems.base import StopReason
 from systems.collision.driven.columns import Goal, Need, Order, Phase, Real, Whole
 from systems.collision.driven.kernels.contacts import (
     begin_search,
-    clear_support,
     choose_contacts,
     judge_forces,
     keep_contacts,
@@ -25,6 +24,7 @@ from systems.collision.driven.kernels.impacts import resolve_touching, set_rest_
 from systems.collision.driven.kernels.paths import (
     DOUBTFUL,
     first_impact,
+    foreseen_span,
     meeting,
     plan_clear_steps,
     span_to_list,
@@ -94,28 +94,40 @@ def _open(driven, control, place, speed):
 def _begin(driven, control, account, place, speed):
     """Keep the state, and choose where the step is to end."""
     whole, real = driven.whole, driven.real
-    for i in range(place.shape[0]):
-        for d in range(2):
-            driven.before[i, d] = place[i, d]
-            driven.velocity[i, d] = speed[i, d]
+    start, size = control[Control.TIME], control[Control.STEP_SIZE]
+    whole[Whole.FORESEEN] = real[Real.PUSH] > 0.0 and real[Real.BREAK] > start + 2.0 * size
+    clears = driven.pairs.shape[0] == 0 and not whole[Whole.LANDING] and not whole[Whole.EXAMINE]
+    if whole[Whole.FORESEEN] and not clears:
+        span = foreseen_span(driven, size, place, speed)
+        if span > 0.0:
+            real[Real.SPAN] = span
+            return _leave(driven, Need.LIST, Phase.BETWEEN)
+        for p in range(driven.near.shape[0]):
+            i = driven.near[p]
+            for d in range(2):
+                driven.before[i, d] = place[i, d]
+                driven.velocity[i, d] = speed[i, d]
+    else:
+        for i in range(place.shape[0]):
+            for d in range(2):
+                driven.before[i, d] = place[i, d]
+                driven.velocity[i, d] = speed[i, d]
     for k in range(control.shape[0]):
         driven.kept[k] = control[k]
     for k in range(account.shape[0]):
         driven.kept[control.shape[0] + k] = account[k]
     whole[Whole.KEPT_TOTAL], whole[Whole.KEPT_SINCE] = whole[Whole.TOTAL], whole[Whole.SINCE]
     real[Real.KEPT_ORIGIN] = real[Real.ORIGIN]
-    start, size = control[Control.TIME], control[Control.STEP_SIZE]
     real[Real.START] = start
-    whole[Whole.FORESEEN], whole[Whole.CHOSEN] = 0, 0
-    whole[Whole.KEEP], whole[Whole.STEPS] = 1, 1
+    whole[Whole.CHOSEN], whole[Whole.STEPS] = 0, 1
     real[Real.BY] = real[Real.UNTIL]
-    if driven.pairs.shape[0] == 0 and not whole[Whole.LANDING] and not whole[Whole.EXAMINE]:
+    if clears:
+        foreseen, whole[Whole.FORESEEN], whole[Whole.KEEP] = whole[Whole.FORESEEN], 0, 1
         if plan_clear_steps(driven, control, place, speed):
-            clear_support(driven)
             whole[Whole.PHASE] = Phase.CLEAR
             return Order.TAKE
+        whole[Whole.FORESEEN] = foreseen
     whole[Whole.EXAMINE] = 0
-    whole[Whole.FORESEEN] = real[Real.PUSH] > 0.0 and real[Real.BREAK] > start + 2.0 * size
     whole[Whole.KEEP] = whole[Whole.FORESEEN] == 0
     if not choose_contacts(driven, place):
         return _leave(driven, Need.ROOM, Phase.READY)
@@ -169,7 +181,7 @@ def _look(driven, control, account, place, speed):
         return _approach(driven, control, account, place, speed)
     after = driven.ahead if whole[Whole.FORESEEN] else place
     later = driven.ahead_speed if whole[Whole.FORESEEN] else speed
-    span = span_to_list(driven, now - start, after, later)
+    span = 0.0 if whole[Whole.FORESEEN] else span_to_list(driven, now - start, after, later)
     if span > 0.0:
         real[Real.SPAN] = span
         return _leave(driven, Need.LIST, Phase.HELD)
