@@ -188,13 +188,13 @@ class NeighbourList:
     # --- persistent contacts ----------------------------------------------------------------------------
 
     def load_contacts(self) -> None:
-        """Take the persistent contacts from the state of the model, if they are others than were stored last."""
-        held = persistent_contacts(self.model)
-        if held is self._held:
+        """Begin with the state of the model: take its persistent contacts, if they are others than were stored last."""
+        driven, held = self.driven, persistent_contacts(self.model)
+        interrupted = driven.whole[Whole.PHASE] != Phase.BETWEEN
+        driven.whole[Whole.PHASE], driven.whole[Whole.EXAMINE] = Phase.BETWEEN, 0
+        if held is self._held and not interrupted:
             return
-        driven = self.driven
         driven.lasting[:], driven.forces[:] = 0, 0.0
-        driven.whole[Whole.PHASE] = Phase.BETWEEN
         driven.real[Real.LONGEST] = np.inf if held is None else held.longest_step
         self._held = held
         if held is None:

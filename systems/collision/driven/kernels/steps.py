@@ -122,11 +122,12 @@ def _begin(driven, control, account, place, speed):
     whole[Whole.CHOSEN], whole[Whole.STEPS] = 0, 1
     real[Real.BY] = real[Real.UNTIL]
     if clears:
-        foreseen, whole[Whole.FORESEEN], whole[Whole.KEEP] = whole[Whole.FORESEEN], 0, 1
+        whole[Whole.FORESEEN], whole[Whole.KEEP] = 0, 1
         if plan_clear_steps(driven, control, place, speed):
             whole[Whole.PHASE] = Phase.CLEAR
             return Order.TAKE
-        whole[Whole.FORESEEN] = foreseen
+        whole[Whole.EXAMINE] = 1
+        return Order.GO_ON
     whole[Whole.EXAMINE] = 0
     whole[Whole.KEEP] = whole[Whole.FORESEEN] == 0
     if not choose_contacts(driven, place):
