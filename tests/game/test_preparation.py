@@ -361,7 +361,10 @@ def test_a_large_picture_is_a_sketch_until_its_drawing_is_compiled(app: App, com
     assert (whole != background).sum() > 1.5 * (sketch != background).sum()
 
 
-ALONE = '{"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}]}'
+ALONE = (
+    '{"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}],'
+    ' "settings": {"integrator": "velocity_verlet"}}'  # the quickest to compile
+)
 CHECK = f"""
 from game import Session
 session = Session.open({ALONE})
