@@ -32,6 +32,7 @@ from numba.core.caching import NullCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompileResult
 from numba.core.registry import CPUDispatcher, cpu_target
+from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 from numba.core.types import unliteral
 from numba.extending import typeof_impl
@@ -109,6 +110,8 @@ def adopt(module: ModuleType, name: str, kernels: Iterable[Any]) -> None:
     for kernel in kernels:
         if _is_compiled(kernel):
             kernel._cache = NullCache()
+        if not str(kernel.__module__).startswith("systems."):
+            cpu_target.target_context.refresh()  # it may refer to anything of numba's
     module.__name__ = name
     sys.modules[name] = module  # what is cached looks the module up by its name
     for function in vars(module).values():
@@ -153,7 +156,9 @@ class _MachineCode(NullCache):
 
     def load_overload(self, signature: Any, target: Any) -> Any:
         """What was compiled for these types; None if it is to be compiled."""
-        target.refresh()
+        rtsys.initialize(
+            target
+        )  # all that Pinjoint's own kernels need; a compiler would take six times as long
         content = cache.read(self._name(signature))
         if content is None:
             return None

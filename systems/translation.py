@@ -21,7 +21,7 @@ from numba.core.ir import Assign
 from numba.core.lowering import Lower
 from numba.core.registry import cpu_target
 from numba.core.typed_passes import InlineOverloads, NativeLowering, NopythonRewrites
-from numba.core.types import Array, BaseTuple, Boolean, Function, Integer, IntEnumMember, Number
+from numba.core.types import Array, BaseTuple, Boolean, Function, Integer, IntEnumMember, Number, intp, uintp
 from numba.core.typing.context import Context
 from numba.core.untyped_passes import (
     FindLiterallyCalls,
@@ -32,7 +32,6 @@ from numba.core.untyped_passes import (
     MakeFunctionToJitFunction,
     WithLifting,
 )
-from numba.np.arrayobj import fix_integer_index, load_item, store_item
 
 # Passes over a function that look for what kernels do not have: `with`, closures and comprehensions, functions
 # inlined before their types are known, loops over tuples of different types, expressions of whole arrays.
@@ -153,8 +152,8 @@ class _Lowering(Lower):
         place = self._element(value, index)
         if place is None:
             return super().lower_getitem(resty, expr, value, index, signature)
-        array = self.typeof(value.name)
-        found = load_item(self.context, self.builder, array, place)
+        array: Any = self.typeof(value.name)
+        found = self.context.unpack_value(self.builder, array.dtype, place, None if array.aligned else 1)
         return self.context.cast(self.builder, found, array.dtype, resty)
 
     def lower_setitem(self, target_var: Any, index_var: Any, value_var: Any, signature: Any) -> Any:
@@ -162,9 +161,10 @@ class _Lowering(Lower):
         place = self._element(target_var, index_var)
         if place is None:
             return super().lower_setitem(target_var, index_var, value_var, signature)
-        array, kind = self.typeof(target_var.name), self.typeof(value_var.name)
-        value = self.context.cast(self.builder, self.loadvar(value_var.name), kind, array.dtype)
-        return store_item(self.context, self.builder, array, value, place)
+        array: Any = self.typeof(target_var.name)
+        given = self.loadvar(value_var.name)
+        value = self.context.cast(self.builder, given, self.typeof(value_var.name), array.dtype)
+        return self.context.pack_value(self.builder, array.dtype, value, place, None if array.aligned else 1)
 
     def _element(self, array: Any, index: Any) -> Any:
         """The address of one number in an array in C order; None where something else is meant."""
@@ -185,10 +185,19 @@ class _Lowering(Lower):
         for axis, integer in enumerate(along):
             length = write.extract_value(header, (SHAPE, axis))
             row = write.extract_value(given, axis) if isinstance(at, BaseTuple) else given
-            if not (isinstance(row, llvm.Constant) and row.type == length.type and row.constant >= 0):
-                row = fix_integer_index(self.context, write, integer, row, length)  # from the end if negative
+            row = self._counted(integer, row, length)
             place = row if place is None else write.add(write.mul(place, length), row)
         return write.gep(write.extract_value(header, DATA), [place])
+
+    def _counted(self, integer: Any, row: Any, length: Any) -> Any:
+        """A row that counts from the end if it is negative, as it counts from the beginning."""
+        if isinstance(row, llvm.Constant) and row.type == length.type and row.constant >= 0:
+            return row
+        row = self.context.cast(self.builder, row, integer, intp if integer.signed else uintp)
+        if not integer.signed:
+            return row
+        is_behind = self.builder.icmp_signed("<", row, row.type(0))
+        return self.builder.select(is_behind, self.builder.add(row, length), row)
 
 
 def _integer(kind: Any) -> Any:
