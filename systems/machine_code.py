@@ -4,7 +4,7 @@ Plain numba optimises each part with everything that it calls, and makes machine
 is called from Python. Here a part is only translated to LLVM code (systems/translation.py); the entry is linked with
 its parts, then optimised and compiled as a whole, in a fraction of the time. Only the entry's parts call one another, so
 that arguments which a part does not use are dropped: an array has nine, which would cost steps of a few rods a third of
-their time. To others every kernel is a part, one that can be called from Python too.
+their time. What can be called from Python by itself is a part, too, where another kernel calls it.
 
 This uses inner classes of numba (from `_MachineCode` on). With the environment variable PINJOINT_PLAIN_NUMBA=1 all
 kernels are compiled by numba's own `njit` with the same options: programs compute the same bits and take longer to
@@ -214,16 +214,13 @@ class _PartCode(JITCodeLibrary):
                     called._called(found)
         return found
 
-    def _optimize_functions(self, module: Any) -> None:
-        module.data_layout = self._codegen._data_layout
-
     @property
     def codegen(self) -> _PartCode:
         """The receiver of set_env(), which numba's compiler looks up here."""
         return self
 
     def set_env(self, name: str, environment: Any) -> None:
-        """Do nothing: only machine code has an environment, to raise exceptions with, and parts raise none."""
+        """Do nothing: only machine code has an environment; errors are raised in that of the entry."""
 
 
 class _PartCompiler(LeanCompiler):
@@ -251,9 +248,6 @@ class _Part(CPUDispatcher):
 
 class _EntryCode(JITCodeLibrary):
     """Code of an entry; its parts become internal, so that the optimiser may change how they are called."""
-
-    def _optimize_functions(self, module: Any) -> None:
-        module.data_layout = self._codegen._data_layout
 
     def _optimize_final_module(self) -> None:
         for function in self._final_module.functions:
