@@ -169,6 +169,8 @@ class _MachineCode(NullCache):
 
     def save_overload(self, signature: Any, result: Any) -> None:
         """Keep what was compiled, unless it holds addresses of this process."""
+        for environment in result._find_referenced_environments():  # of parts, with which they raise errors
+            result.library.codegen.set_env(environment.env_name, environment)
         if not result.library.has_dynamic_globals:
             cache.write(self._name(signature), dumps(result._reduce()))
 
@@ -220,7 +222,7 @@ class _PartCode(JITCodeLibrary):
         return self
 
     def set_env(self, name: str, environment: Any) -> None:
-        """Do nothing: only machine code has an environment; errors are raised in that of the entry."""
+        """Do nothing: only machine code has an environment, which is set once that is there."""
 
 
 class _PartCompiler(LeanCompiler):
