@@ -155,6 +155,8 @@ class _Addressed(WrapperAddressProtocol):
 @lru_cache
 def addressed(function: Any) -> Any:
     """What to give a compiled function that calls this one, which was compiled for one kind of arguments."""
+    import numba.experimental.function_type  # noqa: F401 - by which numba knows the type of it
+
     return _Addressed(function)
 
 

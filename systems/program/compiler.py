@@ -156,7 +156,7 @@ class GeneratedModule:
 
     @property
     def form(self) -> Any:
-        """The functions by name, in the form that they run in now."""
+        """The functions by name, in the form that they run in now; is_machine: it is machine code."""
         if self._form is None:
             Choice.changes += 1
             if Choice.compile is Compile.ALWAYS:
@@ -217,7 +217,9 @@ class GeneratedModule:
 
         self._patience = LOADING
         _interpreted.append(self)
-        self._form = SimpleNamespace(**{name: timed(function) for name, function in interpreted.items()})
+        self._form = SimpleNamespace(
+            is_machine=False, **{name: timed(function) for name, function in interpreted.items()}
+        )
 
     def did(self, work: int) -> None:
         """Note how much the last call did, interpreted, so that the next one takes about LONGEST_CALL."""
@@ -288,7 +290,7 @@ class GeneratedModule:
         from systems.machine_code import adopt, machine_code
 
         adopt(self.module, self.key, reached_from(self._source_and_kernels[1].values()))
-        return SimpleNamespace(**{name: machine_code(f) for name, f in self.functions.items()})
+        return SimpleNamespace(is_machine=True, **{name: machine_code(f) for name, f in self.functions.items()})
 
     def _compile(self) -> None:
         """Compile by calling everything, and keep that."""

@@ -56,7 +56,7 @@ class ControlledWriter(Writer):
     def _limits(self) -> tuple[str, ...]:
         return ("tolerance", "limit")
 
-    def _driven_steps(self) -> dict[str, list[str]]:
+    def _driven_steps(self) -> dict[str, Sequence[str]]:
         return {
             "evaluate": fragment(driven.evaluate_controlled),
             "take": fragment(driven.take_controlled),

@@ -70,7 +70,7 @@ def _module(writer: Writer, model: Model, between: Between | None) -> GeneratedM
 
 def _between(systems: Iterable[StepSystem]) -> Between | None:
     """What acts between the steps of a program of these systems."""
-    found = [find(system.between, system) for system in systems if system.between]
+    found: list[Any] = [find(system.between, system) for system in systems if system.between]
     return found[0] if found else None
 
 
@@ -79,9 +79,10 @@ class Program:
 
     source: the whole program as plain Python; to understand a step, read that of a small model first.
     measures: entries of Measure, of the state last observed.
+    follows_state: forces follow from nothing but the state, loads and contacts apart, so that what is at rest stays so.
     failure: what a kernel raised in a step, and which, if one did.
-    follows_state: forces follow from nothing but the state, loads and contacts apart, so that what is at rest stays at rest.
-    impulsive: the systems without a kernel that act by impacts. between: what acts between its steps. module: its functions. tolerance: of each step; 0 where the error is not controlled.
+    impulsive: the systems without a kernel that act by impacts. between: what acts between its steps.
+    module: its functions. tolerance: of each step; 0 where the error is not controlled.
     longest_in_contact: the longest step (s) while contacts persist.
     compile_seconds: time that writing it took, and compiling it, or loading it from the cache, if that was done at once.
     """
@@ -297,7 +298,7 @@ class Program:
             "power": self._arrays["power"],
         }
         kept |= {name: self.columns[name] for name in self._writer.written}
-        copies = {f"kept_{name}": np.zeros_like(array) for name, array in kept.items()}
+        copies: dict[str, Any] = {f"kept_{name}": np.zeros_like(array) for name, array in kept.items()}
         copies |= {f"own_{name}": np.zeros_like(kept["force"]) for name in ("acceleration", "support")}
         copies["every"] = np.arange(self._rows("particles"))
         self._arguments = (*self._after("loads_end", "drive", **copies), *self._columns)
@@ -427,7 +428,7 @@ class Program:
         whole[Whole.REASON] = StopReason.DONE
         driven.real[Real.ORIGIN] = origin
         form.drive(
-            self.between.function(compiled=self.module.is_loaded),
+            self.between.function(compiled=form.is_machine),
             driven,
             *self._motion,
             *((self.tolerance, limit) if self.integrator.controlled else ()),
@@ -455,7 +456,7 @@ class Program:
     @property
     def _motion(self) -> tuple[Column, Column, Column]:
         """The model's row of each particle, of none if they are the same, and the model's displacements and velocities."""
-        return np.zeros(0, dtype=np.int64), *(self._arrays[path.partition(".")[2]] for path in MOTION)
+        return np.zeros(0, dtype=np.int64), self._arrays["displacement"], self._arrays["velocity"]
 
     def push(self, force: Column) -> None:
         """Push the particles of the model by these forces (kN) in the next step."""

@@ -117,7 +117,8 @@ class ReorderedProgram(Program):
     @property
     def _motion(self) -> tuple[Column, Column, Column]:
         rows = np.ascontiguousarray(self._places["particles"], dtype=np.int64)
-        return rows, *(self.model.tables["particles"].storage(path.partition(".")[2]) for path in MOTION)
+        particles = self.model.tables["particles"]
+        return rows, particles.storage("displacement"), particles.storage("velocity")
 
     @property
     def unbalanced(self) -> Column:

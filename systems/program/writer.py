@@ -255,6 +255,7 @@ class Writer:
         return pasted(
             driven.drive,
             "entered",
+            "",
             keep=self._copies(driven.keep, "kept_{0}[r] = {0}[r]"),
             put_back=self._copies(driven.put_back, "{0}[r] = kept_{0}[r]"),
             **self._driven_steps(),
@@ -264,7 +265,7 @@ class Writer:
         copied = [copy.format(name) for name in self.written]
         return fragment(template, histories=fragment(driven.each_history, copied=copied) if copied else [])
 
-    def _driven_steps(self) -> dict[str, list[str]]:
+    def _driven_steps(self) -> dict[str, Sequence[str]]:
         """How `drive` evaluates forces, takes steps, and what follows from other contact forces."""
         resist = [f"resist({RESISTED}, power, *columns)"] if self.powers else []
         resist = [line.replace("time, dt", _NOW) for line in resist]

@@ -126,11 +126,11 @@ class Driven(NamedTuple):
     """Driven particles, n of them, the obstacles after them, and the step that they are in the midst of.
 
     Of the document: position, span, weight (inverse mass, 1/kg, 0 where held), shape (n + obstacles, 2); radius, size
-    (the radius, ∞ for obstacles), restitution, node (1: of a structure), shape (n + obstacles,); loose: the particles that are no nodes; asleep, and pull,
-    acceleration by constant forces (m/s²), shape (n,).
-    Of the list: near: the particles in pairs; pairs, shape (p, 2), and of each pair lasting (1: a persistent contact), forces (N), normal, slow (speed
-    below which it stays in contact, m/s), rate (at which it opens, m/s); listed: displacements when it was made, margin
-    (m): how far each particle may move from there.
+    (the radius, ∞ for obstacles), restitution, node (1: of a structure), shape (n + obstacles,); loose: the particles
+    that are no nodes; asleep, and pull, acceleration by constant forces (m/s²), shape (n,).
+    Of the list: near: the particles in pairs; pairs, shape (p, 2), and of each pair lasting (1: a persistent contact),
+    forces (N), normal, slow (speed below which it stays in contact, m/s), rate (at which it opens, m/s); listed:
+    displacements when it was made, margin (m): how far each particle may move from there.
     Of the step: before, velocity: the state it begins with; ahead, ahead_speed: where it leads, as foreseen;
     acceleration, at its start; path_error (m); support: contact forces (kN); kept: control and account at the start.
     Of the search for contact forces: chosen, the pairs in persistent contact; search, with the rows of Tried; start, end:

@@ -42,7 +42,7 @@ def kernels() -> Any:
 def idle() -> Driven:
     """Arrays of no particles."""
     none, vectors = np.zeros(0), np.zeros((0, 2))
-    of_document = dict.fromkeys(("position", "span", "weight"), vectors)
+    of_document: dict[str, Any] = dict.fromkeys(("position", "span", "weight"), vectors)
     of_document |= dict.fromkeys(("radius", "size", "restitution", "pull"), none)
     whole = {
         "node": np.zeros(0, dtype=np.int64),

@@ -118,7 +118,8 @@ class CrowdStepper:
 class ContactProblem:
     """The contacts and impacts of a crowd in one step.
 
-    h: length of the step, s. pairs, normal, room, size: the pairs, their unit vectors, gaps (at least 0, m) and smaller radii (m).
+    h: length of the step, s. pairs, normal, room, size: the pairs, their unit vectors, gaps (at least 0, m) and smaller
+    radii (m).
     """
 
     def __init__(self, near: NeighbourList, pairs: Rows, gap: Floats, normal: Floats) -> None:

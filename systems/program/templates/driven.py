@@ -1,10 +1,10 @@
 """Steps among particles that may meet: between them, and before each is taken for good, `collide` is asked what to do.
 
-`collide` is compiled once for all programs (systems/collision/driven/kernels/steps.py); `driven` holds its arrays, whose rows are those
-of the model. rows: the model's row of each particle of the program; of none: they are the same. place, speed: of the
-model's particles, other arrays than displacement and velocity only where there are `rows`. *kept: copies of what a step
-that is taken back had changed. Contact forces (`support`, kN) last during a step and are added last of all (`unpushed` is
-the sum without them), so that others can be tried without evaluating the rest again.
+`collide` is compiled once for all programs (systems/collision/driven/kernels/steps.py); `driven` holds its arrays.
+Their rows are those of the model. rows: the model's row of each particle of the program; of none: they are the same.
+place, speed: of the model's particles, other arrays than displacement and velocity only where there are `rows`.
+*kept: copies of what a step that is taken back had changed. Contact forces (`support`, kN) last during a step and are
+added last of all (`unpushed` is the sum without them), so that others can be tried without evaluating the rest again.
 """
 
 # ruff: noqa: F821
@@ -120,7 +120,7 @@ def put_back():
 
 
 def each_history():
-    for r in range(rods_between.shape[0]):
+    for r in range(rods_between.shape[0]):  # noqa: B007
         insert(copied)
 
 
@@ -148,7 +148,19 @@ def take_fixed():
             measure(displacement, velocity, force, resisting, measures, *columns)
             account[Account.GUARD_ENERGY] = conserved(measures, account, dt, SHADOW)
         taken, reason = advance(
-            1, True, total, age, began - age * dt, dt, breaks, loads_end, *state, *scratch, account, measures, *columns
+            1,
+            True,
+            total,
+            age,
+            began - age * dt,
+            dt,
+            breaks,
+            loads_end,
+            *state,
+            *scratch,
+            account,
+            measures,
+            *columns,
         )
         age = min(age + taken, CHECK_INTERVAL)
         control[Control.TIME] = real[Real.END]

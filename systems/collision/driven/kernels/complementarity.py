@@ -14,8 +14,9 @@ OPEN, PUSHING, FIXED = 0, 1, 2  # sides of a contact; FIXED: without compliance,
 
 @compiled
 def complementary(first, end, slope, search, matrix, marks):
-    """Forces F ≥ 0 of the contacts from `first` up to `end`, into FOUND, that leave gaps ≥ 0, either being 0 in each; False if there are none.
+    """Forces F ≥ 0 of some contacts, into FOUND, that leave gaps ≥ 0, either being 0 in each; False if there are none.
 
+    first, end: the first of these contacts, and the one after the last.
     search: has the rows of Tried, of which GAP are the gaps with FORCES. slope: derivative of the gaps, which become
     gap + slope (F − forces).
     Contacts that are wrong, since they pull or overlap, change sides all at once, or, where that goes round in circles,

@@ -140,7 +140,10 @@ def span_to_list(driven, h, after, later):
 
 @compiled
 def foreseen_span(driven, h, place, speed):
-    """As span_to_list(), before a step that is foreseen: particles are taken to go AHEAD times as far as their speeds say."""
+    """As span_to_list(), before a step that is foreseen.
+
+    Particles are taken to go AHEAD times as far as their speeds say.
+    """
     listed, margin, outside, far = driven.listed, driven.margin, 0, AHEAD * h
     for i in range(place.shape[0]):
         room = SQUARE * margin[i]

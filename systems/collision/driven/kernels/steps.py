@@ -145,7 +145,7 @@ def _begin(driven, control, account, place, speed):
 
 @compiled
 def _check_clear(driven, control, account, place, speed):
-    """Take steps back in which particles were farther or faster than forces had let expect, and look through the next one."""
+    """Take steps back in which a particle went farther, or faster, than was expected; the next one is looked through."""
     whole = driven.whole
     if whole[Whole.TOTAL] == whole[Whole.KEPT_TOTAL] and whole[Whole.REASON] == StopReason.DONE:
         whole[Whole.EXAMINE] = 1
