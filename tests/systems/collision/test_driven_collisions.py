@@ -349,7 +349,13 @@ def test_elastic_bounces_that_a_damper_calms_end() -> None:
         {"name": "node", "position": [0.0, 0.5], "fixed": [True, False], "radius": 0.02},
         {"name": "rock", "position": [0.0, 0.25], "fixed": [True, True], "radius": 0.2},
     ]
-    spring = {"name": "spring", "between": ["pin", "node"], "stiffness": 1.0, "damping": 0.01, "rest_length": 0.6}
+    spring = {
+        "name": "spring",
+        "between": ["pin", "node"],
+        "stiffness": 1.0,
+        "damping": 0.01,
+        "rest_length": 0.6,
+    }
     document = {"format": "pinjoint model", "version": 1, "environment": GRAVITY, "rods": [spring]}
     session = Session.open(document | {"particles": particles, "settings": {"restitution": 1.0}})
     assert session.run(until="rest", limit=10.0) == "at rest"
