@@ -73,29 +73,32 @@ class Grid(NamedTuple):
     """Boxes around the paths of all discs, and a hash grid of the boxes; see kernels/grid.py.
 
     boxes: left, bottom, right, top, shape (n, 4), m. layer: of each disc, shape (n,). levels: the cells of
-    layer k have the size cell × 2^levels[k], ascending, shape (64,). heads: first entry of each bucket; the number of
-    buckets is a power of two. after: the next entry in the same bucket, shape (capacity,). found: the discs that a
-    search finds, shape (n + 1,).
+    layer k have the size cell × 2^levels[k], ascending, shape (64,); inverse: one by that size, 1/m. heads: first entry
+    of each bucket; the number of buckets is a power of two. after, before: the next entry in the same bucket and the one
+    before, shape (capacity,). found: the discs that a search finds, shape (n + 1,).
     """
 
     boxes: Floats
     layer: Integers
     levels: Integers
+    inverse: Floats
     heads: NDArray[np.int32]
     after: NDArray[np.int32]
+    before: NDArray[np.int32]
     found: Integers
 
     @classmethod
     def empty(cls, n: int, layers: int) -> Grid:
         """A grid of n discs with room for so many layers."""
-        entries = 4 * n * layers
-        buckets = 1 << int(np.ceil(np.log2(max(entries, 16))))
+        buckets = 1 << int(np.ceil(np.log2(max(n * layers, 64))))
         return cls(
             boxes=np.zeros((n, 4)),
             layer=np.zeros(n, dtype=np.int64),
             levels=np.zeros(64, dtype=np.int64),
+            inverse=np.zeros(64),
             heads=np.full(buckets, NONE, dtype=np.int32),
-            after=np.zeros(2 * entries, dtype=np.int32),
+            after=np.zeros(2 * n * layers, dtype=np.int32),
+            before=np.zeros(2 * n * layers, dtype=np.int32),
             found=np.zeros(n + 1, dtype=np.int64),
         )
 

@@ -187,7 +187,7 @@ def _gather(i, j, discs, grid, constraints, group, numbers, counts):
         if not is_held(a, discs):
             count, touching = _gather_persistent(m, count, touching, discs, constraints, group, now)
             left, bottom, right, top = place_box(a, discs, now)
-            near = neighbours(a, left, bottom, right, top, grid, counts[Count.LAYERS], numbers[Number.CELL])
+            near = neighbours(a, left, bottom, right, top, grid, counts[Count.LAYERS])
             sort(grid.found, near)
             for k in range(near):
                 b = grid.found[k]
@@ -350,14 +350,14 @@ def _enclose_anew(count, discs, grid, group, numbers, counts):
     for m in range(count):
         i = group.members[m]
         if discs[i, Disc.EPOCH] == numbers[Number.NOW] and not is_held(i, discs):
-            leave(i, grid, layers, cell)
+            leave(i, grid, layers)
             enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.HORIZON_END])
             level = level_of(i, grid, cell)
             grid.layer[i] = layer_of(level, grid, layers)
             if grid.layer[i] == layers:
                 counts[Count.LEVEL] = max(counts[Count.LEVEL], level)
                 counts[Count.RENEW] = 1
-            enter(i, grid, layers, cell)
+            enter(i, grid, layers)
 
 
 @compiled
@@ -370,7 +370,7 @@ def _schedule_anew(count, discs, grid, constraints, queue, group, numbers, count
         if discs[i, Disc.EPOCH] != numbers[Number.NOW] or is_held(i, discs):
             continue
         left, bottom, right, top = grid.boxes[i]
-        near = neighbours(i, left, bottom, right, top, grid, counts[Count.LAYERS], numbers[Number.CELL])
+        near = neighbours(i, left, bottom, right, top, grid, counts[Count.LAYERS])
         grid.found[near] = i  # and the end of the step of its persistent contacts
         for k in range(near + 1):
             j = grid.found[k]

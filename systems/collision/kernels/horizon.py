@@ -142,20 +142,20 @@ def _fill(most, discs, grid, constraints, queue, numbers, counts):
     for i in range(discs.shape[0]):
         enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.HORIZON_END])
     set_layers(grid, numbers, counts)
-    layers, cell = counts[Count.LAYERS], numbers[Number.CELL]
-    if 8 * discs.shape[0] * layers > grid.after.shape[0]:
+    layers = counts[Count.LAYERS]
+    if 2 * discs.shape[0] * layers > grid.after.shape[0]:
         return Reason.GRID_FULL, 0
     grid.heads[:] = NONE
     counts[Count.QUEUED] = 0
     pairs = 0
     for i in range(discs.shape[0]):
         left, bottom, right, top = grid.boxes[i]
-        near = neighbours(i, left, bottom, right, top, grid, layers, cell)
+        near = neighbours(i, left, bottom, right, top, grid, layers)
         grid.found[near] = i  # and the step of its persistent contacts
         for k in range(near + 1):
             if not schedule_impact(i, grid.found[k], discs, constraints, queue, numbers, counts):
                 return Reason.QUEUE_FULL, 0
-        enter(i, grid, layers, cell)
+        enter(i, grid, layers)
         pairs += near
         if pairs > most:
             break
@@ -248,6 +248,7 @@ def set_layers(grid, numbers, counts):
     for level in range(COARSEST + 1):
         if (needed >> level) & 1:
             grid.levels[layers] = level
+            grid.inverse[layers] = math.ldexp(1.0 / numbers[Number.CELL], -level)
             layers += 1
     for i in range(count):
         grid.layer[i] = layer_of(grid.layer[i], grid, layers)

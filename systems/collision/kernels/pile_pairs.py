@@ -80,14 +80,14 @@ def list_pairs(h, discs, grid, constraints, pile, numbers, counts):
         grid.boxes[i, 2] += room
         grid.boxes[i, 3] += room
     set_layers(grid, numbers, counts)
-    layers, cell = counts[Count.LAYERS], numbers[Number.CELL]
-    if 8 * discs.shape[0] * layers > grid.after.shape[0]:
+    layers = counts[Count.LAYERS]
+    if 2 * discs.shape[0] * layers > grid.after.shape[0]:
         return Reason.GRID_FULL
     grid.heads[:] = NONE
     pairs = 0
     for i in range(discs.shape[0]):
         left, bottom, right, top = grid.boxes[i]
-        near = neighbours(i, left, bottom, right, top, grid, layers, cell)
+        near = neighbours(i, left, bottom, right, top, grid, layers)
         sort(grid.found, near)
         for k in range(near):
             j = grid.found[k]
@@ -98,7 +98,7 @@ def list_pairs(h, discs, grid, constraints, pile, numbers, counts):
                 entry = find_persistent(i, j, constraints)
                 pile.forces[pairs] = 0.0 if entry == NONE else constraints.forces[entry]
             pairs += 1
-        enter(i, grid, layers, cell)
+        enter(i, grid, layers)
     if pairs > pile.forces.shape[0] or 2 * pairs > counts[Count.SPARES]:
         return Reason.GROUP_FULL
     counts[Count.LISTED] = pairs
