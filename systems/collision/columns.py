@@ -75,7 +75,7 @@ class Grid(NamedTuple):
     boxes: left, bottom, right, top, shape (n, 4), m. layer: of each disc, shape (n,). levels: the cells of
     layer k have the size cell × 2^levels[k], ascending, shape (64,); inverse: one by that size, 1/m. heads: first entry
     of each bucket; the number of buckets is a power of two. after, before: the next entry in the same bucket and the one
-    before, shape (capacity,). found: the discs that a search finds, shape (n + 1,).
+    before, shape (capacity,). found: the discs that searches find, shape (2 n + 2,); times: of impacts with them, s.
     """
 
     boxes: Floats
@@ -86,6 +86,7 @@ class Grid(NamedTuple):
     after: NDArray[np.int32]
     before: NDArray[np.int32]
     found: Integers
+    times: Floats
 
     @classmethod
     def empty(cls, n: int, layers: int) -> Grid:
@@ -99,7 +100,8 @@ class Grid(NamedTuple):
             heads=np.full(buckets, NONE, dtype=np.int32),
             after=np.zeros(2 * n * layers, dtype=np.int32),
             before=np.zeros(2 * n * layers, dtype=np.int32),
-            found=np.zeros(n + 1, dtype=np.int64),
+            found=np.zeros(2 * n + 2, dtype=np.int64),
+            times=np.zeros(2 * n + 2),
         )
 
 

@@ -140,9 +140,12 @@ def leave(i, grid, layers):
 
 
 @compiled
-def neighbours(i, left, bottom, right, top, grid, layers):
-    """Discs other than i whose boxes overlap a part of that of i, each once, into `found`; returns how many."""
-    heads, mask, row, count = grid.heads, grid.heads.shape[0] - 1, _row(grid), 0
+def neighbours(i, left, bottom, right, top, grid, layers, count):
+    """Discs other than i whose boxes overlap a part of that of i, each once, into `found` after the first `count`.
+
+    Returns how many have been found then.
+    """
+    heads, mask, row = grid.heads, grid.heads.shape[0] - 1, _row(grid)
     for k in range(grid.layer[i], layers):
         inverse = grid.inverse[k]
         first_x, first_y = math.floor(left * inverse) - 1, math.floor(bottom * inverse) - 1

@@ -87,7 +87,7 @@ def list_pairs(h, discs, grid, constraints, pile, numbers, counts):
     pairs = 0
     for i in range(discs.shape[0]):
         left, bottom, right, top = grid.boxes[i]
-        near = neighbours(i, left, bottom, right, top, grid, layers)
+        near = neighbours(i, left, bottom, right, top, grid, layers, 0)
         sort(grid.found, near)
         for k in range(near):
             j = grid.found[k]

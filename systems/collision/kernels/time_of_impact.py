@@ -54,6 +54,14 @@ def displacement_at(i, discs, time):
 
 
 @compiled
+def rim(i, nx, ny, discs, time):
+    """The point of a disc's rim in a direction from its centre."""
+    ux, uy = displacement_at(i, discs, time)
+    x, y = discs[i, Disc.OX] + ux, discs[i, Disc.OY] + uy
+    return x + discs[i, Disc.RADIUS] * nx, y + discs[i, Disc.RADIUS] * ny
+
+
+@compiled
 def relative_motion(discs, i, j, time):
     """Position, velocity and acceleration of disc j relative to disc i at a time, on their parabolas."""
     s = time - discs[i, Disc.EPOCH]
@@ -175,6 +183,21 @@ def place_noise(discs, i, j, time):
 
 
 @compiled
+def are_touching(path, i, j, discs, time):
+    """True if the gap of two discs is round-off, or none, at a time; `path`: their relative motion then."""
+    dx, dy, _, _, _, _ = path
+    if discs[i, Disc.STEP] < INFINITY or discs[j, Disc.STEP] < INFINITY:
+        dx, dy, _, _ = relative_state(discs, i, j, time)
+    dx, dy, _ = nearest(dx, dy, j, discs)
+    reach = discs[i, Disc.RADIUS] + discs[j, Disc.RADIUS]
+    squared = dx * dx + dy * dy
+    if squared > 4.0 * reach * reach:
+        return False
+    reach += place_noise(discs, i, j, time)
+    return squared <= reach * reach
+
+
+@compiled
 def pull_on(discs, i, j):
     """The larger acceleration (m/s²) of two discs without contacts."""
     first = math.hypot(discs[i, Disc.GX], discs[i, Disc.GY])
@@ -198,6 +221,18 @@ def rest_speed(i, j, discs, rest_height, time):
         radius = smaller_radius(i, j, discs)
         speed = max(speed, math.sqrt(2.0 * pull_on(discs, i, j) * rest_height * radius))
     return speed
+
+
+@compiled
+def pass_by(path, reach):
+    """True if two discs without relative acceleration pass one another by: what first_approach finds then, sooner."""
+    dx, dy, vx, vy, ax, ay = path
+    if ax != 0.0 or ay != 0.0:
+        return False
+    if dx * vx + dy * vy >= 0.0:
+        return True
+    passing = dx * vy - dy * vx
+    return (vx * vx + vy * vy) * reach * reach < passing * passing and dx * dx + dy * dy > reach * reach
 
 
 @compiled
