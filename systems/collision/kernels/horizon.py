@@ -36,7 +36,7 @@ from systems.collision.kernels.time_of_impact import (
 )
 
 LONGEST_HORIZON, SHORTEST_HORIZON = 2.0**20, 2.0**-200  # s
-BOX_COST = 2.5  # of renewing a disc's box, relative to that of looking at one neighbour (measured)
+BOX_COST = 1.25  # of renewing a disc's box, relative to that of looking at one neighbour (measured)
 MOST_NEIGHBOURS = 64  # per disc; with more, a shorter horizon is opened
 MOST_CORRECTIONS = 3  # of a time of impact, each of which squares its error
 LARGEST_CORRECTION = 1e-3  # of the step of persistent contact
