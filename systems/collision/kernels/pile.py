@@ -45,11 +45,9 @@ from systems.collision.kernels.pile_solver import (
 from systems.collision.kernels.time_of_impact import INFINITY, displacement_at, smaller_radius, velocity_at
 
 TOLERANCE = 1e-8  # of the smallest radius: depth by which discs may sink into others in a step
-SMALL_PILE, DEPTH, ROUGHNESS = (
-    100,
-    9e-4,
-    0.05,
-)  # with more contacts, this depth or this share of the fastest travel
+SMALL_PILE = 50  # contacts; with more of them, these are enough:
+DEPTH = 8e-4  # of the smallest radius
+ROUGHNESS = 0.05  # of the fastest travel in the step
 NEARBY = 0.2  # of the radius of the smaller of two discs: gap below which they move on straight lines
 CALM_TRAVEL = 0.004  # of the smallest radius, in a step: a disc that travels less is calm
 CALM_SPEEDS = 1.0  # of the speed that free fall gives in a step: a slower disc is calm

@@ -12,7 +12,7 @@ from systems.collision.kernels.persistent_contact import is_held
 from systems.collision.kernels.time_of_impact import rest_speed
 
 MOST_PILE_SWEEPS = 80  # to and fro over the contacts in a step; the next continues from its impulses
-FEW = 0.03  # of the contacts left to correct, at which sweeps end
+FEW = 0.02  # of the contacts left to correct, at which sweeps end
 MOST_REST = 10  # times that each contact is then looked at, on average
 MOST_RELAXED = 40000  # contacts up to which the sweeps over few are more
 ENERGY_ROUND_OFF = 1e-9  # of the energy of motion
