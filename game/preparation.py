@@ -6,7 +6,7 @@ Programs begin interpreted, so that most models never wait: see `is_live`.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence, Set
 from itertools import islice
 from typing import Any
 
@@ -23,7 +23,14 @@ from systems.collision.free.discs import EVENTS, HORIZONS, PILES
 from systems.collision.free.flight import may_pile
 from systems.collision.system import Support, persistent_contacts
 from systems.edit.pull import Pull
-from systems.physics.system import Elasticity, ElasticityAfterYielding
+from systems.physics.system import (
+    AxialDamping,
+    AxialDampingOfCables,
+    Drag,
+    Elasticity,
+    ElasticityAfterYielding,
+    Slackness,
+)
 from systems.plasticity.system import Strength, Yielding
 from systems.program.compiler import LARGE, UNCOMPILED, Choice, Compile, GeneratedModule, tell
 from systems.program.program import module_of
@@ -32,7 +39,15 @@ from systems.render.raster import RASTER, Raster, load_raster
 from systems.run.simulation import Simulation
 
 BEGINNING = 1.5  # s in which the other process gets ready to compile
-RAMP = "loads.ramp"
+BY_AN_EDIT: Sequence[
+    tuple[Set[str], str]
+] = (  # systems that an edit brings, and which one they take the place of
+    ({Pull.name}, ""),
+    ({ElasticityAfterYielding.name, Strength.name, Yielding.name}, Elasticity.name),
+    ({"loads.ramp"}, ""),
+    ({Slackness.name, AxialDampingOfCables.name}, AxialDamping.name),
+    ({Drag.name}, ""),
+)
 AHEAD = (RASTER, DRIVEN, EVENTS, HORIZONS, PILES)  # which any model may come to need
 
 
@@ -205,19 +220,18 @@ def _jobs_of(simulation: Simulation) -> list[Job]:
 
 
 def _jobs_later(simulation: Simulation) -> Iterator[Job]:
-    """What a simulation may come to need: while a hand pulls, with plasticity, under a load that grows; and all units."""
+    """What a simulation may come to need: a program for what one edit brings, the likeliest first; and all units."""
     if not simulation.integrator.exact:
-        yield _job_with(simulation, {Pull.name})
-        if any(isinstance(system, Elasticity) for system in simulation.plan):
-            yielding = {ElasticityAfterYielding.name, Strength.name, Yielding.name}
-            yield _job_with(simulation, yielding, without=Elasticity.name)
-        yield _job_with(simulation, {RAMP})
+        present = {system.name for system in simulation.plan}
+        for brought, replaced in BY_AN_EDIT:
+            if not brought <= present and (not replaced or replaced in present):
+                yield _job_with(simulation, brought, without=replaced)
     yield from ((unit.name,) for unit in AHEAD)
 
 
-def _job_with(simulation: Simulation, names: set[str], without: str = "") -> Job:
-    names |= {system.name for system in simulation.plan}
-    return _job(simulation, simulation.schedule.named(names - {without}))
+def _job_with(simulation: Simulation, names: Set[str], without: str = "") -> Job:
+    present = {system.name for system in simulation.plan}
+    return _job(simulation, simulation.schedule.named((names | present) - {without}))
 
 
 def _job(simulation: Simulation, plan: Sequence[StepSystem]) -> Job:

@@ -1,9 +1,10 @@
 """Machine code of kernels, by numba, and the quick way to compile large programs of them.
 
 Plain numba optimises each part with everything that it calls, and makes machine code of it, although only the entry
-is called from Python. Here a part is only translated to LLVM code; the entry is linked with its parts, then optimised
-and compiled as a whole, in a fraction of the time. Only the entry's parts call one another, so that arguments which a
-part does not use are dropped: an array has nine, which would cost steps of a few rods a third of their time.
+is called from Python. Here a part is only translated to LLVM code (systems/translation.py); the entry is linked with
+its parts, then optimised and compiled as a whole, in a fraction of the time. Only the entry's parts call one another, so
+that arguments which a part does not use are dropped: an array has nine, which would cost steps of a few rods a third of
+their time. What can be called from Python by itself is a part, too, where another kernel calls it.
 
 This uses inner classes of numba (from `_MachineCode` on). With the environment variable PINJOINT_PLAIN_NUMBA=1 all
 kernels are compiled by numba's own `njit` with the same options: programs compute the same bits and take longer to
@@ -29,26 +30,16 @@ import numba
 from numba import njit
 from numba.core.caching import NullCache
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler, CompileResult
-from numba.core.compiler_machinery import PassManager
+from numba.core.compiler import CompileResult
 from numba.core.registry import CPUDispatcher, cpu_target
+from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
-from numba.core.typed_passes import InlineOverloads, NopythonRewrites
-from numba.core.types import Function, unliteral
-from numba.core.typing.context import Context
-from numba.core.untyped_passes import (
-    FindLiterallyCalls,
-    InlineClosureLikes,
-    InlineInlinables,
-    LiteralPropagationSubPipelinePass,
-    LiteralUnroll,
-    MakeFunctionToJitFunction,
-    WithLifting,
-)
+from numba.core.types import unliteral
 from numba.extending import typeof_impl
 
 from systems import cache
 from systems.kernels import PLAIN, Kernel, Use
+from systems.translation import LeanCompiler
 
 _PROCESSOR = repr(cpu_target.target_context.codegen().magic_tuple())
 
@@ -57,8 +48,8 @@ _FURTHER: dict[Use, dict[str, Any]] = {
     Use.BY_ITSELF: {"no_cfunc_wrapper": True},
     Use.PART: _NO_WRAPPERS,
     Use.SHARED: {**_NO_WRAPPERS, "parallel": True},
-    Use.KEPT: {},
-    Use.ENTRY: {},
+    Use.KEPT: {"no_cfunc_wrapper": True},
+    Use.ENTRY: {"no_cfunc_wrapper": True},
 }
 
 
@@ -77,11 +68,23 @@ def machine_code(kernel: Any) -> Any:
 _made: dict[Kernel, Any] = {}
 
 
+def _part_of(kernel: Kernel) -> Any:
+    """What functions that numba compiles call for a kernel."""
+    if PLAIN or kernel.use not in (Use.PART, Use.BY_ITSELF):
+        return machine_code(kernel)
+    if kernel not in _parts:
+        options = {"nopython": True, "boundscheck": None, **_NO_WRAPPERS, **kernel.targetoptions}
+        _parts[kernel] = _Part(kernel.py_func, locals={}, targetoptions=options, pipeline_class=_PartCompiler)
+    return _parts[kernel]
+
+
+_parts: dict[Kernel, Any] = {}
+
+
 def _dispatcher_of(kernel: Kernel) -> Any:
     options, function = _FURTHER[kernel.use] | kernel.targetoptions, kernel.py_func
     if kernel.use is Use.PART and not PLAIN:
-        chosen = {"nopython": True, "boundscheck": None, **options}
-        return _Part(function, locals={}, targetoptions=chosen, pipeline_class=_PartCompiler)
+        return _part_of(kernel)
     if kernel.use is Use.ENTRY and not PLAIN:
         options["pipeline_class"] = _EntryCompiler
     dispatcher: Any = njit(**options)(function)
@@ -96,7 +99,7 @@ def _dispatcher_of(kernel: Kernel) -> Any:
 @typeof_impl.register(Kernel)
 def _type_of(kernel: Kernel, context: Any) -> Any:
     """Functions that numba compiles call a kernel as what it makes of it."""
-    return numba.typeof(machine_code(kernel))
+    return numba.typeof(_part_of(kernel))
 
 
 def adopt(module: ModuleType, name: str, kernels: Iterable[Any]) -> None:
@@ -107,6 +110,8 @@ def adopt(module: ModuleType, name: str, kernels: Iterable[Any]) -> None:
     for kernel in kernels:
         if _is_compiled(kernel):
             kernel._cache = NullCache()
+        if not str(kernel.__module__).startswith("systems."):
+            cpu_target.target_context.refresh()  # it may refer to anything of numba's
     module.__name__ = name
     sys.modules[name] = module  # what is cached looks the module up by its name
     for function in vars(module).values():
@@ -151,7 +156,9 @@ class _MachineCode(NullCache):
 
     def load_overload(self, signature: Any, target: Any) -> Any:
         """What was compiled for these types; None if it is to be compiled."""
-        target.refresh()
+        rtsys.initialize(
+            target
+        )  # all that Pinjoint's own kernels need; a compiler would take six times as long
         content = cache.read(self._name(signature))
         if content is None:
             return None
@@ -162,69 +169,10 @@ class _MachineCode(NullCache):
 
     def save_overload(self, signature: Any, result: Any) -> None:
         """Keep what was compiled, unless it holds addresses of this process."""
+        for environment in result._find_referenced_environments():  # of parts, with which they raise errors
+            result.library.codegen.set_env(environment.env_name, environment)
         if not result.library.has_dynamic_globals:
             cache.write(self._name(signature), dumps(result._reduce()))
-
-
-# --- what numba knows of types -------------------------------------------------------------------
-
-# Passes over a function that look for what kernels do not have: `with`, closures and comprehensions, functions
-# inlined before their types are known, loops over tuples of different types, expressions of whole arrays.
-UNUSED = (
-    WithLifting,
-    InlineClosureLikes,
-    MakeFunctionToJitFunction,
-    InlineInlinables,
-    FindLiterallyCalls,
-    LiteralUnroll,
-    LiteralPropagationSubPipelinePass,
-    InlineOverloads,
-    NopythonRewrites,
-)
-
-
-class _Typing(Context):
-    """numba's context of types, with a memory of what calls return.
-
-    For every `a + b` numba asks a dozen candidates. A large program has some six thousand such operations, of which
-    a few hundred differ in types.
-    """
-
-    def __init__(self, known: Context) -> None:
-        self.__dict__ = known.__dict__
-        self._found: dict[Any, Any] = {}
-
-    def resolve_function_type(self, function: Any, given: Any, named: Any) -> Any:
-        """The signature of a function for arguments of these types."""
-        known = self._lookup_global(function) or function
-        if named or not isinstance(known, Function):
-            return super().resolve_function_type(function, given, named)
-        key = known, tuple(given)
-        if key not in self._found:
-            found = super().resolve_function_type(function, given, named)
-            if found is None:
-                return None
-            self._found[key] = found
-        return self._found[key]
-
-
-class _LeanCompiler(Compiler):
-    """numba's compiler with that memory and without the passes that kernels have no use for."""
-
-    _typing = _Typing(cpu_target.typing_context)
-
-    def __init__(self, _: Any, *rest: Any) -> None:
-        super().__init__(self._typing, *rest)
-
-    def define_pipelines(self) -> list[PassManager]:
-        """The usual passes, less the unused ones."""
-        (usual,) = super().define_pipelines()
-        lean = PassManager(usual.pipeline_name)
-        for kind, purpose in usual.passes:
-            if kind not in UNUSED:
-                lean.add_pass(kind, purpose)
-        lean.finalize()
-        return [lean]
 
 
 # --- parts ---------------------------------------------------------------------------------------
@@ -268,19 +216,16 @@ class _PartCode(JITCodeLibrary):
                     called._called(found)
         return found
 
-    def _optimize_functions(self, module: Any) -> None:
-        module.data_layout = self._codegen._data_layout
-
     @property
     def codegen(self) -> _PartCode:
         """The receiver of set_env(), which numba's compiler looks up here."""
         return self
 
     def set_env(self, name: str, environment: Any) -> None:
-        """Do nothing: only machine code has an environment, to raise exceptions with, and parts raise none."""
+        """Do nothing: only machine code has an environment, which is set once that is there."""
 
 
-class _PartCompiler(_LeanCompiler):
+class _PartCompiler(LeanCompiler):
     """Compiles a part as far as LLVM code."""
 
     def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
@@ -313,7 +258,7 @@ class _EntryCode(JITCodeLibrary):
         super()._optimize_final_module()
 
 
-class _EntryCompiler(_LeanCompiler):
+class _EntryCompiler(LeanCompiler):
     """Compiles an entry with its parts to machine code that can be cached."""
 
     def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:

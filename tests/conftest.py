@@ -3,11 +3,14 @@
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import chdir
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+from systems.program.compiler import Choice
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -18,6 +21,22 @@ settings.register_profile("pinjoint", settings.get_profile("explore"), derandomi
 settings.load_profile("pinjoint")
 
 
+@pytest.fixture(autouse=True, scope="session")
+def folder_of_the_tests(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Tests run outside the repository, in which they leave nothing: keys and commands write where they are."""
+    with pytest.MonkeyPatch.context() as patched, chdir(tmp_path_factory.mktemp("tests")):
+        patched.setenv("PYTHONPATH", str(ROOT))  # for the processes that they start
+        yield
+
+
+@pytest.fixture(autouse=True)
+def form_of_programs() -> Iterator[None]:
+    """A window that is left open would have all later tests interpreted, and compile for as long as they run."""
+    before = Choice.compile
+    yield
+    assert Choice.compile is before, "close the window, or its Preparation, at the end of the test"
+
+
 @pytest.fixture
 def fresh_process() -> Callable[..., str]:
     """Run Python code in a process of its own; returns what it printed. `environment` adds variables."""
@@ -25,7 +44,7 @@ def fresh_process() -> Callable[..., str]:
     def run(code: str, environment: Mapping[str, str] | None = None, timeout: float = 300.0) -> str:
         finished = subprocess.run(
             [sys.executable, "-c", code],
-            env=os.environ | {"PYTHONPATH": str(ROOT)} | dict(environment or {}),
+            env=os.environ | dict(environment or {}),
             capture_output=True,
             text=True,
             timeout=timeout,

@@ -61,7 +61,7 @@ LARGE = 300  # rods or discs from which on one step, interpreted, takes as long 
 LONGEST_CALL = 0.05  # s, interpreted
 BEFORE_COMPILING = 1.0  # s of interpreting, for each that compiling is expected to take
 SECONDS_PER_BYTE = (
-    2e-4  # of the interpreter's code, that compiling takes; for a machine that has compiled nothing yet
+    1.3e-4  # of the interpreter's code, that compiling takes; for a machine that has compiled nothing yet
 )
 
 UNCOMPILED: list[str] = []  # sentences: what could not be compiled, and why

@@ -19,9 +19,9 @@ ROOT = Path(__file__).parents[2]
 LAYERS = ("components", "systems", "game", "tests")  # each may import itself and those before it
 RESOURCES = "assets"
 WINDOW = ("systems/render/pygame_*.py", "systems/input/pygame_*.py", "game/app.py")
-COMPILER = ("systems/machine_code.py",)  # numba is imported as soon as it is
+COMPILER = ("systems/machine_code.py", "systems/translation.py")  # numba is imported as soon as it is
 COMPILED = (*COMPILER, "systems/program/*.py")
-FORMS = ("interpreter", "kernels", "machine_code")
+FORMS = ("interpreter", "kernels", "machine_code", "translation")
 SHARED = ("base", "broad_phase", "cache", "entries", "islands", *FORMS, "program")  # by all systems
 COMPOSED = ("program", "run", "catalogue.py")  # of what other folders of systems hold
 MODULES_OF = {"pygame-ce": "pygame", "pillow": "PIL"}  # distributions whose module has another name
@@ -73,7 +73,7 @@ def broken_rule(path: str, name: str) -> str | None:
     if top == "pygame" and not within(path, WINDOW):
         return "pygame is imported only by the window's backends"
     if top == "numba" and not within(path, COMPILED):
-        return "numba is imported only by machine_code.py and the step program"
+        return "numba is imported only by machine_code.py, translation.py and the step program"
     return None
 
 

@@ -7,6 +7,7 @@ import os
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from itertools import count
 from pathlib import Path
 
@@ -31,12 +32,19 @@ class Hand:
     """Somebody at a window without a display, with a lattice of rods before them."""
 
     def __init__(self, rods: int) -> None:
+        self._thresholds = gc.get_threshold()
         gc.set_threshold(SELDOM)  # as App.run does
         self.app = App(lattice(rods, damping=1.0), preparation=Preparation())
         self.session = self.app.session
         self._fresh = count(1)  # something else every time: a particle, a place
         while not self.session.simulation.programs.ready:  # nobody is that quick
             self.pause()
+
+    def close(self) -> None:
+        """Close the window, and let go of what is still being compiled."""
+        self.app.preparation.close()  # type: ignore[union-attr]
+        self.app.close()
+        gc.set_threshold(*self._thresholds)
 
     def pause(self) -> None:
         """Look on for a moment."""
@@ -215,8 +223,8 @@ def reactions(*, quick: bool) -> Iterator[Row]:
     The last is what counts as in time, for it is what one waits where nothing else keeps the machine busy.
     What the picture before said that it is worked on need not be.
     """
-    with tempfile.TemporaryDirectory() as folder, library.data_in(Path(folder)):
-        hand = Hand(2_000 if quick else 10_000)
+    rods = 2_000 if quick else 10_000
+    with tempfile.TemporaryDirectory() as folder, library.data_in(Path(folder)), closing(Hand(rods)) as hand:
         hand.session.save_as(library.data_folder() / "lattice.json")
         for what, act, times in SESSION:
             hand.wait()

@@ -21,6 +21,8 @@ from systems.physics.spectrum import spectra, spectrum
 from tests.reference.models import oscillator, square, triangle
 
 TRIANGLE = triangle(damping=100, density=6.15, tensile_strength=215, compressive_strength=215)
+# Where it yields, it does so in the overshoot, and soon rests; a mechanism would take many thousand steps.
+OVERSHOOTING = triangle(damping=20, density=6.15, tensile_strength=215, compressive_strength=215)
 TIMES = Analysis(times=(1e-4, 3e-4, 1e-3))
 MEASURES = [
     "rods.*.axial_force,rods.*.length,rods.*.strain,rods.*.plastic_strain,rods.*.yielding",
@@ -108,9 +110,9 @@ def test_together_they_have_the_bits_of_single_runs(name: str) -> None:
 
 
 BY_INTEGRATOR: dict[str, tuple[Any, list[str], Analysis]] = {
-    "dop853": (TRIANGLE, ["rods.BC.compressive_strength=150:215:11"], Analysis()),
+    "dop853": (OVERSHOOTING, ["rods.BC.compressive_strength=205:290:11"], Analysis()),
     "rk4": (loaded_cables(), ["environment.drag=0.5,10", "rods.AB.stiffness=1e5:2e5:5"], TIMES),
-    "velocity_verlet": (TRIANGLE, ["rods.BC.compressive_strength=150:215:11"], Analysis()),
+    "velocity_verlet": (OVERSHOOTING, ["rods.BC.compressive_strength=205:290:11"], Analysis()),
     "semi_implicit_euler": (loaded(), ["settings.time_step=null,2e-6", "rods.AB.stiffness=1e5:2e5:5"], TIMES),
     "taylor2": (loaded_cables(), ["environment.drag=0.5,10", "rods.AB.stiffness=1e5:2e5:5"], TIMES),
 }

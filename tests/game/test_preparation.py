@@ -164,15 +164,35 @@ def test_what_the_open_model_needs_is_compiled_first(app: App, compiler: Compile
     end(compiler.processes[0])
     until(app, lambda: len(compiler.processes) > 1)
     later = compiler.processes[1].jobs
-    assert [set(job) - set(first) for job in later] == [{"edit.pull"}, {"loads.ramp"}]
+    assert [set(job) - set(first) for job in later] == [
+        {"edit.pull"},
+        {"loads.ramp"},
+        {"physics.slackness", "physics.axial_damping_of_cables"},
+        {"physics.drag"},
+    ]
 
 
-def test_plasticity_is_compiled_before_it_is_switched_on(app: App, compiler: Compiler) -> None:
+def _yields(session: Session) -> None:
+    session.settings.plasticity = True
+
+
+def _hangs_by_a_cable(session: Session) -> None:
+    session.rods["AB"].tension_only = True
+
+
+def _moves_through_air(session: Session) -> None:
+    session.environment.drag = 0.5
+
+
+@pytest.mark.parametrize("edit", [_yields, _hangs_by_a_cable, _moves_through_air])
+def test_what_an_edit_will_bring_is_compiled_before(
+    app: App, compiler: Compiler, edit: Callable[[Session], None]
+) -> None:
     session = app.session
     session.settings.plasticity = False
     frames(app, 3)
     soon = list(preparation._jobs_later(session.simulation))
-    session.settings.plasticity = True
+    edit(session)
     assert _jobs_of(session.simulation)[0] in soon
 
 
@@ -361,7 +381,10 @@ def test_a_large_picture_is_a_sketch_until_its_drawing_is_compiled(app: App, com
     assert (whole != background).sum() > 1.5 * (sketch != background).sum()
 
 
-ALONE = '{"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}]}'
+ALONE = (
+    '{"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}],'
+    ' "settings": {"integrator": "velocity_verlet"}}'  # the quickest to compile
+)
 CHECK = f"""
 from game import Session
 session = Session.open({ALONE})

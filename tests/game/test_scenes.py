@@ -221,10 +221,11 @@ def test_undo_and_redo_of_runs_and_edits_bit_for_bit(session: Session) -> None:
     run_frames(session)
     did(session.press("space"))
     did(session.model.create(Particle, position=[(3, 3)]))
+    did(session.run(until="rest"))
     did(session.model.create(Rod, between=[(1, 3)]))
     did(session.run(steps=200))
     did(session.model.delete([session.particles["A"]]))
-    did(session.run(until="rest"))
+    did(session.run(steps=300))
     for expected in reversed(seen[:-1]):
         session.press("ctrl+z")
         assert bits.different(bits.columns(session.model), expected) == []

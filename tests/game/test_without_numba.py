@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+ROOT = Path(__file__).parents[2]
 WITHOUT = """
 import sys
 
@@ -47,7 +48,8 @@ def plugin(app):
 def run(tmp_path: Path, *words: str, compile: str = "never") -> subprocess.CompletedProcess[str]:
     own = {f"PINJOINT_{name}": str(tmp_path / name) for name in ("DATA", "CONFIG")}
     variables = {**os.environ, **own, "PINJOINT_COMPILE": compile, "SDL_VIDEODRIVER": "dummy"}
-    return subprocess.run([sys.executable, *words], env=variables, capture_output=True, text=True, check=False)
+    command = [sys.executable, *words]
+    return subprocess.run(command, cwd=ROOT, env=variables, capture_output=True, text=True, check=False)
 
 
 @pytest.mark.parametrize(

@@ -94,16 +94,24 @@ def test_the_forces_of_persistent_contacts_pass() -> None:
 def test_our_frame_systems_pass(tmp_path: Path) -> None:
     pygame.init()
     surface = pygame.Surface((320, 200))
+    preparations: list[Preparation] = []
+
+    def preparation() -> Preparation:
+        preparations.append(Preparation())
+        return preparations[-1]
+
     frames = [
         Hover,
         Sampling,
         PygameInput,
         partial(PygameRender, surface),
-        Preparation,
+        preparation,
         partial(Autosave, tmp_path),
     ]
     for make in frames:
         assert check_system(make, [EVERYTHING, BODIES]).needed == 2
+    for made in preparations:
+        made.close()
 
 
 def test_an_integrator_is_checked_where_it_takes_the_steps() -> None:

@@ -1,11 +1,8 @@
 """Parts: kernels that only other kernels call."""
 
-import os
-import subprocess
-import sys
+from collections.abc import Callable
 
 import numpy as np
-import pytest
 from numba import njit
 
 from systems.kernels import part
@@ -46,33 +43,27 @@ def test_a_part_is_interpreted_where_python_calls_it() -> None:
 
 DIGEST = """
 import hashlib
-import sys
 
 from game import Session
 from systems.kernels import PLAIN
 
-session = Session.open("hyperstatic_yield")
-session.settings.integrator = sys.argv[1]
-session.run(steps=40)
-state = [session.model.particles.displacement, session.model.particles.velocity, session.model.rods.plastic_strain]
-print(PLAIN, hashlib.sha256(b"".join(column.tobytes() for column in state)).hexdigest())
-print(session.simulation.program.module.key)
+for integrator in ("velocity_verlet", "rk4"):
+    session = Session.open("hyperstatic_yield")
+    session.settings.integrator = integrator
+    session.run(steps=40)
+    state = [session.model.particles.displacement, session.model.particles.velocity, session.model.rods.plastic_strain]
+    print(PLAIN, hashlib.sha256(b"".join(column.tobytes() for column in state)).hexdigest())
+    print(session.simulation.program.module.key)
 """
 
 
-@pytest.mark.parametrize("integrator", ["velocity_verlet", "rk4"])
-def test_plain_numba_computes_the_same_bits(integrator: str) -> None:
+def test_plain_numba_computes_the_same_bits(fresh_process: Callable[..., str]) -> None:
     """And its programs go by other names, so that neither way takes what the other one cached."""
     plain, own = (
-        subprocess.run(
-            [sys.executable, "-c", DIGEST, integrator],
-            env={**os.environ, "PINJOINT_PLAIN_NUMBA": switch, "PINJOINT_COMPILE": "always"},
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout.split()
+        fresh_process(DIGEST, {"PINJOINT_PLAIN_NUMBA": switch, "PINJOINT_COMPILE": "always"}).split()
         for switch in ("1", "")
     )
-    assert (plain[0], own[0]) == ("True", "False")
-    assert plain[1] == own[1]
-    assert plain[2] != own[2]
+    for first in (0, 3):
+        assert (plain[first], own[first]) == ("True", "False")
+        assert plain[first + 1] == own[first + 1]
+        assert plain[first + 2] != own[first + 2]

@@ -10,15 +10,18 @@ from game import Session
 from game.documents import models
 from game.included.collisions import panels
 from systems.collision.columns import Reason
-from systems.collision.free.discs import Discs
+from systems.collision.free.discs import EVENTS, HORIZONS, PILES, Discs
+from systems.program.compiler import SMALL
 from tests.reference import closed_forms
 from tests.reference.scenes_of_discs import deepest
 
 
 def discs_of(name: str) -> Discs:
-    """The particles of a bundled model without rods, as discs."""
+    """The particles of a bundled model without rods, as discs that machine code moves, as a window would soon have it."""
     model = models.load(name)
     particles = model.particles
+    for module in (EVENTS, HORIZONS, PILES) if particles.count > SMALL else ():
+        module.load()
     return Discs(
         particles.position,
         particles.velocity,

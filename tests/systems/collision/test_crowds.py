@@ -17,6 +17,9 @@ from systems.collision.columns import Contact, Group
 from systems.collision.driven.compiled import kernels
 from systems.collision.driven.crowds import CROWD_CONTACTS, NO_IMPACT, CrowdStepper
 from systems.collision.system import persistent_contacts
+from systems.program.compiler import Compile
+from tests.reference import bits
+from tests.reference.forms import load_all, programs
 from tests.systems.collision.test_driven_collisions import GRAVITY, box, energy_of_discs
 
 GRAVITY_PULL = 9.81
@@ -113,6 +116,7 @@ def test_impulses_that_are_not_found_do_no_work(seed: int, discs: int, known: fl
 @pytest.mark.parametrize(("width", "restitution", "seed"), [(0.9, 0.0, 1), (1.1, 0.3, 2), (0.6, 0.9, 3)])
 def test_energy_never_grows_and_nothing_sinks_in(width: float, restitution: float, seed: int) -> None:
     session = heap(40, width, seed=seed, settings={"restitution": restitution})
+    load_all()
     before = energy_of_discs(session)
     for _ in range(20):
         session.run(time=0.05)
@@ -122,6 +126,29 @@ def test_energy_never_grows_and_nothing_sinks_in(width: float, restitution: floa
         before = now
     assert abs(session.energy.imbalance) <= 1e-10
     assert len(session.impacts) > 50
+
+
+def taken(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """When steps of crowds were taken, from now on."""
+    times, step = [], CrowdStepper.step
+
+    def noted(self: CrowdStepper, *rest: Any) -> Any:
+        times.append(self.model.clock.time)
+        return step(self, *rest)
+
+    monkeypatch.setattr(CrowdStepper, "step", noted)
+    return times
+
+
+def test_a_crowd_has_the_same_bits_in_both_forms(monkeypatch: pytest.MonkeyPatch) -> None:
+    times, found = taken(monkeypatch), []
+    for choice in (Compile.NEVER, Compile.ALWAYS):
+        with programs(choice):
+            session = heap(40, 0.9)
+            session.run(time=0.18)
+            found.append(bits.columns(session.model))
+    assert len(times) >= 2 * 10
+    assert bits.different(*found) == []
 
 
 def test_a_heap_comes_to_rest_and_weighs_on_the_floor() -> None:
@@ -143,18 +170,6 @@ def test_fixed_steps_lead_to_the_same_place_to_rest(integrator: str) -> None:
     assert session.run(until="rest", limit=60.0) == "at rest"
     assert np.abs(session.particles.applied_force).max() <= 1e-8 * GRAVITY_PULL * session.particles.mass.sum()
     assert deepest(session) <= 1e-6
-
-
-def taken(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """When steps of crowds were taken, from now on."""
-    times, step = [], CrowdStepper.step
-
-    def noted(self: CrowdStepper, *rest: Any) -> Any:
-        times.append(self.model.clock.time)
-        return step(self, *rest)
-
-    monkeypatch.setattr(CrowdStepper, "step", noted)
-    return times
 
 
 def test_a_saved_crowd_goes_on_with_the_same_bits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,7 +14,9 @@ from game import Session
 from systems.base import Law
 from systems.program import near_pairs
 from systems.program.binding import ProgramError
+from systems.program.compiler import Compile
 from tests.reference import bits
+from tests.reference.forms import programs
 from tests.reference.models import model, particle, rod
 from tests.systems.program.test_program import assert_identical, in_stages  # noqa: F401
 
@@ -108,7 +110,7 @@ def test_fused_is_bit_identical_to_every_pair_stage_by_stage(
 
 def run_by(integrator: str, count: int, **settings: Any) -> Session:
     session = Session.open(crowd(count, integrator=integrator, **settings), LAWS)
-    assert session.run(steps=150) == "time reached"
+    assert session.run(steps=60) == "time reached"
     return session
 
 
@@ -120,16 +122,27 @@ def test_a_list_of_near_pairs_changes_no_bit(integrator: str, monkeypatch: pytes
     """Neither a list, nor how far beyond the cutoff it reaches, nor too little room for it."""
     step = {} if integrator in ("dop853", "esdirk4") else {"time_step": 1e-3}
     monkeypatch.setattr(near_pairs, "ALL_PAIRS_DISCS", 1000)
-    expected = bits.columns(run_by(integrator, 80, **step).model)
+    expected = bits.columns(run_by(integrator, 40, **step).model)
     monkeypatch.setattr(near_pairs, "ALL_PAIRS_DISCS", 0)
     for margin, room, least in ((0.3, 1.5, 4), (0.02, 1.5, 4), (0.3, 0.0, 0)):
         monkeypatch.setattr(near_pairs, "MARGIN", margin)
         monkeypatch.setattr(near_pairs, "ROOM", room)
         monkeypatch.setattr(near_pairs, "PER_PARTICLE", least)
-        session = run_by(integrator, 80, **step)
+        session = run_by(integrator, 40, **step)
         assert bits.different(bits.columns(session.model), expected) == []
         count = session.simulation.programs.compiled.columns["pair_count"][0]
-        assert 200 < count < 80 * 79 / 2
+        assert 100 < count < 40 * 39 / 2
+
+
+@pytest.mark.parametrize("listed", [False, True])
+def test_pairs_have_the_same_bits_in_both_forms(listed: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if listed:
+        monkeypatch.setattr(near_pairs, "ALL_PAIRS_DISCS", 0)
+    found = []
+    for choice in (Compile.NEVER, Compile.ALWAYS):
+        with programs(choice):
+            found.append(bits.columns(run_by("dop853", 40).model))
+    assert bits.different(*found) == []
 
 
 @pytest.mark.usefixtures("in_stages")
@@ -171,7 +184,7 @@ def test_frames_change_nothing() -> None:
 
 def check_energy_and_momentum(integrator: str, *laws: Law) -> None:
     controlled = integrator in ("dop853", "esdirk4")
-    document = crowd(40, integrator=integrator, **({} if controlled else {"time_step": 2e-5}))
+    document = crowd(20, integrator=integrator, **({} if controlled else {"time_step": 2e-5}))
     del document["particles"][0]["fixed"]
     session = Session.open(document, laws)
     before = (session.particles.mass[:, None] * session.particles.velocity).sum(axis=0)

@@ -67,11 +67,13 @@ def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(in_blocks, "_WORTHWHILE", 0)
 
 
-def run(on: int, steps: int = 700) -> Session:
-    """The net after some steps, on so many cores."""
+def run(on: int, steps: int = 700, *, compiled: bool = False) -> Session:
+    """The net after some steps, on so many cores, which share the blocks of machine code alone."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(VARIABLE, str(on))
         session = Session.open(net())
+        if compiled:
+            session.simulation.program.load()
         assert session.run(steps=steps) == "time reached"
     return session
 
@@ -106,7 +108,7 @@ def test_few_rods_are_between_blocks_however_a_model_is_numbered(monkeypatch: py
 
 
 def test_the_number_of_cores_changes_no_bit(small_blocks: None) -> None:
-    one, several = run(on=1), run(on=8)
+    one, several = run(on=1), run(on=8, compiled=True)
     assert one.simulation.programs.compiled.form == writer.VERY_MANY
     assert one.model.clock.dissipated_plastic > 0.0
     assert_same(one, several)
@@ -169,7 +171,7 @@ from systems.program import writer
 writer.SMALL, writer.BLOCKS_FROM, layout.BLOCK, in_blocks._WORTHWHILE = 0, 1, 12, 0
 from tests.reference import bits
 from tests.systems.program.test_parallel import run
-print(bits.digest(run(on=8).model))
+print(bits.digest(run(on=8, compiled=True).model))
 """
 
 
@@ -179,7 +181,7 @@ def test_any_threading_layer_gives_the_same_bits(small_blocks: None, fresh_proce
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
 def test_a_forked_process_goes_on_alone(small_blocks: None) -> None:
-    session = run(on=8, steps=100)
+    session = run(on=8, steps=100, compiled=True)
     child = os.fork()
     if child == 0:
         code = 1

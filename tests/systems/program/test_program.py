@@ -260,10 +260,14 @@ class TiesByMemory(Law):
     adds = ("particles.force",)
 
 
+QUICKLY_COMPILED = {"integrator": "velocity_verlet", "collisions": False}
+
+
 def test_the_kernel_of_a_mod_may_ask_for_memory() -> None:
     """Programs of our kernels alone do without, which makes their calls shorter."""
     by_hand, by_memory = (
-        Session.open(oscillator(2.0, velocity=[0.1, 0.0]), [law]) for law in (Ties(), TiesByMemory())
+        Session.open(oscillator(2.0, velocity=[0.1, 0.0]) | {"settings": QUICKLY_COMPILED}, [law])
+        for law in (Ties(), TiesByMemory())
     )
     for session in (by_hand, by_memory):
         session.run(time=0.3)
@@ -394,7 +398,7 @@ class Later(Law):
 
 
 def test_what_changes_with_time_does_not_let_a_model_rest() -> None:
-    alone = model([particle("A", 0, 0)], [])
+    alone = model([particle("A", 0, 0)], []) | {"settings": {"integrator": "rk4", "time_step": 1e-3}}
     session = Session.open(alone, [Later()])
     session.run(time=1.5)
     assert session.particles["A"].displacement[0] == pytest.approx(1.0 / 6.0, rel=1e-6)  # t³/6 of 1 kg
@@ -486,10 +490,10 @@ def test_a_name_that_is_no_python_name_is_refused() -> None:
 
 # --- the cache -------------------------------------------------------------------------------------------
 
-COMPILE = """
+COMPILE = f"""
 from game import Session
-alone = {"format": "pinjoint model", "version": 1, "particles": [{"name": "A", "position": [0, 0]}]}
-session = Session.open(alone)
+alone = {{"format": "pinjoint model", "version": 1, "particles": [{{"name": "A", "position": [0, 0]}}]}}
+session = Session.open(alone | {{"settings": {QUICKLY_COMPILED}}})
 session.run(steps=1)
 print(session.simulation.programs.compile_seconds)
 """
