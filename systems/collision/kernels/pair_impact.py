@@ -22,8 +22,7 @@ from systems.collision.kernels.time_of_impact import (
     relative_motion,
     rest_speed,
     rim,
-    touch_speed,
-    velocity_at,
+    speed_at,
 )
 
 
@@ -80,30 +79,27 @@ def strike(i, j, discs, grid, constraints, queue, report, numbers, counts):
 def _newton(i, j, discs, numbers):
     """Unit vector from i to j, rate at which the gap opens, impulse (0: none worth it), and speed that counts as none."""
     now = numbers[Number.NOW]
-    dx, dy, _, _, _, _ = relative_motion(discs, i, j, now)
+    dx, dy, vx, vy, _, _ = relative_motion(discs, i, j, now)
     dx, dy, _ = nearest(dx, dy, j, discs)
     distance = math.sqrt(dx * dx + dy * dy)
     if distance == 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0
     nx, ny = dx / distance, dy / distance
-    (ivx, ivy), (jvx, jvy) = velocity_at(i, discs, now), velocity_at(j, discs, now)
-    rate = nx * (jvx - ivx) + ny * (jvy - ivy)
-    touch = touch_speed(discs, i, j, now)
-    slow, bounce = touch, discs[j, Disc.BOUNCE]
-    if bounce < 1.0:
-        slow = rest_speed(i, j, discs, numbers[Number.REST_HEIGHT], now)
+    rate = nx * vx + ny * vy
+    slow, bounce = rest_speed(i, j, discs, numbers[Number.REST_HEIGHT], now), discs[j, Disc.BOUNCE]
     compliance = discs[i, Disc.WX] * nx * nx + discs[i, Disc.WY] * ny * ny
     compliance += discs[j, Disc.WX] * nx * nx + discs[j, Disc.WY] * ny * ny
     if rate >= -slow or compliance == 0.0:
         return nx, ny, rate, 0.0, 0.0
-    noise = 2.0 * SPEED_NOISE * max(abs(ivx) + abs(ivy), abs(jvx) + abs(jvy))
-    return nx, ny, rate, -(1.0 + bounce) * rate / compliance, max(4.0 * noise, touch)
+    noise = 2.0 * SPEED_NOISE * max(speed_at(discs, i, now), speed_at(discs, j, now))
+    return nx, ny, rate, -(1.0 + bounce) * rate / compliance, max(4.0 * noise, slow)
 
 
 @compiled
 def _pushed(i, impulse, nx, ny, discs, now):
     """Velocity of a disc after an impulse along (nx, ny)."""
-    vx, vy = velocity_at(i, discs, now)
+    s = now - discs[i, Disc.EPOCH]
+    vx, vy = discs[i, Disc.VX] + s * discs[i, Disc.AX], discs[i, Disc.VY] + s * discs[i, Disc.AY]
     return vx + discs[i, Disc.WX] * (nx * impulse), vy + discs[i, Disc.WY] * (ny * impulse)
 
 
