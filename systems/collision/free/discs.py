@@ -42,9 +42,7 @@ from systems.program.compiler import Choice, GeneratedModule, entries_to
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
 REPORTED_AT_ONCE = 512  # impacts; fetched before more are reported
-PILE_STEP_SHARE = (
-    0.03  # longest step of piles, as a share of the time in which a disc falls through its diameter
-)
+PILE_STEP_SHARE = 0.03  # longest step of piles: of the time in which a disc falls through its diameter
 WORK_AT_ONCE = 2**22  # discs × events, after which a kernel returns, so that Python can heed Ctrl+C
 MORE_PATIENCE = 64  # calm steps between two searches for the equilibrium of a pile
 

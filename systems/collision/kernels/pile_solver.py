@@ -16,7 +16,7 @@ FEW = 0.02  # of the contacts left to correct, at which sweeps end
 MOST_REST = 10  # times that each contact is then looked at, on average
 MOST_RELAXED = 40000  # contacts up to which the sweeps over few are more
 ENERGY_ROUND_OFF = 1e-9  # of the energy of motion
-SIDE_BY_SIDE = 8  # contacts next to each other in the order of sweeps are far apart: computed at once
+SIDE_BY_SIDE = 4  # contacts next to each other in the order of sweeps are far apart: computed at once
 
 
 @compiled
