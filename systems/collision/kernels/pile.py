@@ -26,12 +26,10 @@ from systems.collision.kernels import compiled
 from systems.collision.kernels.pile_pairs import (
     allow_more_shift,
     allow_shifts,
-    are_listed,
     choose_contacts,
     choose_length,
     enter_pushing_pairs,
-    list_pairs,
-    measure_pairs,
+    find_pairs,
     stays_within_reach,
     velocity_after,
 )
@@ -100,19 +98,15 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
         return Reason.DONE
     h = numbers[Number.STEP_LENGTH]
     allow_shifts(h, discs, pile)
-    if are_listed(h, discs, grid, pile, counts):
-        measure_pairs(discs, pile, counts)
-    else:
-        reason = list_pairs(h, discs, grid, constraints, pile, numbers, counts)
-        if reason != Reason.DONE:
-            return reason
+    reason = find_pairs(h, False, discs, grid, constraints, pile, numbers, counts)
+    if reason != Reason.DONE:
+        return reason
     h, fastest = choose_length(discs, pile, numbers, counts)
     allow_more_shift(h, fastest, discs, pile)
     while True:
-        if not are_listed(h, discs, grid, pile, counts):
-            reason = list_pairs(h, discs, grid, constraints, pile, numbers, counts)
-            if reason != Reason.DONE:
-                return reason
+        reason = find_pairs(h, True, discs, grid, constraints, pile, numbers, counts)
+        if reason != Reason.DONE:
+            return reason
         active = choose_contacts(h, pile, counts)
         if counts[Count.REPORTED] + active > report.pairs.shape[0]:
             return Reason.REPORT_FULL

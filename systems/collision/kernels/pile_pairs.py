@@ -78,8 +78,24 @@ def stays_within_reach(h, discs, pile):
 
 
 @compiled
-def list_pairs(h, discs, grid, constraints, pile, numbers, counts):
-    """List all pairs whose boxes around the next few steps overlap, and measure them. Returns a Reason."""
+def find_pairs(h, measured, discs, grid, constraints, pile, numbers, counts):
+    """Ensure that all pairs are listed whose discs can meet in a step, and measured. Returns a Reason.
+
+    measured: those that are listed are.
+    """
+    if not _are_listed(h, discs, grid, pile, counts):
+        reason = _list_pairs(h, discs, grid, constraints, pile, numbers, counts)
+        if reason != Reason.DONE:
+            return reason
+        measured = False
+    if not measured:
+        _measure_pairs(discs, pile, counts)
+    return Reason.DONE
+
+
+@compiled
+def _list_pairs(h, discs, grid, constraints, pile, numbers, counts):
+    """List all pairs whose boxes around the next few steps overlap. Returns a Reason."""
     enter_pushing_pairs(discs, constraints, pile, counts)
     counts[Count.LISTED] = NONE
     for i in range(discs.shape[0]):
@@ -111,7 +127,6 @@ def list_pairs(h, discs, grid, constraints, pile, numbers, counts):
     if pairs > pile.forces.shape[0] or 2 * pairs > counts[Count.SPARES]:
         return Reason.GROUP_FULL
     counts[Count.LISTED] = pairs
-    measure_pairs(discs, pile, counts)
     return Reason.DONE
 
 
@@ -127,7 +142,7 @@ def _pushing_force(i, j, discs, constraints):
 
 
 @compiled
-def are_listed(h, discs, grid, pile, counts):
+def _are_listed(h, discs, grid, pile, counts):
     """True if no disc can leave the box for which its pairs were listed."""
     if counts[Count.LISTED] == NONE:
         return False
@@ -163,7 +178,7 @@ def enter_pushing_pairs(discs, constraints, pile, counts):
 
 
 @compiled
-def measure_pairs(discs, pile, counts):
+def _measure_pairs(discs, pile, counts):
     """Fill in the columns of PilePair of all listed pairs, whose discs all begin their paths now."""
     for k in range(counts[Count.LISTED]):
         i, j = pile.pairs[k, 0], pile.pairs[k, 1]
