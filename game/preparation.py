@@ -11,8 +11,7 @@ from itertools import islice
 from typing import Any
 
 from components.model import Model
-from components.obstacles import any_obstacles
-from components.rod import is_warm, nodes
+from components.rod import is_warm
 from game.editor.host import Waiting
 from game.elsewhere import SLOWER, Elsewhere
 from game.prepare import UNITS, WARM, Job, problem_of
@@ -21,7 +20,6 @@ from systems.base import Phase, StepSystem, System
 from systems.collision.driven.compiled import DRIVEN
 from systems.collision.free.discs import EVENTS, HORIZONS, PILES
 from systems.collision.free.flight import may_pile
-from systems.collision.system import Support, persistent_contacts
 from systems.edit.pull import Pull
 from systems.physics.system import (
     AxialDamping,
@@ -214,8 +212,6 @@ def _jobs_of(simulation: Simulation) -> list[Job]:
     jobs = [_job(simulation, plan)]
     if any(system.impulsive for system in plan):  # particles that do not fly free may meet
         jobs.append((DRIVEN.name,))
-        if persistent_contacts(model) is None and (any_obstacles(model) or not nodes(model).all()):
-            jobs.append(_job_with(simulation, {Support.name}))
     return jobs
 
 

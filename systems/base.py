@@ -128,12 +128,14 @@ class StepSystem(System):
         bound by name: `<table>_<column>`, `time`, `dt`, an entry of `arrays`, or one of the quantities
         that the role provides. "": the system adds nothing to the step program.
     impulsive: it acts at instants, by impacts, at which steps have to end.
+    between: "module:object" of the Between (systems/program/between.py) that acts between steps; "": none does.
     """
 
     phase: ClassVar[Phase] = Phase.STEP
     scenes: ClassVar[tuple[str, ...] | None] = ("simulation", "force method")
     kernel: ClassVar[str | Callable[..., Any]] = ""
     impulsive: ClassVar[bool] = False
+    between: ClassVar[str] = ""
 
     def leaves_flight_exact(self, model: Model) -> bool:
         """True if particles fly on exact paths between impacts all the same, for which no integrator is needed."""
@@ -237,6 +239,8 @@ class Integrator(StepSystem):
     particle_rows, rod_rows: arrays of shape (particles, 2) and (rods,) that it needs.
     check_interval: steps between checks for rest and divergence; larger: notices later.
     guard: which energy it conserves, for the check for divergence; `shadow` in systems/physics/kernels.py.
+    push: p, if every step x₊ = x + h v + p h² a, v₊ = v + h a + O(h²), a being the acceleration at its start, so that
+        the step's end is foreseen; 0: it is not.
     """
 
     reads: ClassVar[tuple[str, ...]] = ("particles.mobility",)
@@ -254,6 +258,7 @@ class Integrator(StepSystem):
     rod_rows: ClassVar[int] = 0
     check_interval: ClassVar[int] = 128
     guard: ClassVar[float] = 0.0
+    push: ClassVar[float] = 0.0
 
     @property
     def key(self) -> str:

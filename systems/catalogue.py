@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from systems.base import StepSystem, System
-from systems.collision.system import Collision, Support
+from systems.collision.system import Collision
 from systems.loads.system import varying_loads
 from systems.physics.system import (
     AxialDamping,
@@ -32,7 +32,6 @@ def step_systems() -> list[StepSystem]:
         Strength(),
         Yielding(),
         Collision(),
-        Support(),
         *varying_loads(),
     ]
 

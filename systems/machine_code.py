@@ -20,6 +20,7 @@ import os
 import pickle
 import sys
 from collections.abc import Callable, Iterable, Mapping
+from functools import lru_cache
 from types import ModuleType
 from typing import Any
 
@@ -34,7 +35,7 @@ from numba.core.compiler import CompileResult
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
-from numba.core.types import unliteral
+from numba.core.types import WrapperAddressProtocol, unliteral
 from numba.extending import typeof_impl
 
 from systems import cache
@@ -48,7 +49,7 @@ _FURTHER: dict[Use, dict[str, Any]] = {
     Use.BY_ITSELF: {"no_cfunc_wrapper": True},
     Use.PART: _NO_WRAPPERS,
     Use.SHARED: {**_NO_WRAPPERS, "parallel": True},
-    Use.KEPT: {"no_cfunc_wrapper": True},
+    Use.KEPT: {},  # others may call them by their address
     Use.ENTRY: {"no_cfunc_wrapper": True},
 }
 
@@ -133,6 +134,30 @@ def compile_for(function: Any, types: bytes, name: str) -> None:
         for given in pickle.loads(types)[name]:
             if given not in function.overloads:
                 function.compile(given)
+
+
+class _Addressed(WrapperAddressProtocol):
+    """A compiled function that others call by its address, so that it is no part of them."""
+
+    def __init__(self, function: Any) -> None:
+        (self._signature,) = function.nopython_signatures
+        made = function.get_compile_result(self._signature)
+        self._address = made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name)
+
+    def __wrapper_address__(self) -> int:
+        return int(self._address)
+
+    def signature(self) -> Any:
+        """The types of its arguments and of what it returns."""
+        return self._signature
+
+
+@lru_cache
+def addressed(function: Any) -> Any:
+    """What to give a compiled function that calls this one, which was compiled for one kind of arguments."""
+    import numba.experimental.function_type  # noqa: F401 - by which numba knows the type of it
+
+    return _Addressed(function)
 
 
 def _is_compiled(function: Any) -> bool:

@@ -61,14 +61,6 @@ FLIGHT = slice(Disc.UX, Disc.CY + 1)
 """Columns that time changes: those of `FreeFlightState.motion` (components/collision_state.py)."""
 
 
-class PairKind(IntEnum):
-    """How a step of an integrator treats a pair of particles, by the state at the start of the step."""
-
-    WATCHED = 0  # an impact ends the step
-    LEFT_ALONE = 1  # nodes that overlap; they collide once they have separated
-    PERSISTENT = 2  # in contact; contact forces keep them apart
-
-
 class Grid(NamedTuple):
     """Boxes around the paths of all discs, and a hash grid of the boxes; see kernels/grid.py.
 

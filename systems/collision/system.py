@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +10,7 @@ from numpy.typing import NDArray
 from components.collision_state import PersistentContacts
 from components.model import Model
 from components.obstacles import any_obstacles, obstacles
-from systems.base import Integrator, Law, StepSystem
+from systems.base import Integrator, StepSystem
 from systems.broad_phase import nearest
 
 REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in contact
@@ -22,8 +19,8 @@ REST_HEIGHT = 1e-9  # of the smaller radius; bounces that would rise less end in
 class Collision(StepSystem):
     """Impacts between discs, detected at their exact times.
 
-    The system brings no kernel of its own: it declares that it acts at instants (`impulsive`). Steps of an integrator
-    then end at impacts (driven/stepper.py); a plan whose systems all leave flight exact needs none (free/flight.py).
+    It declares that it acts at instants (`impulsive`), between the steps of an integrator, which then end at impacts
+    (driven/stepper.py); a plan whose systems all leave flight exact needs no integrator (free/flight.py).
     """
 
     name = "collision.discs"
@@ -31,6 +28,7 @@ class Collision(StepSystem):
     reads = ("particles.radius", "particles.mobility", "settings.restitution")
     writes = ("particles.velocity", "clock.collisions", "clock.dissipated_impact")
     impulsive = True
+    between = "systems.collision.driven.compiled:BETWEEN"
 
     def needs(self, model: Model) -> bool:
         return model.settings.collisions and can_touch(model)
@@ -53,38 +51,6 @@ def can_touch(model: Model) -> bool:
     between = model.rods.between
     joined = movable[between[:, 0]] | movable[between[:, 1]]
     return pairs > int(joined.sum())
-
-
-class Support(Law):
-    """Forces in persistent contacts of driven particles; constant during a step."""
-
-    name = "collision.support"
-    unneeded = "no contact lasts among particles that rods, drag or laws of mods drive"
-    each = "particles"
-    kernel = "systems.collision.kernels.pairs:contact_force"
-    adds = ("particles.force",)
-    account = "work"
-
-    def __init__(self) -> None:
-        self._pushes: WeakKeyDictionary[Model, NDArray[np.float64]] = WeakKeyDictionary()
-
-    def needs(self, model: Model) -> bool:
-        return persistent_contacts(model) is not None and model.settings.collisions
-
-    def arrays(self, model: Model) -> Mapping[str, NDArray[Any]]:
-        """The sum over the contacts of each particle (kN), from the forces of the last step."""
-        contacts, pushes = persistent_contacts(model), np.zeros((model.particles.count, 2))
-        if contacts is not None:
-            normal = normals(model, contacts.pairs)
-            pushes = support_forces(normal, contacts.pairs, contacts.forces, len(pushes))
-        self._pushes[model] = pushes
-        return {"collision_support_force": self._pushes[model].view()}
-
-    def push(self, model: Model, force: NDArray[np.float64] | float) -> None:
-        """Push the particles of a model by these forces (kN) in the next step."""
-        if model in self._pushes and not (self._pushes[model] == force).all():
-            self._pushes[model][...] = force
-            model.writable("particles.velocity")  # changed: its forces must be evaluated anew
 
 
 def persistent_contacts(model: Model) -> PersistentContacts | None:

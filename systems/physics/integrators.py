@@ -36,6 +36,7 @@ class VelocityVerlet(Integrator):
     ends = f"{_FIXED_STEPS}:verlet_ends"
     order: ClassVar[int] = 2
     guard = 1.0
+    push = 0.5
 
     @staticmethod
     def stable_step(frequency: float, decay: float) -> float:
@@ -51,6 +52,7 @@ class SemiImplicitEuler(VelocityVerlet):
 
     name = "physics.semi_implicit_euler"
     guard = 2.0
+    push = 1.0
     begins = f"{_FIXED_STEPS}:euler_begins"
     ends = f"{_FIXED_STEPS}:euler_ends"
     order: ClassVar[int] = 1
@@ -64,6 +66,7 @@ class ThesisTaylor(Integrator):
 
     name = "physics.taylor2"
     parts = _PLAIN
+    push = 0.5
     begins = f"{_FIXED_STEPS}:taylor2_begins"
     ends = f"{_FIXED_STEPS}:taylor2_ends"
     order: ClassVar[int] = 1

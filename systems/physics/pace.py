@@ -23,12 +23,15 @@ FLIGHT_SHOWN = 2.5  # s in which a free body crosses the scene
 REAL_TIME = (0.2, 5.0)  # a mechanism or flight this near to real time is shown in real time
 
 
-def natural_pace(model: Model) -> float:
-    """Simulated seconds per second shown, rounded to 1, 2 or 5 times a power of ten."""
+def natural_pace(model: Model, *, moving: bool = True) -> float:
+    """Simulated seconds per second shown, rounded to 1, 2 or 5 times a power of ten.
+
+    moving: the present velocities count, too, where no rods swing.
+    """
     if incomputable(model):
         return 1.0
     swing = _response_time(model)
-    pace = swing if swing is not None else _flight_pace(model)
+    pace = swing if swing is not None else _flight_pace(model, moving)
     end = loads_end(model)
     if math.isfinite(end) and end > 0.0:
         pace = max(pace, end / LOADING_SHOWN)
@@ -138,7 +141,7 @@ def _solved_sparsely(model: Model, free: NDArray[np.intp], force: Array) -> Arra
     return solved
 
 
-def _flight_pace(model: Model) -> float:
+def _flight_pace(model: Model, moving: bool) -> float:
     """Pace from the time in which the fastest particle crosses the scene."""
     particles = model.particles
     if particles.count == 0:
@@ -147,7 +150,7 @@ def _flight_pace(model: Model) -> float:
     speed = float(np.hypot(*particles.velocity.T).max())
     pull = float(np.hypot(*(particles.constant_force * particles.mobility).T).max())
     times = []
-    if speed > 0.0:
+    if moving and speed > 0.0:
         times.append(size / speed)
     if pull > 0.0:
         times.append(math.sqrt(2.0 * size / pull))

@@ -55,7 +55,8 @@ class BlockWriter(Writer):
             *(f"partial[block, {_entry(name)}] = lost_{name}" for name in accounts),
         ]
         account = ", account" if name == "accept" else ""
-        return _of_block(name, TRIAL_STATE, body) + _of_all(name, TRIAL_STATE, account, _losses(accounts))
+        after = [*_losses(accounts), *self._pushes()]
+        return _of_block(name, TRIAL_STATE, body) + _of_all(name, TRIAL_STATE, account, after)
 
     def _resist(self) -> str:
         body = [
@@ -72,7 +73,7 @@ class BlockWriter(Writer):
             self._particles(where, _PARTICLES) for where in (self.integrator.ends, self.integrator.begins)
         )
         between = ["if ending:", *indented(ends)] if ends and not self.powers else []
-        losses = _losses(accounts_of(self.commits))
+        losses = [*_losses(accounts_of(self.commits)), *self._pushes()]
         accept = _call("accept", "block", PREDICTED)
         parts = [_shared("move", _MOVED, [*between, *begins, accept], ", account", losses)]
         if self.powers:

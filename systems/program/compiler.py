@@ -103,16 +103,18 @@ class GeneratedModule:
         contents: Callable[[], tuple[str, Mapping[str, Callable[..., Any]]]],
         warm_up: Callable[[], object] = lambda: None,
         kinds: Mapping[str, Kinds] = MappingProxyType({}),
+        needs: tuple[GeneratedModule, ...] = (),
     ) -> None:
         """name: of what it is for, which a process that compiles is given. contents: returns source and kernels; the
         call imports them. warm_up: calls all functions; needed where types are not declared. kinds: of what kernels that
-        others wrote are given, by their names.
+        others wrote are given, by their names. needs: modules whose machine code its own calls.
         """
         self.name = name
         self.spent = 0.0
         self.refusal = ""
         self._contents = contents
         self._kinds = kinds
+        self._needs = needs
         self.warm_up = warm_up
         self._form: Any = None
         self.portion = 1
@@ -154,7 +156,7 @@ class GeneratedModule:
 
     @property
     def form(self) -> Any:
-        """The functions by name, in the form that they run in now."""
+        """The functions by name, in the form that they run in now; is_machine: it is machine code."""
         if self._form is None:
             Choice.changes += 1
             if Choice.compile is Compile.ALWAYS:
@@ -215,7 +217,9 @@ class GeneratedModule:
 
         self._patience = LOADING
         _interpreted.append(self)
-        self._form = SimpleNamespace(**{name: timed(function) for name, function in interpreted.items()})
+        self._form = SimpleNamespace(
+            is_machine=False, **{name: timed(function) for name, function in interpreted.items()}
+        )
 
     def did(self, work: int) -> None:
         """Note how much the last call did, interpreted, so that the next one takes about LONGEST_CALL."""
@@ -233,11 +237,13 @@ class GeneratedModule:
 
     def is_compiled(self) -> bool:
         """True if another process, or an earlier one, has compiled all of it."""
-        return self._compiled or _note_of(self.key).exists()
+        there = self._compiled or _note_of(self.key).exists()
+        return there and all(module.is_compiled() for module in self._needs)
 
     def expected_seconds(self) -> float:
         """How long compiling it will take, by what that took before on this machine."""
-        return _seconds_per_byte() * self._size
+        own = 0.0 if _note_of(self.key).exists() else _seconds_per_byte() * self._size
+        return own + sum(module.expected_seconds() for module in self._needs if not module.is_loaded)
 
     @cached_property
     def _size(self) -> int:
@@ -248,6 +254,8 @@ class GeneratedModule:
     def load(self) -> Any:
         """Go on with machine code from now on: compiled first if nobody has."""
         with _loading:
+            for module in self._needs:
+                module.load()
             if not self.load_kept():
                 self._compile()
         return self._form
@@ -260,7 +268,7 @@ class GeneratedModule:
         with _loading:
             if self._compiled:
                 return True
-            if not self.is_compiled():
+            if not self.is_compiled() or not all(module.load_kept() for module in self._needs):
                 return False
             kept = cache.read(_types_of(self.key))
             if kept is None:  # damaged: it is compiled anew
@@ -282,7 +290,7 @@ class GeneratedModule:
         from systems.machine_code import adopt, machine_code
 
         adopt(self.module, self.key, reached_from(self._source_and_kernels[1].values()))
-        return SimpleNamespace(**{name: machine_code(f) for name, f in self.functions.items()})
+        return SimpleNamespace(is_machine=True, **{name: machine_code(f) for name, f in self.functions.items()})
 
     def _compile(self) -> None:
         """Compile by calling everything, and keep that."""
@@ -322,10 +330,13 @@ def generated(
     source: str,
     kernels: Mapping[str, Callable[..., Any]],
     kinds: Mapping[str, Kinds] = MappingProxyType({}),
+    needs: tuple[GeneratedModule, ...] = (),
 ) -> GeneratedModule:
-    """The module with this source, the same one each time. kinds: of what kernels of others are given, by their names."""
+    """The module with this source, the same one each time. kinds, needs: as of GeneratedModule."""
     called = ((name, id(kernel), kinds.get(name)) for name, kernel in sorted(kernels.items()))
-    return _modules.setdefault((source, *called), GeneratedModule(name, lambda: (source, kernels), kinds=kinds))
+    return _modules.setdefault(
+        (source, *called), GeneratedModule(name, lambda: (source, kernels), kinds=kinds, needs=needs)
+    )
 
 
 def entries_to(kernels: Mapping[str, Callable[..., Any]]) -> tuple[str, dict[str, Callable[..., Any]]]:

@@ -11,7 +11,7 @@ from systems.entries import Mark
 from systems.program.binding import Bound, StepRole, bind
 from systems.program.loops import RodLoop
 from systems.program.pasting import fragment, pasted
-from systems.program.templates import events, forces, implicit, rods
+from systems.program.templates import driven, events, forces, implicit, rods
 from systems.program.writer import DRIFT, NO_POWER, POWER_RETURNED, SHIFT, TRIAL_STATE, Writer, sides_of
 
 _AHEAD = 1e-3  # of a step, over which the slope of a margin is taken
@@ -53,6 +53,17 @@ class ControlledWriter(Writer):
         return [*parts, self._tangent()] if self.integrator.rod_rows else parts
 
     @property
+    def _limits(self) -> tuple[str, ...]:
+        return ("tolerance", "limit")
+
+    def _driven_steps(self) -> dict[str, Sequence[str]]:
+        return {
+            "evaluate": fragment(driven.evaluate_controlled),
+            "take": fragment(driven.take_controlled),
+            "pushed": ["accelerate(force, resisting, work[0], particles_mobility)"],
+        }
+
+    @property
     def _evaluation(self) -> str:
         return f"evaluate({TRIAL_STATE}, power, *columns)"
 
@@ -70,6 +81,7 @@ class ControlledWriter(Writer):
             *self._particle_forces(powers=True),
             *self._rod_loop(self._rod_forces([], powers=True)),
             *POWER_RETURNED,
+            *self._pushes(),
         ]
         return pasted(forces.evaluate, "compiled", trial_forces=lines)
 

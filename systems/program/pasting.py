@@ -29,7 +29,7 @@ def source_of(function: Callable[..., Any]) -> str:
 def _head_and_body_of(function: Callable[..., Any]) -> tuple[str, Sequence[str]]:
     """The head of a function, stars before its groups, and the lines of its body."""
     head, body = source_of(function).split(":\n", 1)
-    head = re.sub(r"(?<=[(\s])(state|forces|scratch|bounds|observed)(?=[,)])", r"*\1", head)
+    head = re.sub(r"(?<=[(\s])(state|forces|scratch|bounds|limits|kept|observed)(?=[,)])", r"*\1", head)
     return head, body.splitlines()
 
 
@@ -75,6 +75,8 @@ def _filled(lines: Iterable[str], inserts: Inserts) -> list[str]:
 def expanded(source: str, groups: Mapping[str, Sequence[str]]) -> str:
     """The source with its names for every group that is an argument, such as *columns."""
     argument = re.compile(rf"(?<=[(\s])\*({'|'.join(groups)})\b")
+    for name in (name for name, names in groups.items() if not names):
+        source = source.replace(f"*{name}, ", "")
     lines: list[str] = []
     for line in source.splitlines():
         text = argument.sub(lambda match: ", ".join(groups[match[1]]), line) if "*" in line else line

@@ -7,6 +7,7 @@ import math
 import time
 import weakref
 from collections.abc import Iterable, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,9 +18,11 @@ from components.handle import Handle
 from components.load import load_breaks, loads_end
 from components.model import Model
 from systems.base import Event, Integrator, StepSystem, StopReason
+from systems.collision.driven.columns import Real, Whole
 from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
 from systems.physics.kernels import conserved
-from systems.program.binding import Bound, ProgramError, bind
+from systems.program.between import Between
+from systems.program.binding import Bound, ProgramError, bind, find
 from systems.program.block_writer import BlockWriter
 from systems.program.compiler import Choice, Compile, GeneratedModule, generated
 from systems.program.controlled_writer import ControlledWriter
@@ -47,7 +50,7 @@ _REASONS = tuple(StopReason)
 
 
 def _writer(model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str) -> Writer:
-    joining = [system for system in systems if system.kernel]
+    joining = [system for system in systems if system.kernel or system.impulsive]
     plain = BlockWriter if form == VERY_MANY else Writer
     return (ControlledWriter if integrator.controlled else plain)(model, joining, integrator, form)
 
@@ -56,12 +59,19 @@ def module_of(
     model: Model, systems: Sequence[StepSystem], integrator: Integrator, form: str
 ) -> GeneratedModule:
     """The module of the program of a plan, in that form, which is only written."""
-    return _module(_writer(model, systems, integrator, form), model)
+    return _module(_writer(model, systems, integrator, form), model, _between(systems))
 
 
-def _module(writer: Writer, model: Model) -> GeneratedModule:
+def _module(writer: Writer, model: Model, between: Between | None) -> GeneratedModule:
     kinds = {b.call: kinds_of(b, model) for b in writer.kernels if not b.is_ours}
-    return generated("the step program", writer.source(), writer.names, kinds)
+    needs = (between.module,) if between is not None else ()
+    return generated("the step program", writer.source(), writer.names, kinds, needs)
+
+
+def _between(systems: Iterable[StepSystem]) -> Between | None:
+    """What acts between the steps of a program of these systems."""
+    found: list[Any] = [find(system.between, system) for system in systems if system.between]
+    return found[0] if found else None
 
 
 class Program:
@@ -69,9 +79,11 @@ class Program:
 
     source: the whole program as plain Python; to understand a step, read that of a small model first.
     measures: entries of Measure, of the state last observed.
-    follows_state: forces follow from nothing but the state, loads apart, so that what is at rest stays at rest.
+    follows_state: forces follow from nothing but the state, loads and contacts apart, so that what is at rest stays so.
     failure: what a kernel raised in a step, and which, if one did.
+    impulsive: the systems without a kernel that act by impacts. between: what acts between its steps.
     module: its functions. tolerance: of each step; 0 where the error is not controlled.
+    longest_in_contact: the longest step (s) while contacts persist.
     compile_seconds: time that writing it took, and compiling it, or loading it from the cache, if that was done at once.
     """
 
@@ -79,12 +91,15 @@ class Program:
         started = time.perf_counter()
         self.model = model
         self.systems = tuple(system for system in systems if system.kernel)
+        self.impulsive = tuple(system for system in systems if system.impulsive and not system.kernel)
         self.integrator = integrator
         self._writer = _writer(model, systems, integrator, form)
-        self.module = _module(self._writer, model)
+        self.between = _between(systems)
+        self.module = _module(self._writer, model, self.between)
         self.measures = np.zeros(len(Measure))
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self.failure: ProgramError | None = None
+        self.longest_in_contact = math.inf
         self._types: dict[str, Any] = {}
         self._state_revision = -1
         self.bind()
@@ -165,6 +180,9 @@ class Program:
         extra |= {name: self._storage(path) for name, path in written.items()}
         self._near = NearPairs(model, [b.cutoff for b in self._writer.pairs]) if self._writer.pairs else None
         extra |= self._near.arrays if self._near is not None else {}
+        if self.between is not None:
+            self._support = np.ascontiguousarray(self.between.support(model)[self._held_rows])
+            extra |= {"support": self._support, "unpushed": np.zeros_like(self._support)}
         self._sides = [(b, self._sides_of(b)) for b in self._writer.events]
         extra |= {sides_of(b): sides for b, sides in self._sides}
         self._columns = [
@@ -271,7 +289,19 @@ class Program:
         return tuple(known[name] for name in names[names.index(first) + 1 : -len(self._columns)])
 
     def _bind_arguments(self) -> None:
-        self._arguments = (*self._after("loads_end", "advance"), *self._columns)
+        if self.between is None:
+            self._arguments = (*self._after("loads_end", "advance"), *self._columns)
+            return
+        kept = {
+            "force": self._arrays["force"],
+            "resisting": self._arrays["force"],
+            "power": self._arrays["power"],
+        }
+        kept |= {name: self.columns[name] for name in self._writer.written}
+        copies: dict[str, Any] = {f"kept_{name}": np.zeros_like(array) for name, array in kept.items()}
+        copies |= {f"own_{name}": np.zeros_like(kept["force"]) for name in ("acceleration", "support")}
+        copies["every"] = np.arange(self._rows("particles"))
+        self._arguments = (*self._after("loads_end", "drive", **copies), *self._columns)
 
     def _bind_observed(self) -> None:
         for path in _GIVEN.values():
@@ -330,6 +360,10 @@ class Program:
             steps = min(steps, max(int((until - time) / size * (1.0 + 1e-12)), 0))
             if steps == 0:
                 return 0, StopReason.DONE
+        if self.between is not None:
+            idle = self._idle
+            idle.real[Real.UNTIL], idle.real[Real.END] = until, landing
+            return self._enter(idle, steps, alone=True)
         origin, limit = self._origin.tolist()
         total, since = self._counts.tolist()
         chosen = (self.tolerance, limit or math.inf) if controlled else (size,)
@@ -356,6 +390,79 @@ class Program:
             self._mark_changes()
         self._state_revision = self.model.newest(Role.STATE)
         return taken, _REASONS[reason]
+
+    # --- among particles that may meet -----------------------------------------------------------------
+
+    def drive(self, driven: Any, steps: int, until: float) -> tuple[StopReason, bool]:
+        """Take up to so many steps that end by `until` (s) as `driven` says in between; returns why it stopped, and whether
+        they are done: Whole.NEED may say what is needed before it goes on.
+        """
+        wanted = steps if self.module.is_loaded else min(steps, self.module.portion)
+        driven.real[Real.UNTIL] = until
+        driven.real[Real.PUSH] = self.integrator.push if self.integrator.mod is None else 0.0
+        try:
+            taken, reason = self._enter(driven, wanted, alone=False)
+        except ProgramError:
+            raise
+        except Exception as error:
+            if all(b.is_ours for b in self._writer.kernels):
+                raise
+            return self._failed(error)[1], True
+        if not self.module.is_loaded:
+            self.module.did(taken)
+        waits = driven.whole[Whole.NEED] != 0
+        return reason, not waits and (taken < wanted or wanted == steps or reason is not StopReason.DONE)
+
+    def _enter(self, driven: Any, steps: int, *, alone: bool) -> tuple[int, StopReason]:
+        """Enter the program with these arrays; returns how many steps it took, and why it stopped."""
+        form = self.module.form
+        assert self.between is not None
+        whole, (total, since) = driven.whole, self._counts.tolist()
+        origin, limit = self._origin.tolist()
+        limit = limit or math.inf
+        if alone and self.model.clock.collision_state is not None:
+            limit = min(limit, self.longest_in_contact)
+        whole[Whole.ALONE], whole[Whole.WANTED] = alone, steps
+        whole[Whole.TOTAL] = whole[Whole.FIRST] = total
+        whole[Whole.SINCE], whole[Whole.FRESH], whole[Whole.NEED] = since, self._is_fresh, 0
+        whole[Whole.REASON] = StopReason.DONE
+        driven.real[Real.ORIGIN] = origin
+        form.drive(
+            self.between.function(compiled=form.is_machine),
+            driven,
+            *self._motion,
+            *((self.tolerance, limit) if self.integrator.controlled else ()),
+            self._breaks,
+            self.changes_end,
+            *self._arguments,
+        )
+        self._counts[:] = whole[Whole.TOTAL], whole[Whole.SINCE]
+        self._origin[0] = driven.real[Real.ORIGIN]
+        self._mark_changes()
+        self._state_revision = self.model.newest(Role.STATE) if whole[Whole.FRESH] else -1
+        return int(whole[Whole.TOTAL]) - total, _REASONS[whole[Whole.REASON]]
+
+    @cached_property
+    def _idle(self) -> Any:
+        """Arrays with which steps are taken as if nothing could meet."""
+        assert self.between is not None
+        return self.between.idle()
+
+    @property
+    def _held_rows(self) -> Any:
+        """The model's row of each particle that it holds."""
+        return slice(None)
+
+    @property
+    def _motion(self) -> tuple[Column, Column, Column]:
+        """The model's row of each particle, of none if they are the same, and the model's displacements and velocities."""
+        return np.zeros(0, dtype=np.int64), self._arrays["displacement"], self._arrays["velocity"]
+
+    def push(self, force: Column) -> None:
+        """Push the particles of the model by these forces (kN) in the next step."""
+        if not (self._support == force[self._held_rows]).all():
+            self._support[...] = force[self._held_rows]
+            self._state_revision = -1  # forces must be evaluated anew
 
     def _renew(self, near: NearPairs) -> None:
         """Have the list of near pairs made anew in another state, and room for all of them."""

@@ -15,6 +15,7 @@ from systems.base import Integrator, StepSystem, StopReason
 from systems.program.binding import bind, read_only
 from systems.program.blocks import Layout, Numbers
 from systems.program.program import MOTION, OBSERVED, Program
+from systems.program.writer import PUSHED
 
 
 class ReorderedProgram(Program):
@@ -51,7 +52,7 @@ class ReorderedProgram(Program):
         self._derived = [self._held[f"{table}.{name}"] for table, names in OBSERVED.items() for name in names]
         ordered = self.columns | self._of_layout()
         ordered |= self._of_systems(ordered)
-        to_write = {path.replace(".", "_", 1) for path in written}
+        to_write = {*PUSHED, *(path.replace(".", "_", 1) for path in written)}
         self._columns = [array if name in to_write else read_only(array) for name, array in ordered.items()]
         self._bind_arguments()
         self._held_revision = -1
@@ -110,6 +111,16 @@ class ReorderedProgram(Program):
         }
 
     @property
+    def _held_rows(self) -> Any:
+        return self._places["particles"]
+
+    @property
+    def _motion(self) -> tuple[Column, Column, Column]:
+        rows = np.ascontiguousarray(self._places["particles"], dtype=np.int64)
+        particles = self.model.tables["particles"]
+        return rows, particles.storage("displacement"), particles.storage("velocity")
+
+    @property
     def unbalanced(self) -> Column:
         everywhere = np.zeros((self.model.particles.count, 2))
         everywhere[self.layout.particles] = super().unbalanced
@@ -136,6 +147,13 @@ class ReorderedProgram(Program):
         if taken:
             self._store()
         return taken, reason
+
+    def drive(self, driven: Any, steps: int, until: float) -> tuple[StopReason, bool]:
+        """Take steps among particles that may meet, as every program does."""
+        self._load()
+        result = super().drive(driven, steps, until)
+        self._store()
+        return result
 
     def commit(self) -> None:
         """Bring history up to date in a state that no step has led to, outside the energy account."""

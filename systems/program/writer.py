@@ -14,6 +14,7 @@ import numpy as np
 from components.model import Model
 from components.rod import is_warm
 from systems.base import REVIEW_INTERVAL, Event, Integrator, StepSystem, StopReason
+from systems.collision.driven.columns import Order, Real, Whole
 from systems.entries import ACCOUNTS, Account, Control, Mark, Measure, Search, Side
 from systems.interpreter import plain_function
 from systems.physics.automatic import SMALL
@@ -33,7 +34,7 @@ from systems.program.binding import (
 from systems.program.loops import RodLoop
 from systems.program.near_pairs import ARRAYS
 from systems.program.pasting import expanded, fragment, indented, pasted, source_of
-from systems.program.templates import events, fixed_steps, forces, observing, pairs, rods
+from systems.program.templates import driven, events, fixed_steps, forces, observing, pairs, rods
 
 ROUND_OFF = 2.220446049250313e-16  # of forces, relative to stiffness × displacement
 
@@ -53,6 +54,9 @@ _OBSERVED = (
     *("fixed", "tension", "compression", "yields"),  # read
 )
 _ENTRIES = (Account, Control, Mark, Measure, Search, Side, StopReason)
+_KEPT = ("kept_force", "kept_resisting", "kept_power", "own_acceleration", "own_support", "every")
+_DRIVEN_ENTRIES = (Order, Real, Whole)
+PUSHED = ("support", "unpushed")  # arrays of programs whose particles may meet
 
 _OF_PAIRS = pairs.list_pairs, pairs.sort_along_x, pairs.sweep, pairs.sort_row
 
@@ -64,6 +68,7 @@ _IN_BLOCK = "{0}[block], {0}[block + 1]"
 TRIAL_STATE = "time, dt, *state"
 PREDICTED = "time, dt, displacement, predicted, *forces"
 RESISTED = "time, dt, displacement, velocity, resisting, direction"
+_NOW = "control[Control.TIME], control[Control.STEP_SIZE]"
 
 SHIFT = {f"s{d}": f"displacement[b, {i}] - displacement[a, {i}]" for i, d in enumerate("xy")}
 DRIFT = {f"drift_{d}": f"velocity[b, {i}] - velocity[a, {i}]" for i, d in enumerate("xy")}
@@ -128,7 +133,8 @@ class Writer:
         self.form = form
         self.integrator = integrator
         self.warm = is_warm(model)
-        self.bound = [bind(system, model) for system in systems]
+        self.collides = any(system.impulsive for system in systems)
+        self.bound = [bind(system, model) for system in systems if system.kernel]
         check_names(self.bound)
         self.of = by_role(self.bound)
         self.commits = [b for role in HISTORIES for b in self.of[role]]
@@ -136,7 +142,8 @@ class Writer:
         self.branching = [b.system for b in self.bound if getattr(b.system, "margin", "")]
         self.names: dict[str, Callable[..., Any]] = {b.call: b.function for b in self.bound}
         self.names |= {"conserved": conserved, "judge": judge}
-        self.names |= {kind.__name__: kind for kind in _ENTRIES}
+        kinds = (*_ENTRIES, *(_DRIVEN_ENTRIES if self.collides else ()))
+        self.names |= {kind.__name__: kind for kind in kinds}
         self.pairs = [*self.of[StepRole.PAIR_FORCE], *self.of[StepRole.PAIR_RESISTANCE]]
         conservative = [b.system for b in self.pairs if getattr(b.system, "potential", "")]
         self.potentials = {system.name: bind(system, model, "potential") for system in conservative}
@@ -153,6 +160,8 @@ class Writer:
         self._add_columns([*self.bound, *self.potentials.values()])
         if self.pairs:
             self.columns = list(dict.fromkeys([*self.columns, "particles_position", *ARRAYS]))
+        if self.collides:
+            self.columns += PUSHED
 
     @property
     def kernels(self) -> list[Bound]:
@@ -198,7 +207,8 @@ class Writer:
         """The program's source."""
         parts = [
             self._head(),
-            self._pasted(f"{self.integrator.entry}=advance", "entered"),
+            *([self._drive()] if self.collides else []),
+            self._pasted(f"{self.integrator.entry}=advance", "compiled" if self.collides else "entered"),
             self._integrate(),
             *(self._pasted(part, "inlined") for part in reversed(self.integrator.parts)),
             *self._of_steps(),
@@ -219,6 +229,8 @@ class Writer:
             "forces": STATE[2:],
             "scratch": self.scratch,
             "bounds": ("breaks", "until", "landing"),
+            "limits": self._limits,
+            "kept": (*_KEPT, *(f"kept_{name}" for name in self.written)),
             "observed": _OBSERVED,
             "columns": self.columns,
         }
@@ -227,6 +239,45 @@ class Writer:
     def scratch(self) -> tuple[str, ...]:
         """Arrays that steps write to and nobody reads afterwards."""
         return ("predicted", "power", "gained")
+
+    @property
+    def written(self) -> list[str]:
+        """The columns that commits write."""
+        return [_column(b) for b in self.commits]
+
+    @property
+    def _limits(self) -> tuple[str, ...]:
+        """What `drive` takes that bounds its steps."""
+        return ()
+
+    def _drive(self) -> str:
+        """The function by which steps are entered where particles may meet."""
+        return pasted(
+            driven.drive,
+            "entered",
+            "",
+            keep=self._copies(driven.keep, "kept_{0}[r] = {0}[r]"),
+            put_back=self._copies(driven.put_back, "{0}[r] = kept_{0}[r]"),
+            **self._driven_steps(),
+        )
+
+    def _copies(self, template: Callable[[], None], copy: str) -> list[str]:
+        copied = [copy.format(name) for name in self.written]
+        return fragment(template, histories=fragment(driven.each_history, copied=copied) if copied else [])
+
+    def _driven_steps(self) -> dict[str, Sequence[str]]:
+        """How `drive` evaluates forces, takes steps, and what follows from other contact forces."""
+        resist = [f"resist({RESISTED}, power, *columns)"] if self.powers else []
+        resist = [line.replace("time, dt", _NOW) for line in resist]
+        return {
+            "evaluate": fragment(driven.evaluate_fixed, resist=resist),
+            "take": fragment(driven.take_fixed),
+            "pushed": [],
+        }
+
+    def _pushes(self) -> list[str]:
+        """The lines by which contact forces are added to all others."""
+        return fragment(driven.push) if self.collides else []
 
     def _head(self) -> str:
         kernels = "\n".join(f"    {name} = {_origin(function)}" for name, function in self.names.items())
@@ -366,7 +417,7 @@ class Writer:
 
     def _forces(self, name: str, commits: Sequence[Bound]) -> str:
         lines = self._with_losses(commits, self._rod_loop(self._rod_forces(commits)))
-        return pasted(getattr(forces, name), "compiled", rod_forces=lines)
+        return pasted(getattr(forces, name), "compiled", rod_forces=[*lines, *self._pushes()])
 
     @staticmethod
     def _with_losses(commits: Sequence[Bound], loop: Sequence[str]) -> list[str]:
@@ -557,7 +608,10 @@ class Writer:
     def _observe(self) -> str:
         observed = fragment(rods.observed, at_strength=str(_AT_STRENGTH))
         loop = RodLoop(SHIFT, [*self.geometry(), *self._axial_force(), *observed])
-        return pasted(observing.observe, "entered", evaluation=self._evaluation, rods=loop.one_by_one())
+        pushed = fragment(observing.pushed) if self.collides else []
+        return pasted(
+            observing.observe, "entered", evaluation=self._evaluation, rods=loop.one_by_one(), pushed=pushed
+        )
 
     def _commit(self) -> str:
         return pasted(forces.commit, "entered", history=f"accept({TRIAL_STATE}, account, *columns)")

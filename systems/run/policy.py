@@ -63,15 +63,13 @@ class StepPolicy:
     """How the steps of a run are chosen.
 
     fixed: the step (s) that a person chose; None: automatic. rods: how many the model has.
-    observed: gives the longest step (s) of exact flight, which is only how often it is looked at, and of particles that
-    stay in contact. in_contact: some do.
+    observed: gives the longest step (s) of exact flight, which is only how often it is looked at.
     """
 
     integrator: Integrator
     fixed: float | None
     rods: int
     observed: Callable[[], float] = lambda: math.inf
-    in_contact: bool = False
 
     @property
     def controls_error(self) -> bool:
@@ -105,11 +103,8 @@ class StepPolicy:
         return self.controls_error and mean < CRAWLING * self.first(limits)[0]
 
     def limit(self, limits: Limits) -> float:
-        """The longest step (s) under error control, by stability and contacts; 0: nothing limits it.
-
-        The forces of contacts are constant in a step, of which the estimates of errors know nothing.
-        """
-        limit = min(SAFETY * limits.stable_step, self.observed() if self.in_contact else math.inf)
+        """The longest step (s) under error control, by stability; 0: nothing limits it."""
+        limit = SAFETY * limits.stable_step
         return rounded_down(limit) if limit < math.inf else 0.0
 
     def _automatic(self, limits: Limits) -> float:

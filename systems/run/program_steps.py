@@ -33,10 +33,15 @@ class ProgramSteps:
         return self._sleep.part(whole)
 
     def rebound(self) -> Program:
-        """The program that takes the next steps, now that an impact changed the plan or woke something."""
+        """The program that takes the next steps, now that an impact woke something."""
         self._programs.unbind()
         self._step_size.limit_anew()
         return self.program
+
+    @property
+    def longest_in_contact(self) -> float:
+        """The longest step (s) while contacts persist."""
+        return self._step_size.longest_in_contact
 
     def advance(self, steps: int, until: float = math.inf) -> tuple[int, StopReason]:
         """Take up to `steps` steps, as every stepper does."""

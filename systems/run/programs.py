@@ -13,7 +13,7 @@ from systems.base import Integrator, Phase, StepSystem
 from systems.collision.free.discs import Discs
 from systems.collision.free.flight import Flight
 from systems.collision.impacts import Impacts
-from systems.collision.system import FreeFlight, persistent_contacts
+from systems.collision.system import FreeFlight
 from systems.edit.pull import Pull
 from systems.physics.automatic import choose
 from systems.physics.integrators import INTEGRATORS
@@ -159,11 +159,8 @@ class Programs:
         return self._bound
 
     def return_to(self, state: Snapshot) -> None:
-        """Put a state of the run back. The plan may differ there: particles may be in contact in one of the two alone."""
-        touched = persistent_contacts(self._model) is not None
+        """Put a state of the run back."""
         state.restore(self._model)
-        if touched != (persistent_contacts(self._model) is not None):
-            self.unbind()
 
     def unbind(self) -> None:
         """Release what is bound, since the plan may have changed."""

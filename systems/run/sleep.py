@@ -15,6 +15,7 @@ import numpy as np
 from components.field import Role
 from components.load import load_ends
 from components.model import Model
+from systems.collision.system import persistent_contacts
 from systems.entries import ASLEEP
 from systems.islands import IMMOVABLE, Rows, islands
 from systems.physics.rest import Array, Mask, RestMeasure
@@ -40,7 +41,7 @@ class Sleep:
     # --- who may sleep, and who does -------------------------------------------------------------------
 
     def may_happen(self, program: Dynamics) -> bool:
-        """True if islands may sleep under this program, and there is more than one."""
+        """True if islands may sleep under this program, there is more than one, and no contact persists."""
         asked = program, self.model.newest(Role.DOCUMENT)
         if asked != self._asked:
             self._asked = asked
@@ -48,7 +49,7 @@ class Sleep:
             if self._answer:
                 self._look_up()
                 self._answer = self._count > 1
-        return self._answer
+        return self._answer and persistent_contacts(self.model) is None
 
     @property
     def any_asleep(self) -> bool:
@@ -147,7 +148,9 @@ class Sleep:
         moving = ~asleep & (self._of_particle != IMMOVABLE)
         part = self._parts.get(program)
         if part is None:
-            made = make_program(self.model, program.systems, program.integrator, program.form, moving)
+            made = make_program(
+                self.model, [*program.systems, *program.impulsive], program.integrator, program.form, moving
+            )
             assert isinstance(made, ReorderedProgram)
             part = self._parts[program] = made
         else:

@@ -7,11 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from components.field import Role
 from components.model import Model
 from systems.physics.integrators import INTEGRATORS
 from systems.physics.pace import natural_pace
 from systems.physics.spectrum import spectrum
-from systems.run.policy import ERROR_CONTROL, Limits, StepPolicy, begin_steps, is_unstable
+from systems.run.policy import ERROR_CONTROL, Limits, StepPolicy, begin_steps, is_unstable, rounded_down
 from systems.run.programs import Programs
 from systems.run.sleep import Sleep
 
@@ -33,6 +34,8 @@ class StepSize:
         self._sleep = sleep
         self.stable = math.inf
         self.warning = ""
+        self._looked_at = -1  # the revision of the document for which `observed` was found
+        self._between_looks = math.inf
 
     @property
     def _policy(self) -> StepPolicy:
@@ -42,13 +45,25 @@ class StepSize:
             model.settings.time_step,
             model.rods.count,
             self._observed,
-            model.clock.collision_state is not None,
         )
 
     def _observed(self) -> float:
-        """The time (s) between two looks at exact flight or at what touches."""
-        exact, shown = self._programs.integrator.exact, OBSERVED * natural_pace(self._model)
-        return max(shown, PASSED * self._model.clock.time) if exact else shown
+        """The time (s) between two looks at exact flight."""
+        return max(OBSERVED * natural_pace(self._model), PASSED * self._model.clock.time)
+
+    @property
+    def longest_in_contact(self) -> float:
+        """The longest step (s) while contacts persist, which the document alone decides; infinite without error control.
+
+        The forces of contacts are constant in a step, of which the estimates of errors know nothing.
+        """
+        if not self._policy.controls_error:
+            return math.inf
+        revision = self._model.newest(Role.DOCUMENT)
+        if self._looked_at != revision:
+            self._looked_at = revision
+            self._between_looks = rounded_down(OBSERVED * natural_pace(self._model, moving=False))
+        return self._between_looks
 
     def begin(self, size: float) -> None:
         """From now on steps have this size (s); the guard against divergence compares with this moment."""
@@ -103,10 +118,7 @@ class StepSize:
     def limit_anew(self) -> None:
         """Under error control: find the limit of the step anew, as others are awake or stiffnesses changed."""
         if self._policy.controls_error:
-            limit = self._policy.limit(self.look_up())
-            self._model.writable("clock.step_limit")[0] = limit
-            if self._policy.in_contact:
-                self._model.writable("clock.step_size")[0] = min(self._model.clock.step_size, limit)
+            self._model.writable("clock.step_limit")[0] = self._policy.limit(self.look_up())
 
     @property
     def unstable(self) -> bool:

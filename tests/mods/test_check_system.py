@@ -23,7 +23,7 @@ from game.mods import ModError
 from game.preparation import Preparation
 from systems.base import Law, Phase, StepSystem, System
 from systems.catalogue import SYSTEMS, step_systems
-from systems.collision.system import Collision, Support
+from systems.collision.system import Collision
 from systems.edit.hover import Hover
 from systems.edit.pull import Hand, Pull
 from systems.input.pygame_input import PygameInput
@@ -80,7 +80,7 @@ def test_the_hand_passes() -> None:
     assert check_system(Pulling, [EVERYTHING]).needed == 1
 
 
-def test_the_forces_of_persistent_contacts_pass() -> None:
+def test_what_lies_in_contact_passes() -> None:
     lying = BODIES | {
         "environment": {"acceleration": [0.0, -9.81], "drag": 0.1},
         "settings": {"restitution": 0.0},
@@ -88,7 +88,7 @@ def test_the_forces_of_persistent_contacts_pass() -> None:
     }
     session = Session.open(lying)
     session.run(time=0.5)
-    assert check_system(Support, [document(session.model)]).needed == 1
+    assert check_system(Collision, [document(session.model)]).needed == 1
 
 
 def test_our_frame_systems_pass(tmp_path: Path) -> None:

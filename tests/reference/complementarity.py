@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from systems.collision.kernels.complementarity import FIRM, MOST_EXCHANGES, PATIENCE, ROUND_OFF
+from systems.collision.driven.kernels.complementarity import FIRM, MOST_EXCHANGES, PATIENCE, ROUND_OFF
 
 Floats = NDArray[np.float64]
 

@@ -1,26 +1,31 @@
-"""The compiled part of driven collisions: gaps, times of impact, joint impacts, contact forces, overlaps."""
+"""The compiled part of driven collisions: what happens in steps, gaps, joint impacts, overlaps."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
+from components.field import Column
+from components.model import Model
+from systems.collision.driven.columns import Driven
+from systems.collision.driven.kernels.steps import collide
+from systems.collision.system import normals, persistent_contacts, support_forces
+from systems.program.between import Between
 from systems.program.compiler import GeneratedModule, entries_to
 
 
 def _contents() -> tuple[str, dict[str, Callable[..., Any]]]:
     """The source, and the kernels by the names that it calls them."""
-    from systems.collision.kernels import complementarity, driven, overlap, pairs
+    from systems.collision.driven.kernels import joint_impacts
+    from systems.collision.kernels import overlap, pairs
 
     return entries_to(
         {
+            "collide": collide,
             "gaps": pairs.measure_gaps,
-            "kinds": pairs.classify_pairs,
-            "path_deviation": driven.path_errors,
-            "time_of_impact": driven.first_impact,
-            "compliance": pairs.compliance_matrix,
-            "forces": complementarity.complementary,
-            "resolve": driven.resolve,
+            "resolve": joint_impacts.resolve,
             "part": overlap.separate,
         }
     )
@@ -32,3 +37,26 @@ DRIVEN = GeneratedModule("driven_collisions", _contents)
 def kernels() -> Any:
     """The kernels by name, in the form that they run in now."""
     return DRIVEN.form
+
+
+def idle() -> Driven:
+    """Arrays of no particles."""
+    none, vectors = np.zeros(0), np.zeros((0, 2))
+    of_document: dict[str, Any] = dict.fromkeys(("position", "span", "weight"), vectors)
+    of_document |= dict.fromkeys(("radius", "size", "restitution", "pull"), none)
+    whole = {
+        "node": np.zeros(0, dtype=np.int64),
+        "loose": np.zeros(0, dtype=np.int64),
+        "asleep": np.zeros(0, dtype=bool),
+    }
+    return Driven.empty({**of_document, **whole}, 0, 0, 0)
+
+
+def _support(model: Model) -> Column:
+    contacts, count = persistent_contacts(model), model.particles.count
+    if contacts is None:
+        return np.zeros((count, 2))
+    return support_forces(normals(model, contacts.pairs), contacts.pairs, contacts.forces, count)
+
+
+BETWEEN = Between(DRIVEN, collide, idle, _support)

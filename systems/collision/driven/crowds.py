@@ -1,4 +1,7 @@
-"""Crowds: driven particles, no nodes of structures, of which so many touch that single impacts no longer pay."""
+"""Crowds: driven particles, no nodes of structures, of which so many touch that single impacts no longer pay.
+
+When the next step is one of a crowd, the kernels say (kernels/crowd.py).
+"""
 
 from __future__ import annotations
 
@@ -8,16 +11,16 @@ from components.collision_state import PersistentContacts
 from components.model import Model
 from systems.base import StopReason
 from systems.broad_phase import Floats, Rows
-from systems.collision.columns import SHORTEST_SHARE, STEP_SHARE, TRAVEL, Contact
+from systems.collision.columns import SHORTEST_SHARE, TRAVEL, Contact, Group
+from systems.collision.driven.columns import Real
 from systems.collision.driven.compiled import kernels
-from systems.collision.driven.contacts import apply_contact_forces, raise_energy_scale
-from systems.collision.driven.impact import SETTLING_HEIGHT, ImpactResolver, group_of
+from systems.collision.driven.kernels.contacts import SETTLING_HEIGHT
 from systems.collision.driven.neighbours import NeighbourList
-from systems.collision.driven.trial import TrialStep
+from systems.collision.driven.trial import Land, TrialStep
+from systems.collision.impacts import Impacts
 from systems.collision.system import persistent_contacts, support_forces
+from systems.program.program import Program
 
-CROWD_CONTACTS = 24  # persistent contacts and impacts in the next step, from which on particles are a crowd
-CROWD_PARTICLES = 8  # particles that are no nodes, below which they are no crowd
 DEEPEST_OVERLAP = 1e-12  # of a radius, by which particles may sink into others in a step
 NO_IMPACT = -1.0  # as the restitution of contacts that are only held apart
 ROUND_OFF = 1e-14  # of an energy
@@ -32,39 +35,33 @@ class CrowdStepper:
     particle sinks in; no force does work; and no impact supplies energy.
     """
 
-    def __init__(self, model: Model, neighbours: NeighbourList, impacts: ImpactResolver) -> None:
+    def __init__(self, model: Model, neighbours: NeighbourList, impacts: Impacts, land: Land) -> None:
         self.model = model
         self._neighbours = neighbours
-        self._impacts = impacts
+        self._record = impacts
+        self._land = land
 
-    def problem(self) -> ContactProblem | None:
-        """The contacts and impacts of the next whole step if the particles are a crowd.
-
-        They are none where nodes of a structure are near, since a structure answers to forces in its own way.
-        """
-        near, clock, particles = self._neighbours, self.model.clock, self.model.particles
-        if near.loose < CROWD_PARTICLES:
-            return None
-        pull = np.hypot(*(particles.mobility * particles.constant_force).T)
-        pulled, longest = pull > 0.0, clock.step_size
-        if pulled.any():
-            fall = np.sqrt(4.0 * particles.radius[pulled] / pull[pulled])
-            longest = min(longest, STEP_SHARE * float(np.median(fall)))
-        travel = longest * (2.0 * float(np.hypot(*particles.velocity.T).max()) + longest * float(pull.max()))
-        near.list_within(travel)
-        if len(near.pairs) < CROWD_CONTACTS:
-            return None
+    def _problem(self) -> ContactProblem:
+        """The contacts and impacts of the next whole step, of pairs that the list holds."""
+        near, driven = self._neighbours, self._neighbours.driven
+        longest = min(self.model.clock.step_size, float(driven.real[Real.CROWD_STEP]))
+        fastest = float(np.hypot(*near.velocity[driven.loose].T).max())
+        travel = longest * (2.0 * fastest + longest * float(driven.real[Real.STRONGEST]))
         gap, normal = near.gaps(near.pairs, near.displacement)
         close = np.flatnonzero(gap <= 2.0 * travel)
-        problem = ContactProblem(near, near.pairs[close], gap[close], normal[close], near.everywhere(pull))
+        problem = ContactProblem(near, near.pairs[close], gap[close], normal[close])
         problem.choose_length(longest)
-        persistent = persistent_contacts(self.model)
-        number = problem.impacts_to_come + (0 if persistent is None else len(persistent.pairs))
-        return problem if number >= CROWD_CONTACTS and not near.are_nodes(problem.pairs).any() else None
+        return problem
 
-    def step(self, problem: ContactProblem, trial: TrialStep, landing: bool) -> StopReason:
-        """Take a step of the crowd; none where it would end after `trial.until`, or (landing) its part up to then."""
+    def step(self, program: Program, until: float, *, landing: bool) -> StopReason:
+        """Take a step of the crowd; none where it would end after `until` (s), or (landing) its part up to then."""
         clock, near = self.model.clock, self._neighbours
+        if clock.step_size > program.longest_in_contact:
+            self.model.writable("clock.step_size")[0] = program.longest_in_contact
+        if persistent_contacts(self.model) is None:
+            none = PersistentContacts(np.zeros((0, 2), dtype=np.int64), np.zeros(0))
+            self.model.writable("clock.collision_state")[0] = none
+        trial, problem = TrialStep(self.model, program, until, self._land), self._problem()
         whole = not landing and problem.h == clock.step_size
         end = None if whole else trial.start + problem.h
         if end is not None and landing:
@@ -80,9 +77,8 @@ class CrowdStepper:
                 forces = problem.better(forces, near.displacement - origin, clock.time - trial.start)
                 trial.take_back()
             self.model.writable("particles.velocity")[...] = velocity
-            raise_energy_scale(self.model, float((forces * problem.size).sum()))
-            push = support_forces(problem.normal, problem.pairs, forces, near.count)
-            apply_contact_forces(trial.program, self.model, push)
+            self._raise_energy_scale(float((forces * problem.size).sum()))
+            program.push(support_forces(problem.normal, problem.pairs, forces, near.count))
             reason = trial.take(end)
             if clock.time == trial.start or reason is StopReason.DIVERGED:
                 trial.take_back()
@@ -91,32 +87,52 @@ class CrowdStepper:
                 end = clock.time
             if problem.holds(forces, near.displacement - origin):
                 break
+        work = float(forces @ (problem.closed(near.displacement - origin) - problem.room))
+        self.model.writable("clock.work")[0] = clock.work + work
         self.model.writable("clock.dissipated_impact")[0] = clock.dissipated_impact + loss
-        self._impacts.record(problem.pairs, problem.normal, impulses, loss, trial.start, origin)
+        self._enter(problem.pairs, problem.normal, impulses, loss, trial.start, origin)
         gap, _ = near.gaps(problem.pairs, near.displacement)
         persists = (forces > 0.0) | (gap <= SETTLING_HEIGHT * problem.size)
         kept = PersistentContacts(problem.pairs[persists], forces[persists])
         self.model.writable("clock.collision_state")[0] = kept
         return reason
 
+    def _raise_energy_scale(self, energy: float) -> None:
+        """As try_forces() in kernels/contacts.py does."""
+        if energy > self.model.clock.energy_scale:
+            self.model.writable("clock.energy_scale")[0] = energy
+
+    def _enter(
+        self, pairs: Rows, normal: Floats, impulse: Floats, loss: float, time: float, displacement: Floats
+    ) -> None:
+        """Enter the impacts of pairs with an impulse (N·s) at a time (s) and these displacements, and their loss (J)."""
+        struck, clock, driven = impulse > 0.0, self.model.clock, self._neighbours.driven
+        pairs, impulse = pairs[struck], impulse[struck]
+        place = driven.position + self._neighbours.everywhere(displacement)
+        point = place[pairs[:, 0]] + normal[struck] * driven.radius[pairs[:, 0]][:, None]
+        share = loss * impulse / impulse.sum()
+        self._record.record(np.column_stack((np.full(len(pairs), time), pairs, impulse, share, point)))
+        self.model.writable("clock.collisions")[0] = clock.collisions + len(pairs)
+
 
 class ContactProblem:
     """The contacts and impacts of a crowd in one step.
 
-    h: length of the step, s. impacts_to_come: number of pairs that would meet in it, without those that lose no energy.
-    pairs, normal, room, size: the pairs, their unit vectors, gaps (at least 0, m) and smaller radii (m).
+    h: length of the step, s. pairs, normal, room, size: the pairs, their unit vectors, gaps (at least 0, m) and smaller
+    radii (m).
     """
 
-    def __init__(self, near: NeighbourList, pairs: Rows, gap: Floats, normal: Floats, pull: Floats) -> None:
+    def __init__(self, near: NeighbourList, pairs: Rows, gap: Floats, normal: Floats) -> None:
+        driven = near.driven
         self._neighbours = near
         self.pairs, self.normal = pairs, normal
         self.room: Floats = np.maximum(gap, 0.0)
-        self.size: Floats = near.size[pairs].min(axis=1)
-        self._pull: Floats = pull[pairs].max(axis=1)
-        self._restitution: Floats = near.restitution[pairs[:, 1]]
+        self.size: Floats = driven.size[pairs].min(axis=1)
+        self._pull: Floats = near.everywhere(driven.pull)[pairs].max(axis=1)
+        self._restitution: Floats = driven.restitution[pairs[:, 1]]
         self._rate = near.rates(pairs, normal)
         self._tolerance = 0.1 * DEEPEST_OVERLAP * float(self.size.min(initial=np.inf))
-        self._group, self._members = group_of(near, pairs, normal)
+        self._group, self._members = _group_of(near, pairs, normal)
 
     def choose_length(self, longest: float) -> None:
         """Choose a length (s) in which no two particles that are about to meet travel far relative to one another."""
@@ -125,7 +141,6 @@ class ContactProblem:
         h = float((travel[fast] / -self._rate[fast]).min(initial=longest))
         self.h = max(h, SHORTEST_SHARE * longest)
         self._meets = self.room + self.h * self._rate < 0.0
-        self.impacts_to_come = np.count_nonzero(self._meets & (self._restitution < 1.0))
 
     def impacts(self) -> tuple[Floats, Floats]:
         """Velocities of the particles after the impacts, and impulses (N·s) of the pairs that bounce.
@@ -156,7 +171,7 @@ class ContactProblem:
         """Forces (N) in the pairs, as persistent contacts had them in the step before."""
         forces = np.zeros(len(self.size))
         if contacts is not None:
-            pairs, count = self.pairs, len(self._neighbours.position)
+            pairs, count = self.pairs, len(self._neighbours.driven.position)
             keys, sought = pairs @ [count, 1], contacts.pairs @ [count, 1]
             places = np.minimum(np.searchsorted(keys, sought), len(keys) - 1)
             there = keys[places] == sought
@@ -199,5 +214,15 @@ class ContactProblem:
     def _answer(self, impulses: Floats) -> Floats:
         """Change of the motion of the particles by impulses (N·s) in the pairs."""
         pushes = 1000.0 * support_forces(self.normal, self.pairs, impulses, self._neighbours.count)
-        answer: Floats = self._neighbours.weight[: self._neighbours.count] * pushes
+        answer: Floats = self._neighbours.driven.weight[: self._neighbours.count] * pushes
         return answer
+
+
+def _group_of(near: NeighbourList, pairs: Rows, normal: Floats) -> tuple[Group, Rows]:
+    """The group of pairs with these unit vectors, in contact, and the particle or obstacle that each member is."""
+    members, links = np.unique(pairs, return_inverse=True)
+    group = Group.empty(len(members), len(pairs))
+    group.links[...] = links.reshape(-1, 2)
+    group.contacts[:, [Contact.NX, Contact.NY]] = normal
+    group.mobility[...] = near.driven.weight[members]
+    return group, members

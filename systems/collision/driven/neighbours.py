@@ -1,8 +1,7 @@
-"""The neighbour list of driven particles: which pairs may collide soon, and for how long none can."""
+"""The neighbour list of driven particles: which pairs may collide soon."""
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -13,63 +12,210 @@ from components.field import Role
 from components.model import Model
 from components.obstacles import obstacles
 from components.rod import nodes
-from components.snapshot import Snapshot
 from systems.broad_phase import Floats, Rows, near_pairs
-from systems.collision.columns import PairKind
+from systems.collision.columns import STEP_SHARE
+from systems.collision.driven.columns import Driven, Phase, Real, Whole
 from systems.collision.driven.compiled import kernels
 from systems.collision.system import persistent_contacts
-from systems.islands import islands
 
 LISTED_AROUND = 0.5  # of the radius of a particle: the least margin within which others are listed
-SLOWEST = 1e-300  # m/s; avoids division by zero: no motion is that slow
-NO_PAIRS = np.zeros((0, 2), dtype=np.int64)
-
-
-def _any_force() -> np.errstate:
-    """No warnings of forces of mods and people that are too large to compute with; the check of the model reports them."""
-    return np.errstate(over="ignore", invalid="ignore")
+FEWEST_STEPS = 512  # for which the list is to last, at the present speed of a particle,
+FARTHEST = 4.0  # where that is no farther than so many of its radii
+WIDER, MOST_WIDENED = 4.0, 4  # times the margin, as long as nothing is within it
+CONTACTS = 8  # room at first
 
 
 class NeighbourList:
-    """The pairs of one model's particles that are near each other.
+    """The pairs of one model's particles that are near each other, in the arrays that the kernels share.
 
-    pairs: rows i < j in ascending order, shape (k, 2), without pairs that a rod joins or that cannot move.
-    count: of the particles; loose: of the particles that are no nodes. position, radius, weight, restitution, size: of
-    all particles and, after them, of the obstacles. weight: inverse mass in each direction (1/kg), 0 where a particle is
-    held. restitution: of impacts with the particle or obstacle. size: the radius, ∞ for obstacles (m): the scale of gaps.
+    driven: these arrays. pairs: rows i < j in ascending order, without pairs that a rod joins or that cannot move.
+    count: of the particles. The numbers of obstacles follow those of the particles.
     """
+
+    driven: Driven
 
     def __init__(self, model: Model) -> None:
         self.model = model
         self._revision = -1
+        self._held: PersistentContacts | None = None
+
+    # --- the document --------------------------------------------------------------------------------
 
     def look_up(self) -> None:
         """Read from the document which particles may collide, if the document changed."""
         revision = self.model.newest(Role.DOCUMENT)
         if self._revision == revision:
             return
-        self._revision = revision
+        self._revision, self._held = revision, None
         particles, ends = self.model.particles, np.sort(self.model.rods.between.astype(np.int64), axis=1)
         self.obstacles = others = obstacles(self.model)
         self.count = particles.count
         joined = np.sort(ends[:, 0] * (self.count + len(others)) + ends[:, 1])
         self._joined = np.append(joined, -1)  # the sentinel equals no pair that is looked up
-        self._node = np.ones(self.count + len(others), dtype=bool)
-        self._node[: self.count] = nodes(self.model)
-        self.loose = self.count - int(np.count_nonzero(self._node[: self.count]))
         self._moves: NDArray[np.bool_] = self.everywhere(np.any(particles.mobility > 0.0, axis=1))
-        self.position = np.concatenate([particles.position, others.start])
-        self.radius = np.concatenate([particles.radius, others.radius])
-        self.size = np.concatenate([particles.radius, np.full(len(others), np.inf)])
-        self.weight: Floats = self.everywhere(np.where(particles.fixed, 0.0, 1.0 / particles.mass[:, None]))
-        alike = np.full(self.count, self.model.settings.restitution)
-        self.restitution = np.concatenate([alike, others.restitution])
-        self.span = self.everywhere(np.zeros((self.count, 2)))
-        self.span[self.count :] = others.span
-        self._island = islands(self.model)
         self._least: Floats = LISTED_AROUND * particles.radius
-        self._margin: Floats = np.full(self.count, -1.0)  # no pair is listed yet
-        self._listed: Floats = np.zeros((self.count, 2))
+        self.driven = Driven.empty(self._of_document(), self.count, 0, CONTACTS)
+        self.driven.margin[:] = -1.0  # no pair is listed yet
+        whole, real = self.driven.whole, self.driven.real
+        whole[Whole.BOUNCY] = (self.driven.restitution < 1.0).any()
+        real[Real.LONGEST] = np.inf
+        pull = self.driven.pull
+        fall = np.sqrt(4.0 * particles.radius[pull > 0.0] / pull[pull > 0.0])
+        real[Real.CROWD_STEP] = STEP_SHARE * float(np.median(fall)) if len(fall) else np.inf
+        real[Real.STRONGEST] = pull.max(initial=0.0)
+
+    def _of_document(self) -> dict[str, Any]:
+        """The arrays of Driven that follow from the document."""
+        particles, others = self.model.particles, self.obstacles
+        alike = np.full(self.count, self.model.settings.restitution)
+        span = self.everywhere(np.zeros((self.count, 2)))
+        span[self.count :] = others.span
+        node = np.ones(self.count + len(others), dtype=np.int64)
+        node[: self.count] = nodes(self.model)
+        return {
+            "position": np.concatenate([particles.position, others.start]),
+            "span": span,
+            "weight": self.everywhere(np.where(particles.fixed, 0.0, 1.0 / particles.mass[:, None])),
+            "radius": np.concatenate([particles.radius, others.radius]),
+            "size": np.concatenate([particles.radius, np.full(len(others), np.inf)]),
+            "restitution": np.concatenate([alike, others.restitution]),
+            "node": node,
+            "loose": np.flatnonzero(node[: self.count] == 0),
+            "asleep": self.model.tables["particles"].storage("asleep"),
+            "pull": np.hypot(*(particles.mobility * particles.constant_force).T),
+        }
+
+    def everywhere(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Values of the particles, followed by zeros for the obstacles, which do not move."""
+        if len(self.obstacles) == 0:
+            return np.ascontiguousarray(values)
+        return np.concatenate([values, np.zeros((len(self.obstacles), *values.shape[1:]), values.dtype)])
+
+    # --- the list ------------------------------------------------------------------------------------
+
+    @property
+    def pairs(self) -> Rows:
+        return self.driven.pairs
+
+    def list_within(self, span: float) -> None:
+        """List the pairs that can meet before any particle has moved by `span` (m) from where the step began, or now."""
+        midst = self.driven.whole[Whole.PHASE] != Phase.BETWEEN
+        taken = midst and not self.driven.whole[Whole.FORESEEN]
+        displacement = self.driven.before if taken else self.displacement
+        radius, speed = self.driven.radius[: self.count], np.hypot(*self.velocity.T)
+        far = np.minimum(FEWEST_STEPS * self.model.clock.step_size * speed, FARTHEST * radius)
+        margin = np.maximum(np.maximum(self._least, far), 2.0 * span)
+        pairs = self._near(displacement, margin)
+        for _ in range(MOST_WIDENED):
+            wider = WIDER * margin
+            if len(pairs) or len(more := self._near(displacement, wider)):
+                break
+            margin, pairs = wider, more  # nothing is near: it will be long until something is
+        self._put(pairs)
+        self.driven.margin[:], self.driven.listed[:] = margin, displacement
+
+    def _near(self, displacement: Floats, margin: Floats) -> Rows:
+        """The pairs that can meet before any particle has moved by its margin (m) from there."""
+        others = self.obstacles
+        place, radius = self.driven.position[: self.count] + displacement, self.driven.radius[: self.count]
+        near = near_pairs(place, radius + margin, others)
+        may = np.logical_or(self._moves[near[:, 0]], self._moves[near[:, 1]])
+        keys = self._keys(near)
+        joined = self._joined[np.searchsorted(self._joined[:-1], keys)] == keys
+        found: Rows = near[np.flatnonzero(may & ~joined)]
+        return found
+
+    def _keys(self, pairs: Rows) -> Rows:
+        keys: Rows = pairs[:, 0] * (self.count + len(self.obstacles)) + pairs[:, 1]
+        return keys
+
+    def _put(self, pairs: Rows) -> None:
+        """Put pairs in place of those listed; what lasts in those that stay goes on."""
+        old = self.driven
+        new = Driven.empty(self._kept(), self.count, len(pairs), 0)
+        new.pairs[:] = pairs
+        lasting = np.flatnonzero(old.lasting)
+        rows = np.searchsorted(self._keys(pairs), self._keys(old.pairs[lasting]))
+        new.lasting[rows], new.forces[rows] = 1, old.forces[lasting]
+        of_pairs = (
+            "pairs",
+            "lasting",
+            "forces",
+            "normal",
+            "slow",
+            "rate",
+            "touching",
+            "chain",
+            "group",
+            "report",
+        )
+        members = np.unique(pairs)
+        near = np.ascontiguousarray(members[members < self.count])
+        self.driven = old._replace(near=near, **{name: getattr(new, name) for name in of_pairs})
+        self.driven.support[:] = 0.0
+        self.driven.whole[Whole.PUSHED] = 1
+        number = int(old.whole[Whole.CHOSEN])
+        chosen = np.searchsorted(self._keys(pairs), self._keys(old.pairs[old.chosen[:number]]))
+        self.driven.chosen[:number] = chosen
+
+    def _kept(self) -> dict[str, Any]:
+        names = (
+            "position",
+            "span",
+            "weight",
+            "radius",
+            "size",
+            "restitution",
+            "node",
+            "loose",
+            "asleep",
+            "pull",
+        )
+        return {name: getattr(self.driven, name) for name in names}
+
+    def make_room(self) -> None:
+        """Make room for twice as many persistent contacts, if there are more than before."""
+        if self.driven.lasting.sum() <= len(self.driven.chosen):
+            return
+        new = Driven.empty(self._kept(), self.count, len(self.pairs), 2 * len(self.driven.chosen))
+        of_contacts = ("chosen", "search", "start", "end", "slope", "learnt", "matrix", "block", "sides")
+        room = {name: getattr(new, name) for name in of_contacts}
+        for name in ("chosen", "search", "start"):
+            there = getattr(self.driven, name)
+            room[name][tuple(slice(n) for n in there.shape)] = there
+        self.driven = self.driven._replace(**room)
+
+    # --- persistent contacts ----------------------------------------------------------------------------
+
+    def load_contacts(self) -> None:
+        """Begin with the state of the model: take its persistent contacts, if they are others than were stored last."""
+        driven, held = self.driven, persistent_contacts(self.model)
+        interrupted = driven.whole[Whole.PHASE] != Phase.BETWEEN
+        driven.whole[Whole.PHASE], driven.whole[Whole.EXAMINE] = Phase.BETWEEN, 0
+        if held is self._held and not interrupted:
+            return
+        driven.lasting[:], driven.forces[:] = 0, 0.0
+        driven.real[Real.LONGEST] = np.inf if held is None else held.longest_step
+        self._held = held
+        if held is None:
+            return
+        self.list_within(0.0)
+        keys, sought = self._keys(self.pairs), self._keys(held.pairs)
+        rows = np.minimum(np.searchsorted(keys, sought), max(len(keys) - 1, 0))
+        there = keys[rows] == sought if len(keys) else np.zeros(len(sought), dtype=bool)
+        self.driven.lasting[rows[there]], self.driven.forces[rows[there]] = 1, held.forces[there]
+
+    def store_contacts(self) -> None:
+        """Note the persistent contacts in the state of the model."""
+        driven, held = self.driven, self._held
+        rows = np.flatnonzero(driven.lasting)
+        longest = float(driven.real[Real.LONGEST])
+        if len(rows) == 0 and held is None:
+            return
+        self._held = PersistentContacts(driven.pairs[rows], driven.forces[rows], longest) if len(rows) else None
+        self.model.writable("clock.collision_state")[0] = self._held
+
+    # --- how near ------------------------------------------------------------------------------------
 
     @property
     def displacement(self) -> Floats:
@@ -81,40 +227,10 @@ class NeighbourList:
         """Of the particles, now (m/s)."""
         return self.model.tables["particles"].storage("velocity")
 
-    def everywhere(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Values of the particles, followed by zeros for the obstacles, which do not move."""
-        if len(self.obstacles) == 0:
-            return values
-        return np.concatenate([values, np.zeros((len(self.obstacles), *values.shape[1:]), values.dtype)])
-
-    def _list(self, margin: Floats, displacement: Floats) -> None:
-        """List the pairs that can collide before any particle has moved by its margin (m) from these displacements (m)."""
-        place, radius = self.position[: self.count] + displacement, self.radius[: self.count]
-        near = near_pairs(place, radius + margin, self.obstacles)
-        may = np.logical_or(self._moves[near[:, 0]], self._moves[near[:, 1]])
-        keys = near[:, 0] * len(self.position) + near[:, 1]
-        joined = self._joined[np.searchsorted(self._joined[:-1], keys)] == keys
-        self.pairs: Rows = near[np.flatnonzero(may & ~joined)]
-        self._margin = margin
-        self._listed = displacement.copy()
-
-    def list_within(self, travel: float) -> None:
-        """Ensure that the list holds all pairs that can collide before any particle has moved farther than `travel` (m)."""
-        displacement = self.displacement
-        if (lengths(displacement - self._listed) + travel > self._margin).any():
-            self._list(np.maximum(self._least, 2.0 * travel), displacement)
-
-    def are_nodes(self, pairs: Rows) -> NDArray[np.bool_]:
-        """True where a member of a pair is a node of a structure, shape (k, 2)."""
-        nodes: NDArray[np.bool_] = self._node[pairs] & (pairs < self.count)
-        return nodes
-
-    # --- how near ------------------------------------------------------------------------------------
-
     def gaps(self, pairs: Rows, displacement: Floats) -> tuple[Floats, Floats]:
         """Distance between the rims of pairs, and unit vectors from the first centres to the second."""
-        gap, normal = np.empty(len(pairs)), np.empty((len(pairs), 2))
-        kernels().gaps(pairs, self.position, displacement, self.radius, self.span, gap, normal)
+        gap, normal, driven = np.empty(len(pairs)), np.empty((len(pairs), 2)), self.driven
+        kernels().gaps(pairs, driven.position, displacement, driven.radius, driven.span, gap, normal)
         return gap, normal
 
     def rates(self, pairs: Rows, normal: Floats) -> Floats:
@@ -122,122 +238,3 @@ class NeighbourList:
         velocity = self.everywhere(self.velocity)
         rates: Floats = (normal * (velocity[pairs[:, 1]] - velocity[pairs[:, 0]])).sum(axis=1)
         return rates
-
-    def reach(self, pairs: Rows) -> Floats:
-        """The sum of the radii of each pair."""
-        total: Floats = self.radius[pairs].sum(axis=1)
-        return total
-
-    def kinds(self, displacement: Floats, contacts: PersistentContacts | None) -> Rows:
-        """The PairKind of every pair at the start of a step, at these displacements (m)."""
-        kinds = np.empty(len(self.pairs), dtype=np.int64)
-        persistent = NO_PAIRS if contacts is None else contacts.pairs
-        where = self.position, displacement, self.radius, self.span
-        kernels().kinds(self.pairs, persistent, self._node, *where, kinds)
-        return kinds
-
-    def compliance(self, pairs: Rows, normal: Floats, pushed: Floats) -> Floats:
-        """Rates at which unit forces in contacts, along `pushed` (columns), open contacts along `normal` (rows), 1/kg."""
-        slope = np.empty((len(pairs), len(pairs)))
-        kernels().compliance(pairs, normal, pushed, self.weight, slope)
-        return slope
-
-    def clear_time(self, enough: float = math.inf) -> float:
-        """Time (s) in which no pair can collide, whatever forces do; 0 while contacts persist.
-
-        A longer time than `enough` (s) is not sought. Forces of mods, and forces that vary with time, are taken to be
-        constant; `outran` tells whether they were.
-        """
-        if persistent_contacts(self.model) is not None:
-            return 0.0
-        displacement = self.displacement
-        self._since, self._speed, self._pull = self.model.clock.time, *self._greatest_speeds()
-        covered = self._covered(displacement)
-        if covered < 0.0:
-            self._list(self._least, displacement)
-            covered = self._covered(displacement)
-        before, apart = -math.inf, self._time_apart(displacement)
-        while before < covered < min(enough, 0.5 * apart):  # forces that are not finite leave no time
-            self._list(np.maximum(self._least, self._travel(2.0 * covered)), displacement)
-            before, covered, apart = covered, self._covered(displacement), self._time_apart(displacement)
-        return min(covered, apart)
-
-    def time_of_impact(self, before: Snapshot, held: PersistentContacts | None) -> float:
-        """Time of the first impact in the step since `before` (s from its start), without contacts held; infinite: none.
-
-        NaN if paths differ too much from parabolas for the step to tell.
-        """
-        old, velocity = before.columns["particles.displacement"], before.columns["particles.velocity"]
-        h = float(self.model.clock.time - before.columns["clock.time"][0])
-        if h == 0.0:
-            return math.inf
-        after, path_error = self.displacement, np.empty(self.count)
-        span = kernels().path_deviation(
-            h, old, velocity, after, self.velocity, self._listed, self._margin, path_error
-        )
-        if span > 0.0:
-            self._list(np.maximum(self._least, 2.0 * span), old)
-        pairs, kinds = self.pairs, self.kinds(old, held)
-        of_all = self.radius, self.span, self.size, path_error
-        s: float = kernels().time_of_impact(h, pairs, kinds, self.position, old, velocity, after, *of_all)
-        return s if s >= 0.0 else math.nan
-
-    @property
-    def outran(self) -> bool:
-        """True if a particle has gained more speed than `clear_time` allowed for when it was last called."""
-        speed, _ = self._greatest_speeds()
-        passed = self.model.clock.time - self._since
-        with _any_force():
-            return bool((speed > (self._speed + passed * self._pull) * (1.0 + 1e-6)).any())
-
-    def _time_apart(self, displacement: Floats) -> float:
-        """Time (s) in which none of the listed pairs can collide, or separate if they are nodes that overlap."""
-        gap, _ = self.gaps(self.pairs, displacement)
-        room = np.where(self.kinds(displacement, None) == PairKind.LEFT_ALONE, -gap, np.maximum(gap, 0.0))
-        of_pairs = (self.everywhere(values)[self.pairs].sum(axis=1) for values in (self._speed, self._pull))
-        return _soonest(room, *of_pairs)
-
-    def _covered(self, displacement: Floats) -> float:
-        """Time (s) for which the list is complete; negative if it no longer is."""
-        room = self._margin - lengths(displacement - self._listed)
-        return _soonest(room, self._speed, self._pull) if (room >= 0.0).all() else -math.inf
-
-    def _travel(self, time: float) -> Floats:
-        """Farthest that particles can move in a time (s), m."""
-        with _any_force():
-            return time * (self._speed + 0.5 * time * self._pull)
-
-    def _greatest_speeds(self) -> tuple[Floats, Floats]:
-        """Bounds of the speeds of particles (m/s), and of the growth of these bounds in time (m/s²).
-
-        On an island with the kinetic and elastic energy E, forces F do at most the work
-            dE/dt ≤ F · v ≤ √(Σ F²/m) √(2E),   so that   √m v ≤ √(2E) ≤ √(2E₀) + t √(Σ F²/m).
-        """
-        particles, rods, count = self.model.particles, self.model.rods, int(self._island.max(initial=0)) + 1
-        awake = self._moves[: self.count] & ~particles.asleep
-        of_rods = self._island[rods.between].max(axis=1, initial=0)
-        with _any_force():
-            stored = 1000.0 * rods.axial_force**2 * rods.rest_length / rods.stiffness
-            pull = particles.mass * ((particles.mobility * particles.applied_force) ** 2).sum(axis=1)
-            twice = np.bincount(self._island, particles.mass * (particles.velocity**2).sum(axis=1), count)
-            twice += np.bincount(of_rods, stored, count)
-            squares = (
-                np.array([twice, np.bincount(self._island, pull, count)])[:, self._island] / particles.mass
-            )
-        speed, growth = np.where(awake, np.sqrt(squares), 0.0)
-        return speed, growth
-
-
-def lengths(vectors: Floats) -> Floats:
-    """Lengths of vectors, shape (n, 2)."""
-    found: Floats = np.hypot(vectors[:, 0], vectors[:, 1])
-    return found
-
-
-def _soonest(room: Floats, speed: Floats, pull: Floats) -> float:
-    """The least time (s) in which a particle covers its room (m): speed t + pull t²/2 = room."""
-    moves = (speed > 0.0) | (pull > 0.0)
-    room, speed, pull = room[moves], speed[moves], pull[moves]
-    with np.errstate(over="ignore"):
-        time = np.where(room > 0.0, 2.0 * room, 0.0) / (speed + np.sqrt(speed**2 + 2.0 * pull * room) + SLOWEST)
-    return float(time.min(initial=math.inf))

@@ -1,15 +1,12 @@
-"""Pairs of driven particles, or of a particle and an obstacle: gaps, kinds, compliance, and the law of contact forces.
+"""Pairs of driven particles, or of a particle and an obstacle: the gaps between them.
 
 The numbers of obstacles follow those of the particles; obstacles have no displacement.
 """
 
 import math
 
-from systems.collision.columns import OVERLAP, PairKind
 from systems.collision.kernels import compiled
-from systems.collision.kernels.projection import coupling
 from systems.collision.kernels.time_of_impact import nearest_of_piece
-from systems.kernels import compiled as law
 
 
 @compiled
@@ -34,34 +31,3 @@ def measure_gaps(pairs, position, displacement, radius, span, gap, normal):
     for k in range(pairs.shape[0]):
         i, j = pairs[k, 0], pairs[k, 1]
         gap[k], normal[k, 0], normal[k, 1] = gap_of(i, j, position, displacement, radius, span)
-
-
-@compiled
-def classify_pairs(pairs, contacts, node, position, displacement, radius, span, kinds):
-    """Fill in the PairKind of every pair at the start of a step."""
-    for k in range(pairs.shape[0]):
-        i, j = pairs[k, 0], pairs[k, 1]
-        kinds[k] = PairKind.WATCHED
-        if node[i] and node[j]:
-            gap, _, _ = gap_of(i, j, position, displacement, radius, span)
-            if gap < -OVERLAP * (radius[i] + radius[j]):
-                kinds[k] = PairKind.LEFT_ALONE
-        for c in range(contacts.shape[0]):
-            if contacts[c, 0] == i and contacts[c, 1] == j:
-                kinds[k] = PairKind.PERSISTENT
-                break
-
-
-@compiled
-def compliance_matrix(pairs, normal, pushed, weight, slope):
-    """Fill in the rates at which unit forces along `pushed` (columns) open contacts along `normal` (rows), 1/kg."""
-    for c in range(pairs.shape[0]):
-        for d in range(pairs.shape[0]):
-            ends = pairs[c], pairs[d]
-            slope[c, d] = coupling(ends, normal[c, 0], normal[c, 1], pushed[d, 0], pushed[d, 1], weight)
-
-
-@law
-def contact_force(collision_support_force):
-    """The force of all contacts on a particle during this step, kN."""
-    return collision_support_force[0], collision_support_force[1]

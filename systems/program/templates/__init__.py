@@ -9,6 +9,8 @@ program. It runs only there.
     *scratch    predicted, power, gained; of an integrator that controls its steps
                 search, work, rod_work, marks, power, gained, stage_power
     *bounds     breaks, until, landing
+    *limits     tolerance, limit; where steps are controlled
+    *kept       what driven.py puts back
     *observed   rods_axial_force, rods_length, rods_strain, yielding; fixed, tension, compression, yields
     insert(x)   the lines, or the expression, that the writer made for `x`
 
@@ -30,6 +32,7 @@ Constants of every program: RATES (something depends on velocity), POWERS (some 
 CHECK_INTERVAL and REVIEW_INTERVAL (steps); of one that controls its steps also EVENTS (there are Events, or some law of
 rods has branches), COMMITS (something has a history) and those of its integrator.
 
+    driven.py        steps among particles that may meet
     fixed_steps.py   integrators whose steps are all alike, and when a state is checked
     runge_kutta.py   integrators that control their steps: one loop for every tableau
     implicit.py      the stages of implicit ones

@@ -46,9 +46,17 @@ def observe(time, dt, displacement, velocity, applied, reaction, forces, power, 
     tension, compression: the rods' strengths (kN). yields: whether the model has plasticity.
     """
     external(time, dt, displacement, velocity, applied, resisting, *columns)
+    insert(pushed)
     insert(evaluation)
     measure(displacement, velocity, force, resisting, measures, *columns)
     for i in range(displacement.shape[0]):
         for d in range(2):
             reaction[i, d] = 0.0 - (force[i, d] + resisting[i, d]) if fixed[i, d] else 0.0
     insert(rods)
+
+
+def pushed():
+    """Contact forces act from outside."""
+    for i in range(displacement.shape[0]):
+        for d in range(2):
+            applied[i, d] += support[i, d]

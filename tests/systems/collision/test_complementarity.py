@@ -6,8 +6,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-from systems.collision.driven.contacts import complementary
+from systems.collision.driven.columns import Tried
+from systems.collision.driven.kernels import complementarity
 from tests.reference.complementarity import complementary as plainly
+
+
+def complementary(slope: np.ndarray, gap: np.ndarray, forces: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Forces that leave gaps ≥ 0, where gaps follow forces by `slope`; False if none are found."""
+    count = len(gap)
+    search = np.zeros((len(Tried), count))
+    search[Tried.GAP], search[Tried.FORCES] = gap, forces
+    work = np.zeros((count, count + 1)), np.zeros((2, count), dtype=np.int64)
+    found = complementarity.complementary(0, count, slope, search, *work)
+    return search[Tried.FOUND], bool(found)
 
 
 def problem(seed: int, contacts: int, freedoms: int) -> tuple[np.ndarray, np.ndarray]:

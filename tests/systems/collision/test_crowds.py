@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from game import Session
 from systems.collision.columns import Contact, Group
 from systems.collision.driven.compiled import kernels
-from systems.collision.driven.crowds import CROWD_CONTACTS, NO_IMPACT, CrowdStepper
+from systems.collision.driven.crowds import NO_IMPACT, CrowdStepper
+from systems.collision.driven.kernels.crowd import CROWD_CONTACTS
 from systems.collision.system import persistent_contacts
 from systems.program.compiler import Compile
 from tests.reference import bits
@@ -132,9 +133,9 @@ def taken(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """When steps of crowds were taken, from now on."""
     times, step = [], CrowdStepper.step
 
-    def noted(self: CrowdStepper, *rest: Any) -> Any:
+    def noted(self: CrowdStepper, *rest: Any, **named: Any) -> Any:
         times.append(self.model.clock.time)
-        return step(self, *rest)
+        return step(self, *rest, **named)
 
     monkeypatch.setattr(CrowdStepper, "step", noted)
     return times

@@ -281,7 +281,7 @@ def assert_inside(session: Session) -> None:
     """Nothing sunk in by 1e-6 of a radius."""
     near = NeighbourList(session.model)
     near.look_up()
-    near._list(near._least, near.displacement)
+    near.list_within(0.0)
     gap, _ = near.gaps(near.pairs, near.displacement)
     assert gap.min(initial=0.0) >= -1e-6 * session.particles.radius.min()
 

@@ -313,9 +313,9 @@ def sinking(session: Session) -> float:
     """By how much of a radius discs are in one another at most."""
     near = NeighbourList(session.model)
     near.look_up()
-    near._list(near._least, near.displacement)
+    near.list_within(0.0)
     gap, _ = near.gaps(near.pairs, near.displacement)
-    return float((-gap / near.size[near.pairs].min(axis=1)).max(initial=0.0))
+    return float((-gap / near.driven.size[near.pairs].min(axis=1)).max(initial=0.0))
 
 
 def test_a_hand_pulls_a_disc_into_others_on_exact_paths() -> None:

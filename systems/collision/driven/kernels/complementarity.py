@@ -2,6 +2,7 @@
 
 import math
 
+from systems.collision.driven.columns import Tried
 from systems.collision.kernels import compiled
 
 FIRM = 1e-11  # added to the compliance of each contact, as a share: makes forces unique, the least ones
@@ -12,43 +13,46 @@ OPEN, PUSHING, FIXED = 0, 1, 2  # sides of a contact; FIXED: without compliance,
 
 
 @compiled
-def complementary(slope, gap, forces, found, matrix, scale, offset, sides, wrong):
-    """Forces F ≥ 0, shape (c,), into `found`, that leave gaps ≥ 0, either being 0 in each contact; False if none are found.
+def complementary(first, end, slope, search, matrix, marks):
+    """Forces F ≥ 0 of some contacts, into FOUND, that leave gaps ≥ 0, either being 0 in each; False if there are none.
 
-    gap: gaps with the given forces; slope: derivative of the gaps, which become gap + slope (F − forces).
+    first, end: the first of these contacts, and the one after the last.
+    search: has the rows of Tried, of which GAP are the gaps with FORCES. slope: derivative of the gaps, which become
+    gap + slope (F − forces).
     Contacts that are wrong, since they pull or overlap, change sides all at once, or, where that goes round in circles,
     only the last of them (Júdice, Pires, Computers & Operations Research 21, 1994).
-    matrix, shape (c, c + 1), scale, offset, sides and wrong, shape (c,): work space.
+    matrix, shape (c, c + 1), and marks, shape (2, c): work space.
     """
-    count = gap.shape[0]
-    largest = _prepare(slope, gap, forces, scale, offset, sides)
-    best, patience, number = count + 1, PATIENCE, 0
+    gap, forces, found = search[Tried.GAP], search[Tried.FORCES], search[Tried.FOUND]
+    scale, offset, sides, wrong = search[Tried.SCALE], search[Tried.OFFSET], marks[0], marks[1]
+    largest = _prepare(first, end, slope, gap, forces, scale, offset, sides)
+    best, patience, number = end - first + 1, PATIENCE, 0
     for _ in range(MOST_EXCHANGES):
-        _close(slope, found, matrix, scale, offset, sides)
-        number, last = _find_wrong(slope, ROUND_OFF * largest, found, scale, offset, sides, wrong)
+        _close(first, end, slope, found, matrix, scale, offset, sides)
+        number, last = _find_wrong(first, end, slope, ROUND_OFF * largest, found, scale, offset, sides, wrong)
         if number == 0:
             break
         patience = PATIENCE if number < best else patience - 1
         best = min(best, number)
-        for c in range(count):
+        for c in range(first, end):
             if wrong[c] and (patience > 0 or c == last):
                 sides[c] = OPEN if sides[c] == PUSHING else PUSHING
-    for c in range(count):
+    for c in range(first, end):
         found[c] = max(found[c], 0.0) / scale[c] if sides[c] == PUSHING else 0.0
     return number == 0
 
 
 @compiled
-def _prepare(slope, gap, forces, scale, offset, sides):
+def _prepare(first, end, slope, gap, forces, scale, offset, sides):
     """Scale every contact by its compliance, and find the gaps without forces; returns the largest gap."""
-    count, largest = gap.shape[0], 0.0
-    for c in range(count):
+    largest = 0.0
+    for c in range(first, end):
         scale[c] = math.sqrt(max(slope[c, c], 0.0))
         sides[c] = FIXED if scale[c] == 0.0 else (PUSHING if forces[c] > 0.0 else OPEN)
-    for c in range(count):
+    for c in range(first, end):
         if sides[c] != FIXED:
             left = gap[c]
-            for d in range(count):
+            for d in range(first, end):
                 if sides[d] != FIXED:
                     left -= slope[c, d] * forces[d]
             offset[c] = left / scale[c]
@@ -57,13 +61,13 @@ def _prepare(slope, gap, forces, scale, offset, sides):
 
 
 @compiled
-def _close(slope, found, matrix, scale, offset, sides):
+def _close(first, end, slope, found, matrix, scale, offset, sides):
     """The forces that close the contacts that push, scaled, by elimination with the largest pivots."""
-    count, n = found.shape[0], 0
-    for c in range(count):
+    n = 0
+    for c in range(first, end):
         if sides[c] == PUSHING:
             m = 0
-            for d in range(count):
+            for d in range(first, end):
                 if sides[d] == PUSHING:
                     matrix[n, m] = slope[c, d] / (scale[c] * scale[d]) + (FIRM if c == d else 0.0)
                     m += 1
@@ -80,7 +84,7 @@ def _close(slope, found, matrix, scale, offset, sides):
             matrix[k, n] -= matrix[k, m] * matrix[m, n]
         matrix[k, n] /= matrix[k, k]
     k = 0
-    for c in range(count):
+    for c in range(first, end):
         found[c] = 0.0
         if sides[c] == PUSHING:
             found[c] = matrix[k, n]
@@ -100,14 +104,14 @@ def _pivot(k, n, matrix):
 
 
 @compiled
-def _find_wrong(slope, least, found, scale, offset, sides, wrong):
+def _find_wrong(first, end, slope, least, found, scale, offset, sides, wrong):
     """Mark contacts that pull, or overlap by more than `least`; returns their number, and the last of them."""
     number, last = 0, -1
-    for c in range(found.shape[0]):
+    for c in range(first, end):
         wrong[c] = found[c] < 0.0
         if sides[c] == OPEN:
             left = offset[c]
-            for d in range(found.shape[0]):
+            for d in range(first, end):
                 if sides[d] == PUSHING:
                     left += slope[c, d] / (scale[c] * scale[d]) * found[d]
             wrong[c] = left < -least

@@ -1,0 +1,179 @@
+"""Impacts of driven particles: what happens at the instant at which a step ends."""
+
+import math
+
+from systems.collision.columns import NONE, Contact, Detail
+from systems.collision.driven.columns import Need, Real, Whole
+from systems.collision.driven.kernels.contacts import SETTLING_CONTACTS, SETTLING_HEIGHT
+from systems.collision.driven.kernels.groups import chain_groups, end_groups, root_of
+from systems.collision.driven.kernels.joint_impacts import resolve
+from systems.collision.driven.kernels.paths import TOUCHING_GAP, is_left_alone, opening
+from systems.collision.kernels import compiled
+from systems.collision.kernels.pairs import gap_of
+from systems.collision.system import REST_HEIGHT
+from systems.entries import Account, Control
+
+ROUND_OFF = 1e-14  # of the fastest speed: slower approaches are none
+
+
+@compiled
+def set_rest_speeds(driven, h, later):
+    """The speed of approach below which each pair stays in contact: √(2 a · height), a being the larger acceleration.
+
+    h: length (s) of the step that led to the velocities `later`.
+    """
+    lasting = 0
+    for k in range(driven.pairs.shape[0]):
+        lasting += driven.lasting[k]
+    share = SETTLING_HEIGHT if lasting >= SETTLING_CONTACTS else REST_HEIGHT
+    for k in range(driven.pairs.shape[0]):
+        i, j = driven.pairs[k, 0], driven.pairs[k, 1]
+        height = TOUCHING_GAP * (driven.radius[i] + driven.radius[j])
+        if driven.whole[Whole.BOUNCY]:
+            height = max(height, share * min(driven.size[i], driven.size[j]))
+        pull = _acceleration(driven, i, h, later)
+        if j < later.shape[0]:
+            pull = max(pull, _acceleration(driven, j, h, later))
+        driven.slow[k] = math.sqrt(2.0 * pull * height)
+
+
+@compiled
+def _acceleration(driven, i, h, later):
+    """Of a particle, by constant forces or in the step, whichever is larger (m/s²)."""
+    if h <= 0.0:
+        return driven.pull[i]
+    x, y = later[i, 0] - driven.velocity[i, 0], later[i, 1] - driven.velocity[i, 1]
+    return max(driven.pull[i], math.sqrt(x * x + y * y) / h)
+
+
+@compiled
+def resolve_touching(driven, control, account, place, speed):
+    """Resolve the impacts of all pairs that touch now; False if there is nothing to resolve.
+
+    Contacts of pairs that part no faster than at rest begin to persist.
+    """
+    count, fastest = 0, 0.0
+    for k in range(driven.pairs.shape[0]):
+        i, j = driven.pairs[k, 0], driven.pairs[k, 1]
+        gap, nx, ny = gap_of(i, j, driven.position, place, driven.radius, driven.span)
+        touches = gap <= 4.0 * TOUCHING_GAP * (driven.radius[i] + driven.radius[j])
+        if not touches or (driven.lasting[k] == 0 and is_left_alone(driven, k)):
+            continue
+        driven.touching[count] = k
+        count += 1
+        driven.normal[k, 0], driven.normal[k, 1] = nx, ny
+        driven.rate[k] = opening(i, j, nx, ny, speed)
+        if driven.lasting[k]:
+            driven.slow[k] = math.inf
+        fastest = max(fastest, speed[i, 0] * speed[i, 0] + speed[i, 1] * speed[i, 1])
+        if j < speed.shape[0]:
+            fastest = max(fastest, speed[j, 0] * speed[j, 0] + speed[j, 1] * speed[j, 1])
+    noise, acts = ROUND_OFF * math.sqrt(fastest), False
+    for t in range(count):
+        k = driven.touching[t]
+        acts = acts or driven.lasting[k] == 0 or driven.rate[k] < -noise
+    if not acts:
+        return False
+    chain_groups(driven, count, speed.shape[0])
+    for t in range(count):
+        if driven.group.place[root_of(driven, driven.touching[t], speed.shape[0])] == t:
+            _resolve_group(driven, t, control, account, place, speed)
+    end_groups(driven, count, speed.shape[0])
+    _begin_contacts(driven, count, control, speed)
+    driven.whole[Whole.FRESH] = 0
+    return True
+
+
+@compiled
+def _resolve_group(driven, first, control, account, place, speed):
+    """Resolve the joint impact of a chain of pairs; it is plastic if no pair approaches faster than at rest."""
+    group, n = driven.group, speed.shape[0]
+    restitution, any_fast, approaches = 1.0, False, False
+    members, contacts, t = 0, 0, first
+    while t != NONE:
+        k = driven.touching[t]
+        for e in range(2):
+            members, group.links[contacts, e] = _member(driven, driven.pairs[k, e], members, speed)
+        group.contacts[contacts, Contact.NX] = driven.normal[k, 0]
+        group.contacts[contacts, Contact.NY] = driven.normal[k, 1]
+        approaches = approaches or driven.rate[k] < 0.0
+        if driven.rate[k] < -driven.slow[k]:
+            any_fast = True
+            restitution = min(restitution, driven.restitution[driven.pairs[k, 1]])
+        contacts += 1
+        t = driven.chain[t]
+    if not approaches:
+        return
+    resolve(members, contacts, restitution if any_fast else 0.0, 0.0, group)
+    for m in range(members):
+        if group.members[m] < n:
+            for d in range(2):
+                speed[group.members[m], d] = group.motion[m, d]
+    loss, total, c, t = 0.0, 0.0, 0, first
+    while t != NONE:
+        k = driven.touching[t]
+        impulse = group.contacts[c, Contact.TOTAL_IMPULSE]
+        after = opening(driven.pairs[k, 0], driven.pairs[k, 1], driven.normal[k, 0], driven.normal[k, 1], speed)
+        loss -= 0.5 * (impulse * (driven.rate[k] + after))
+        total += impulse
+        c += 1
+        t = driven.chain[t]
+    account[Account.DISSIPATED_IMPACT] += loss
+    if any_fast and total > 0.0:
+        _report(driven, first, loss, total, control, place)
+
+
+@compiled
+def _member(driven, i, members, speed):
+    """The number of members, and which of them a particle or obstacle is, which is entered if it is none yet."""
+    group = driven.group
+    for m in range(members):
+        if group.members[m] == i:
+            return members, m
+    group.members[members] = i
+    for d in range(2):
+        group.mobility[members, d] = driven.weight[i, d]
+        group.motion[members, d] = speed[i, d] if i < speed.shape[0] else 0.0
+    return members + 1, members
+
+
+@compiled
+def _report(driven, first, loss, total, control, place):
+    """Report the impacts of a group, each with a share of the energy lost by its impulse."""
+    report, whole = driven.report, driven.whole
+    c, t = 0, first
+    while t != NONE:
+        impulse, k = driven.group.contacts[c, Contact.TOTAL_IMPULSE], driven.touching[t]
+        c += 1
+        t = driven.chain[t]
+        if impulse <= 0.0:
+            continue
+        i, j, row = driven.pairs[k, 0], driven.pairs[k, 1], whole[Whole.REPORTED]
+        report.pairs[row, 0], report.pairs[row, 1] = i, j
+        details = report.details
+        details[row, Detail.TIME], details[row, Detail.IMPULSE] = control[Control.TIME], impulse
+        details[row, Detail.LOSS] = loss * impulse / total
+        details[row, Detail.X] = driven.position[i, 0] + place[i, 0] + driven.normal[k, 0] * driven.radius[i]
+        details[row, Detail.Y] = driven.position[i, 1] + place[i, 1] + driven.normal[k, 1] * driven.radius[i]
+        whole[Whole.REPORTED] += 1
+
+
+@compiled
+def _begin_contacts(driven, count, control, speed):
+    """Let pairs that touch and part no faster than at rest stay in contact, and wake what is asleep and was struck."""
+    whole = driven.whole
+    for t in range(count):
+        k = driven.touching[t]
+        i, j = driven.pairs[k, 0], driven.pairs[k, 1]
+        if driven.asleep[i] or (j < speed.shape[0] and driven.asleep[j]):
+            whole[Whole.NEED] = Need.WAKE
+        if driven.lasting[k]:
+            continue
+        slow = driven.slow[k]
+        if slow > 0.0 and opening(i, j, driven.normal[k, 0], driven.normal[k, 1], speed) <= slow:
+            driven.lasting[k], driven.forces[k] = 1, 0.0
+            for p in range(speed.shape[0]):  # nothing sleeps while contacts persist: see systems/run/sleep.py
+                if driven.asleep[p]:
+                    whole[Whole.NEED] = Need.WAKE
+            limit = driven.real[Real.HELD_LIMIT]
+            control[Control.STEP_SIZE] = min(control[Control.STEP_SIZE], limit)

@@ -1,0 +1,246 @@
+"""Steps among particles that may meet: between them, and before each is taken for good, `collide` is asked what to do.
+
+`collide` is compiled once for all programs (systems/collision/driven/kernels/steps.py); `driven` holds its arrays.
+Their rows are those of the model. rows: the model's row of each particle of the program; of none: they are the same.
+place, speed: of the model's particles, other arrays than displacement and velocity only where there are `rows`.
+*kept: copies of what a step that is taken back had changed. Contact forces (`support`, kN) last during a step and are
+added last of all (`unpushed` is the sum without them), so that others can be tried without evaluating the rest again.
+"""
+
+# ruff: noqa: F821
+# mypy: ignore-errors
+
+
+def push():
+    """Add the contact forces to all others."""
+    for i in range(displacement.shape[0]):
+        for d in range(2):
+            unpushed[i, d] = force[i, d]
+            force[i, d] += support[i, d]
+
+
+def drive(
+    collide,
+    driven,
+    rows,
+    place,
+    speed,
+    limits,
+    breaks,
+    loads_end,
+    control,
+    state,
+    scratch,
+    account,
+    measures,
+    kept,
+    *columns,
+):
+    """Take steps as `driven` says, alone, or as `collide` says in between."""
+    whole = driven.whole
+    real = driven.real
+    alone = whole[Whole.ALONE] == 1
+    coming = 0
+    acceleration = driven.acceleration if rows.shape[0] == 0 else own_acceleration
+    pressing = driven.support if rows.shape[0] == 0 else own_support
+    order = Order.TAKE.value
+    if not alone:
+        order = collide(driven, control, account, place, speed)
+    while True:
+        for i in range(rows.shape[0]):
+            for d in range(2):
+                displacement[i, d] = place[rows[i], d]
+                velocity[i, d] = speed[rows[i], d]
+        if whole[Whole.BACK] == 1:
+            insert(put_back)
+            whole[Whole.BACK] = 0
+        if order == Order.LEAVE.value:
+            return
+        if order == Order.EVALUATE.value:
+            if whole[Whole.FRESH] == 0:
+                insert(evaluate)
+                whole[Whole.FRESH] = 1
+            while breaks[coming] <= control[Control.TIME]:
+                coming += 1
+            real[Real.BREAK] = breaks[coming]
+            near = driven.near if rows.shape[0] == 0 and driven.near.shape[0] > 0 else every
+            for p in range(near.shape[0]):
+                i = near[p]
+                for d in range(2):
+                    total = unpushed[i, d] + resisting[i, d] if RATES else unpushed[i, d]
+                    acceleration[i, d] = total * particles_mobility[i, d]
+            for i in range(rows.shape[0]):
+                for d in range(2):
+                    driven.acceleration[rows[i], d] = acceleration[i, d]
+        else:
+            if whole[Whole.KEEP] == 1:
+                insert(keep)
+                whole[Whole.KEEP] = 0
+            if not alone and whole[Whole.PUSHED] == 1:
+                for i in range(rows.shape[0]):
+                    for d in range(2):
+                        pressing[i, d] = driven.support[rows[i], d]
+                for i in range(displacement.shape[0]):
+                    for d in range(2):
+                        support[i, d] = pressing[i, d]
+                        force[i, d] = unpushed[i, d] + support[i, d]
+                insert(pushed)
+                whole[Whole.PUSHED] = whole[Whole.CHOSEN] > 0
+            insert(take)
+            whole[Whole.FRESH] = 1
+            if alone:
+                return
+        for i in range(rows.shape[0]):
+            for d in range(2):
+                place[rows[i], d] = displacement[i, d]
+                speed[rows[i], d] = velocity[i, d]
+        order = collide(driven, control, account, place, speed)
+
+
+def keep():
+    """Keep what a step changes besides the state of the particles, the clock and the account."""
+    for i in range(force.shape[0]):
+        for d in range(2):
+            kept_force[i, d] = unpushed[i, d]
+            kept_resisting[i, d] = resisting[i, d]
+    for k in range(power.shape[0]):
+        kept_power[k] = power[k]
+    insert(histories)
+
+
+def put_back():
+    """Put back what was kept."""
+    for i in range(force.shape[0]):
+        for d in range(2):
+            unpushed[i, d] = kept_force[i, d]
+            resisting[i, d] = kept_resisting[i, d]
+    for k in range(power.shape[0]):
+        power[k] = kept_power[k]
+    insert(histories)
+
+
+def each_history():
+    for r in range(rods_between.shape[0]):  # noqa: B007
+        insert(copied)
+
+
+# --- integrators with fixed steps --------------------------------------------------------------------
+
+
+def evaluate_fixed():
+    """The forces of the present state."""
+    forces(control[Control.TIME], control[Control.STEP_SIZE], *state, *columns)
+    insert(resist)
+
+
+def take_fixed():
+    """Take whole steps, or one that ends at Real.END, from which on steps are counted then.
+
+    How old the run is, by which it is checked, stays the same: impacts do not make it a new one.
+    """
+    size = control[Control.STEP_SIZE]
+    total = whole[Whole.TOTAL]
+    if real[Real.END] < math.inf:
+        began = control[Control.TIME]
+        dt = real[Real.END] - began
+        age = min(total - whole[Whole.SINCE], CHECK_INTERVAL)
+        if is_check_due(total + 1, age + 1):
+            measure(displacement, velocity, force, resisting, measures, *columns)
+            account[Account.GUARD_ENERGY] = conserved(measures, account, dt, SHADOW)
+        taken, reason = advance(
+            1,
+            True,
+            total,
+            age,
+            began - age * dt,
+            dt,
+            breaks,
+            loads_end,
+            *state,
+            *scratch,
+            account,
+            measures,
+            *columns,
+        )
+        age = min(age + taken, CHECK_INTERVAL)
+        control[Control.TIME] = real[Real.END]
+        real[Real.ORIGIN] = real[Real.END] - age * size
+        whole[Whole.SINCE] = total + taken - age
+        measure(displacement, velocity, force, resisting, measures, *columns)
+        account[Account.GUARD_ENERGY] = conserved(measures, account, size, SHADOW)
+    else:
+        steps = whole[Whole.WANTED] if alone else whole[Whole.STEPS]
+        since = total - whole[Whole.SINCE]
+        origin = real[Real.ORIGIN]
+        until = real[Real.UNTIL] if alone else real[Real.BY]
+        if until < math.inf:
+            steps = min(steps, max(int((until - control[Control.TIME]) / size * (1.0 + 1e-12)), 0))
+        taken, reason = advance(
+            steps,
+            whole[Whole.FRESH] == 1,
+            total,
+            since,
+            origin,
+            size,
+            breaks,
+            loads_end,
+            *state,
+            *scratch,
+            account,
+            measures,
+            *columns,
+        )
+        if taken > 0:
+            control[Control.TIME] = origin + (since + taken) * size
+    whole[Whole.TOTAL] = total + taken
+    whole[Whole.REASON] = reason
+
+
+# --- integrators that control their steps -------------------------------------------------------------
+
+
+def evaluate_controlled():
+    """The forces of the present state."""
+    evaluate(control[Control.TIME], control[Control.STEP_SIZE], *state, power, *columns)
+    accelerate(force, resisting, work[0], particles_mobility)
+
+
+def take_controlled():
+    """Take whole steps, or as many as it takes to Real.END."""
+    end = real[Real.END]
+    until = real[Real.UNTIL] if alone else (real[Real.BY] if end == math.inf else end)
+    wanted = whole[Whole.WANTED] if alone else (whole[Whole.STEPS] if end == math.inf else REVIEW_INTERVAL)
+    longest = limit if alone or whole[Whole.CHOSEN] == 0 else min(limit, real[Real.HELD_LIMIT])
+    ended = StopReason.DONE.value
+    while True:
+        total = whole[Whole.TOTAL]
+        began = control[Control.TIME]
+        taken, ended = advance(
+            wanted,
+            whole[Whole.FRESH] == 1,
+            total,
+            total - whole[Whole.SINCE],
+            real[Real.ORIGIN],
+            tolerance,
+            longest,
+            breaks,
+            until,
+            end,
+            loads_end,
+            control,
+            *state,
+            *scratch,
+            account,
+            measures,
+            *columns,
+        )
+        whole[Whole.FRESH] = 1
+        whole[Whole.TOTAL] = total + taken
+        now = control[Control.TIME]
+        if (taken > 0 or now > began) and (tolerance > 0.0 or now == end):
+            real[Real.ORIGIN] = now
+            whole[Whole.SINCE] = total + taken
+        goes_on = ended == StopReason.DONE or ended == StopReason.REVIEW or ended == StopReason.REST
+        if alone or end == math.inf or now >= end or not goes_on:
+            break
+    whole[Whole.REASON] = ended
