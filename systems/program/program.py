@@ -83,7 +83,6 @@ class Program:
     failure: what a kernel raised in a step, and which, if one did.
     impulsive: the systems without a kernel that act by impacts. between: what acts between its steps.
     module: its functions. tolerance: of each step; 0 where the error is not controlled.
-    longest_in_contact: the longest step (s) while contacts persist.
     compile_seconds: time that writing it took, and compiling it, or loading it from the cache, if that was done at once.
     """
 
@@ -99,7 +98,6 @@ class Program:
         self.measures = np.zeros(len(Measure))
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self.failure: ProgramError | None = None
-        self.longest_in_contact = math.inf
         self._types: dict[str, Any] = {}
         self._state_revision = -1
         self.bind()
@@ -420,8 +418,6 @@ class Program:
         whole, (total, since) = driven.whole, self._counts.tolist()
         origin, limit = self._origin.tolist()
         limit = limit or math.inf
-        if alone and self.model.clock.collision_state is not None:
-            limit = min(limit, self.longest_in_contact)
         whole[Whole.ALONE], whole[Whole.WANTED] = alone, steps
         whole[Whole.TOTAL] = whole[Whole.FIRST] = total
         whole[Whole.SINCE], whole[Whole.FRESH], whole[Whole.NEED] = since, self._is_fresh, 0
@@ -457,12 +453,6 @@ class Program:
     def _motion(self) -> tuple[Column, Column, Column]:
         """The model's row of each particle, of none if they are the same, and the model's displacements and velocities."""
         return np.zeros(0, dtype=np.int64), self._arrays["displacement"], self._arrays["velocity"]
-
-    def push(self, force: Column) -> None:
-        """Push the particles of the model by these forces (kN) in the next step."""
-        if not (self._support == force[self._held_rows]).all():
-            self._support[...] = force[self._held_rows]
-            self._state_revision = -1  # forces must be evaluated anew
 
     def _renew(self, near: NearPairs) -> None:
         """Have the list of near pairs made anew in another state, and room for all of them."""

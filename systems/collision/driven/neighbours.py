@@ -139,16 +139,8 @@ class NeighbourList:
         rows = np.searchsorted(self._keys(pairs), self._keys(old.pairs[lasting]))
         new.lasting[rows], new.forces[rows] = 1, old.forces[lasting]
         of_pairs = (
-            "pairs",
-            "lasting",
-            "forces",
-            "normal",
-            "slow",
-            "rate",
-            "touching",
-            "chain",
-            "group",
-            "report",
+            *("pairs", "lasting", "forces", "normal", "slow", "rate", "room", "pushes", "impulses"),
+            *("touching", "chain", "group", "report"),
         )
         members = np.unique(pairs)
         near = np.ascontiguousarray(members[members < self.count])
@@ -233,9 +225,3 @@ class NeighbourList:
         gap, normal, driven = np.empty(len(pairs)), np.empty((len(pairs), 2)), self.driven
         kernels().gaps(pairs, driven.position, displacement, driven.radius, driven.span, gap, normal)
         return gap, normal
-
-    def rates(self, pairs: Rows, normal: Floats) -> Floats:
-        """Speeds (m/s) at which pairs part along their lines of centres."""
-        velocity = self.everywhere(self.velocity)
-        rates: Floats = (normal * (velocity[pairs[:, 1]] - velocity[pairs[:, 0]])).sum(axis=1)
-        return rates

@@ -210,7 +210,7 @@ def take_controlled():
     end = real[Real.END]
     until = real[Real.UNTIL] if alone else (real[Real.BY] if end == math.inf else end)
     wanted = whole[Whole.WANTED] if alone else (whole[Whole.STEPS] if end == math.inf else REVIEW_INTERVAL)
-    longest = limit if alone or whole[Whole.CHOSEN] == 0 else min(limit, real[Real.HELD_LIMIT])
+    longest = limit if whole[Whole.CHOSEN] == 0 else min(limit, real[Real.HELD_LIMIT])
     ended = StopReason.DONE.value
     while True:
         total = whole[Whole.TOTAL]
