@@ -1,5 +1,7 @@
 """Impacts and contacts with structures, and of particles under drag or a person's hand, through Session."""
 
+import contextlib
+import itertools
 import time
 from pathlib import Path
 from typing import Any
@@ -14,6 +16,7 @@ from systems.collision.driven.compiled import DRIVEN, kernels
 from systems.collision.driven.neighbours import NeighbourList
 from systems.collision.system import persistent_contacts
 from systems.edit.pull import hand_on
+from systems.program.program import Program
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
 
@@ -136,6 +139,25 @@ def test_undo_returns_the_same_bits_through_impacts_and_contact() -> None:
     assert session.step(-30)
     session.run(steps=30)
     straight.run(steps=40)
+    assert state(session) == state(straight)
+
+
+def test_interrupts_leave_no_contacts_that_the_state_does_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each comes after the program returned and before what began to persist is noted."""
+    session, straight = Session.open(truss({})), Session.open(truss({}))
+    straight.run(steps=160)
+    drive, calls = Program.drive, itertools.count(1)
+
+    def interrupted(program: Program, *bounds: Any) -> Any:
+        done = drive(program, *bounds)
+        if next(calls) % 3 == 0:
+            raise KeyboardInterrupt
+        return done
+
+    monkeypatch.setattr(Program, "drive", interrupted)
+    while (left := 160 - session.model.clock.steps) > 0:
+        with contextlib.suppress(KeyboardInterrupt):
+            session.run(steps=min(4, left))
     assert state(session) == state(straight)
 
 
