@@ -112,6 +112,22 @@ def test_nothing_tunnels_through_a_node(speed: float) -> None:
     assert session.impacts.impulse[0] == pytest.approx(1.5 * speed * 2.0 * node / (2.0 + node), rel=1e-12)
 
 
+@pytest.mark.parametrize("integrator", ["velocity_verlet", "rk4", "dop853"])
+def test_a_run_ends_at_its_time_also_shortly_before_an_impact(integrator: str) -> None:
+    """The ball meets the node at 0.1 s; steps of 0.04 s would end there."""
+    document = truss({"position": [1.0, 0.7], "velocity": [0.0, -1.0]}, integrator=integrator)
+    document["environment"] = {}
+    if integrator != "dop853":
+        document["settings"]["time_step"] = 0.04
+    session = Session.open(document)
+    session.run(time=0.095)
+    assert session.time == 0.095
+    assert len(session.impacts) == 0
+    assert session.particles["ball"].displacement[1] == pytest.approx(-0.095, rel=1e-12)
+    session.run(time=0.01)
+    assert session.impacts.time.tolist() == pytest.approx([0.1], rel=1e-12)
+
+
 def test_how_a_run_is_divided_does_not_matter_nor_is_anything_lost_by_saving(tmp_path: Path) -> None:
     whole, divided = Session.open(truss({})), Session.open(truss({}))
     whole.run(steps=160)

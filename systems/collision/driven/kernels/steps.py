@@ -137,7 +137,11 @@ def _begin(driven, control, account, place, speed):
     real[Real.END] = real[Real.UNTIL] if whole[Whole.LANDING] else math.inf
     if whole[Whole.CHOSEN] > 0 and real[Real.LONGEST] < size:
         real[Real.END] = min(real[Real.END], start + real[Real.LONGEST])
-    if real[Real.END] < math.inf and real[Real.END] > real[Real.UNTIL]:
+    if real[Real.END] < math.inf:
+        fits = real[Real.END] <= real[Real.UNTIL]
+    else:  # a step that is not foreseen is found not to fit as it is taken
+        fits = not whole[Whole.FORESEEN] or (real[Real.UNTIL] - start) * (1.0 + 1e-12) >= size
+    if not fits:
         return _leave(driven, Need.NOTHING, Phase.BETWEEN)
     begin_search(driven)
     return _go_on(driven, Phase.TRYING)
