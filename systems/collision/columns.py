@@ -23,7 +23,7 @@ SHARED_START, SHARED_END = 1.0, 2.0  # flags of Disc.SHARED
 OVERLAP = 1e-9  # of the reach of two nodes; a larger overlap at the start of a step is older than the run
 
 
-# Steps of piles and crowds
+# Steps of crowds, and the last two also of piles
 STEP_SHARE = 0.04  # longest step, as a share of the time in which a disc falls through its diameter
 SHORTEST_SHARE = 1.0 / 16.0  # shortest step, where discs are fast, as a share of the longest
 # Relative travel of two discs in a longer step than the shortest, at most, in radii of the smaller.
@@ -65,30 +65,35 @@ class Grid(NamedTuple):
     """Boxes around the paths of all discs, and a hash grid of the boxes; see kernels/grid.py.
 
     boxes: left, bottom, right, top, shape (n, 4), m. layer: of each disc, shape (n,). levels: the cells of
-    layer k have the size cell × 2^levels[k], ascending, shape (64,). heads: first entry of each bucket; the number of
-    buckets is a power of two. after: the next entry in the same bucket, shape (capacity,). found: the discs that a
-    search finds, shape (n + 1,).
+    layer k have the size cell × 2^levels[k], ascending, shape (64,); inverse: one by that size, 1/m. heads: first entry
+    of each bucket; the number of buckets is a power of two. after, before: the next entry in the same bucket and the one
+    before, shape (capacity,). found: the discs that searches find, shape (2 n + 2,); times: of impacts with them, s.
     """
 
     boxes: Floats
     layer: Integers
     levels: Integers
+    inverse: Floats
     heads: NDArray[np.int32]
     after: NDArray[np.int32]
+    before: NDArray[np.int32]
     found: Integers
+    times: Floats
 
     @classmethod
     def empty(cls, n: int, layers: int) -> Grid:
         """A grid of n discs with room for so many layers."""
-        entries = 4 * n * layers
-        buckets = 1 << int(np.ceil(np.log2(max(entries, 16))))
+        buckets = 1 << int(np.ceil(np.log2(max(n * layers, 64))))
         return cls(
             boxes=np.zeros((n, 4)),
             layer=np.zeros(n, dtype=np.int64),
             levels=np.zeros(64, dtype=np.int64),
+            inverse=np.zeros(64),
             heads=np.full(buckets, NONE, dtype=np.int32),
-            after=np.zeros(2 * entries, dtype=np.int32),
-            found=np.zeros(n + 1, dtype=np.int64),
+            after=np.zeros(2 * n * layers, dtype=np.int32),
+            before=np.zeros(2 * n * layers, dtype=np.int32),
+            found=np.zeros(2 * n + 2, dtype=np.int64),
+            times=np.zeros(2 * n + 2),
         )
 
 
@@ -242,37 +247,59 @@ class Mark(IntEnum):
 class Pile(NamedTuple):
     """Discs that take steps, the pairs of discs that are near, and the contacts of the present step.
 
-    See kernels/pile.py. motion: shape (len(Motion), n, 2); travel: shape (len(Travel), n). pairs: two discs
-    each, ascending, shape (p, 2); forces: in the pairs in the step before, N, shape (p,). chosen: the pairs that are
-    contacts; order: the same, in the order in which sweeps go through the contacts; shape (p,) both. ends: the two discs
-    of a contact, one disc twice where the other is held, shape (p, 2). contacts: shape (p, len(PileContact)). scale:
-    square root of the compliances, 1/√kg, shape (p,).
+    See kernels/pile.py. motion: x and y of each disc in turns, shape (len(Motion), 2 n); travel: shape (len(Travel), n).
+    pairs: two discs each, ascending, shape (p, 2); near: shape (p, len(PilePair)); forces: in the pairs in the step before,
+    N, shape (p,). chosen: the pairs that are contacts; order: the same, in the order in which sweeps go through the
+    contacts; shape (p,) both. ends: the two discs of a contact, one disc twice where the other is held, shape (p, 2).
+    contacts: shape (p, len(PileContact)). scale: square root of the compliances, 1/√kg, shape (p,). contacts_of, shape
+    (2 p,): those of disc i from first[i] to first[i + 1]. queue: contacts still to be relaxed; queued: 1 for these;
+    shape (p,) both.
     """
 
     motion: Floats
     travel: Floats
     pairs: Integers
+    near: Floats
     forces: Floats
     chosen: Integers
     order: Integers
     ends: NDArray[np.uint32]
     contacts: Floats
     scale: Floats
+    first: NDArray[np.int32]
+    contacts_of: NDArray[np.int32]
+    queue: NDArray[np.int32]
+    queued: NDArray[np.int32]
 
     @classmethod
     def empty(cls, n: int, pairs: int) -> Pile:
         """A pile of n discs with room for so many pairs."""
         return cls(
-            motion=np.zeros((len(Motion), n, 2)),
+            motion=np.zeros((len(Motion), 2 * n)),
             travel=np.zeros((len(Travel), n)),
             pairs=np.zeros((pairs, 2), dtype=np.int64),
+            near=np.zeros((pairs, len(PilePair))),
             forces=np.zeros(pairs),
             chosen=np.zeros(pairs, dtype=np.int64),
             order=np.zeros(pairs, dtype=np.int64),
             ends=np.zeros((pairs, 2), dtype=np.uint32),
             contacts=np.zeros((pairs, len(PileContact))),
             scale=np.zeros(pairs),
+            first=np.zeros(n + 1, dtype=np.int32),
+            contacts_of=np.zeros(2 * pairs, dtype=np.int32),
+            queue=np.zeros(pairs, dtype=np.int32),
+            queued=np.zeros(pairs, dtype=np.int32),
         )
+
+
+class PilePair(IntEnum):
+    """Columns of `Pile.near`, at the start of a step."""
+
+    NX, NY = 0, 1  # unit vector from the first disc to the nearest point of the second
+    GAP = 2  # m
+    RATE = 3  # at which the gap opens, m/s
+    PULL = 4  # acceleration without contacts at which it opens, m/s²
+    SPEED = 5  # of the second relative to the first, m/s
 
 
 class PileContact(IntEnum):
@@ -303,8 +330,8 @@ class Motion(IntEnum):
 class Travel(IntEnum):
     """Rows of `Pile.travel`, of each disc."""
 
-    REACH = 0  # farthest that the disc may travel in the step, m
-    FASTEST = 1  # speed of the fastest disc that is near, m/s
+    SHIFT = 0  # farthest that contacts may shift the disc in the step, m
+    FASTEST = 1  # fastest relative speed of a disc that it may meet, m/s
     NEAR = 2  # 1: it is near another at the end of the step; 2: another pushed it
     PULL = 3  # acceleration without contacts, m/s²
 

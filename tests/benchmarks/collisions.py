@@ -1,4 +1,6 @@
-"""Colliding discs against pymunk in the same run: gases, what an impact costs, piles, memory, energy kept."""
+"""Colliding discs against pymunk in the same run: gases, what an impact costs, piles, memory, energy kept; and discs on
+structures, beside the same structures without discs.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +12,9 @@ from typing import Any
 import numpy as np
 import pymunk  # here, so that a missing peer is told before anything is measured
 
-from systems.collision.free.discs import Discs
-from tests.reference.scenes_of_discs import GRAVITY, Scene, gas, packed, stacked
+from systems.collision.free.discs import EVENTS, HORIZONS, PILES, Discs
+from tests.benchmarks.structures_and_discs import driven
+from tests.reference.scenes_of_discs import GRAVITY, Scene, gas, lattice, packed, stacked
 
 STEP = 1 / 240  # s; pymunk's
 DOWN = np.array([0.0, -GRAVITY])
@@ -56,27 +59,36 @@ def _take_steps(space: Any, seconds: float) -> None:
 
 
 def gases(*, quick: bool) -> list[Row]:
-    """CPU seconds per simulated second of gases at e = 1, and the share of the energy that is left."""
+    """CPU seconds per simulated second of gases at e = 1, what an impact costs, and the energy that is lost.
+
+    The last one expands: discs on a lattice of 0.3 m, 9 % of whose area they cover, without walls.
+    """
+    scenes = [
+        (f"{100 * filled:.0f} % filled", gas(count, filled), count)
+        for count in ((5_000,) if quick else (1_000, 5_000))
+        for filled in (0.02, 0.1)
+    ]
     rows = []
-    for count in (5_000,) if quick else (1_000, 5_000):
-        for filled in (0.02, 0.1):
-            scene, seconds = gas(count, filled), 0.5 if quick else 2.0
-            ours, discs = _ours(scene, seconds)
-            theirs, _, bodies = _pymunk(scene, seconds, 1.0, 0.0)
-            kept = (discs.state_at(seconds)[1] ** 2).sum() / count
-            pymunk_kept = sum(body.velocity.length**2 for body in bodies[:count]) / count
-            rows.append(
-                {
-                    "discs": count,
-                    "area_filled": filled,
-                    "impacts_per_s": discs.impacts / seconds,
-                    "s_per_s": ours / seconds,
-                    "pymunk_s_per_s": theirs / seconds,
-                    "times_faster": theirs / ours,
-                    "energy_lost": float(1 - kept),
-                    "pymunk_energy_lost": 1 - pymunk_kept,
-                }
-            )
+    for name, scene, count in [*scenes, ("expanding", lattice(70), 4_900)]:
+        seconds = 0.5 if quick else 2.0
+        ours, discs = _ours(scene, seconds)
+        theirs, _, bodies = _pymunk(scene, seconds, 1.0, 0.0)
+        before = (scene["velocity"] ** 2).sum()
+        kept = (discs.state_at(seconds)[1] ** 2).sum() / before
+        pymunk_kept = sum(body.velocity.length**2 for body in bodies[:count]) / before
+        rows.append(
+            {
+                "gas": name,
+                "discs": count,
+                "impacts_per_s": discs.impacts / seconds,
+                "us_per_impact": ours / discs.impacts * 1e6,
+                "s_per_s": ours / seconds,
+                "pymunk_s_per_s": theirs / seconds,
+                "times_faster": theirs / ours,
+                "energy_lost": float(1 - kept),
+                "pymunk_energy_lost": float(1 - pymunk_kept),
+            }
+        )
     return rows
 
 
@@ -116,9 +128,10 @@ def _resident() -> float:
 
 
 def piles(*, quick: bool) -> list[Row]:
-    """CPU seconds per simulated second: 2000 discs that lie packed, and discs that fall into a box, until at rest.
+    """CPU seconds of piles: 2000 discs that lie packed, and discs that fall into a box, until at rest.
 
     unaccounted: energy that is neither there nor among what impacts and contacts took, of what the fall set free.
+    sunk: the deepest overlap, at the end. while_moving: that of the first second, looked at in another run.
     """
     rows = []
     dropped = [("200 dropped", stacked(200, 14), 4)] + (
@@ -134,8 +147,7 @@ def piles(*, quick: bool) -> list[Row]:
         started = time.process_time()
         _take_steps(space, seconds - 1)
         pymunk_later = time.process_time() - started
-        place = scene["position"] + discs.state_at(seconds)[0]
-        pymunk_place = np.array([tuple(body.position) for body in bodies])
+        moving, pymunk_moving = _sunk_on_the_way(scene)
         rows.append(
             {
                 "pile": name,
@@ -147,12 +159,31 @@ def piles(*, quick: bool) -> list[Row]:
                 "pymunk_more_s": pymunk_later,
                 "at_rest": discs.at_rest,
                 "unaccounted": _unaccounted(discs, scene, seconds),
-                "sunk_in_radii": _sunk(place, scene),
-                "pymunk_sunk_in_radii": _sunk(pymunk_place, scene),
+                "while_moving_radii": moving,
+                "pymunk_while_moving_radii": pymunk_moving,
+                "sunk_radii": _sunk(scene["position"] + discs.state_at(seconds)[0], scene),
+                "pymunk_sunk_radii": _sunk(_places(bodies), scene),
                 "pymunk_fastest_m_s": max(body.velocity.length for body in bodies),
             }
         )
     return rows
+
+
+def _places(bodies: list[Any]) -> np.ndarray:
+    return np.array([tuple(body.position) for body in bodies])
+
+
+def _sunk_on_the_way(scene: Scene) -> tuple[float, float]:
+    """The deepest overlaps in the first second of a pile, looked at 80 times: ours and pymunk's."""
+    discs = Discs(**scene, acceleration=DOWN, restitution=0.3)
+    space, bodies = _pymunk_space(scene, 0.3, GRAVITY)
+    deepest, pymunk_deepest = 0.0, 0.0
+    for moment in np.arange(1, 81) * (3 * STEP):
+        discs.advance(float(moment))
+        _take_steps(space, 3 * STEP)
+        deepest = max(deepest, _sunk(scene["position"] + discs.state_at(moment)[0], scene))
+        pymunk_deepest = max(pymunk_deepest, _sunk(_places(bodies), scene))
+    return deepest, pymunk_deepest
 
 
 def _unaccounted(discs: Discs, scene: Scene, seconds: float) -> float:
@@ -178,7 +209,9 @@ def _sunk(place: np.ndarray, scene: Scene) -> float:
 
 def report(*, quick: bool) -> dict[str, list[Row]]:
     """Everything this benchmark measures, by table."""
-    for scene in (gas(20, 0.1), packed(20, 20)):  # compiles what flies, and what lies
-        _ours(scene, 0.2, acceleration=DOWN, restitution=0.3)
+    for module in (EVENTS, HORIZONS, PILES):
+        module.load()
+    _ours(packed(20, 20), 0.2, acceleration=DOWN)  # imports what finds equilibria
     tables: dict[str, Callable[..., list[Row]]] = {"gases": gases, "growth": growth, "piles": piles}
+    tables["driven"] = driven
     return {"memory": memory()} | {name: table(quick=quick) for name, table in tables.items()}

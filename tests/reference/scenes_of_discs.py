@@ -74,6 +74,17 @@ def gas(count: int, filled: float, seed: int = 0, radius: float = 0.05) -> Scene
     return with_held(scene, frame(side * pitch, side * pitch, radius), radius)
 
 
+def lattice(side: int, pitch: float = 0.3, seed: int = 0, radius: float = 0.05) -> Scene:
+    """Return discs of 1 kg on a square lattice, without walls, at random velocities: a gas that expands."""
+    cells = np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(-1, 2)
+    return {
+        "position": cells * pitch,
+        "velocity": np.random.default_rng(seed).normal(size=cells.shape),
+        "radius": np.full(len(cells), radius),
+        "inverse_mass": np.ones(cells.shape),
+    }
+
+
 def stacked(count: int, columns: int, seed: int = 0, spread: float = 0.2, radius: float = 0.05) -> Scene:
     """Return discs of various radii above one another in a box, about to fall."""
     rng = np.random.default_rng(seed)

@@ -91,6 +91,20 @@ def test_a_pile_comes_to_rest_without_a_jump() -> None:
     assert discs.at_rest
 
 
+def test_falling_discs_hardly_sink_into_one_another() -> None:
+    """At no moment by more than 1e-3 of a radius, and the account of energy is even to 1e-9 of what the fall set free."""
+    scene = stacked(200, 14)
+    discs = Discs(**scene, acceleration=DOWN, restitution=0.3)
+    mass = 1 / scene["inverse_mass"][:200, 0]
+    for time in np.arange(1, 81) / 80:
+        discs.advance(float(time), MOST_EVENTS)
+        assert sinking(discs, scene, time) <= 1e-3
+        displacement, velocity = (part[:200] for part in discs.state_at(time))
+        fallen = -GRAVITY * mass @ displacement[:, 1]
+        left = fallen - mass @ (velocity**2).sum(axis=1) / 2 - discs.lost_at(time)
+        assert abs(left) <= 1e-9 * GRAVITY * mass.sum() * RADIUS
+
+
 def test_discs_that_fly_apart_in_a_step_have_been_pushed() -> None:
     """Two rows of a crowd meet head-on: each pair bounces once, and parts at e times the speed."""
     rows, speed, restitution = 30, 3.0, 0.3

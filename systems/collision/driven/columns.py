@@ -78,10 +78,11 @@ class Whole(IntEnum):
     TRIES = 20  # of the end of a step that ends at an impact
     MET = 21  # 1: it ends at an impact
     BOUNCY = 22  # 1: some restitution is below 1
-    REPORTED = 23  # impacts
-    STEPS = 24  # to take at once
-    PUSHED = 25  # 1: contact forces acted in the last step
-    EXAMINE = 26  # 1: the next step is one that is looked through, though nothing seems near
+    DAMPED = 23  # 1: dampers or drag calm the motion
+    REPORTED = 24  # impacts
+    STEPS = 25  # to take at once
+    PUSHED = 26  # 1: contact forces acted in the last step
+    EXAMINE = 27  # 1: the next step is one that is looked through, though nothing seems near
 
 
 class Real(IntEnum):

@@ -59,6 +59,7 @@ class NeighbourList:
         self.driven.margin[:] = -1.0  # no pair is listed yet
         whole, real = self.driven.whole, self.driven.real
         whole[Whole.BOUNCY] = (self.driven.restitution < 1.0).any()
+        whole[Whole.DAMPED] = self.model.rods.damping.any() or self.model.environment.drag > 0.0
         real[Real.LONGEST] = np.inf
         pull = self.driven.pull
         fall = np.sqrt(4.0 * particles.radius[pull > 0.0] / pull[pull > 0.0])

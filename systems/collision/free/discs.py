@@ -22,7 +22,6 @@ from systems.collision.columns import (
     SHARED_END,
     SHARED_START,
     SPEED_NOISE,
-    STEP_SHARE,
     Constraints,
     Count,
     Detail,
@@ -43,6 +42,7 @@ from systems.program.compiler import Choice, GeneratedModule, entries_to
 
 SAME_PLACE = 1e-12  # of the largest coordinate: ends of obstacles nearer than this are one
 REPORTED_AT_ONCE = 512  # impacts; fetched before more are reported
+PILE_STEP_SHARE = 0.03  # longest step of piles: of the time in which a disc falls through its diameter
 WORK_AT_ONCE = 2**22  # discs × events, after which a kernel returns, so that Python can heed Ctrl+C
 MORE_PATIENCE = 64  # calm steps between two searches for the equilibrium of a pile
 
@@ -117,7 +117,7 @@ class Discs:
         self.counts[Count.RENEW], self.counts[Count.LISTED] = 1, NONE
         self.counts[Count.DISCS] = self.count
         self.numbers[Number.SMALLEST] = self.rows[: self.count, Disc.RADIUS].min(initial=np.inf)
-        self.numbers[Number.STEP_LENGTH] = STEP_SHARE * self._fall_time()
+        self.numbers[Number.STEP_LENGTH] = PILE_STEP_SHARE * self._fall_time()
         self.numbers[Number.WORK_SINCE] = time
         self.numbers[Number.LOSS] = lost
         self.queue = Queue.empty(2 * n + 64)

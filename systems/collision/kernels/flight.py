@@ -11,19 +11,11 @@ import numpy as np
 
 from systems.collision.columns import NONE, SPEED_NOISE, Contact, Count, Disc, Entry, Number, Reason, Stage
 from systems.collision.kernels import compiled
-from systems.collision.kernels.grid import (
-    enclose,
-    enter,
-    layer_of,
-    leave,
-    level_of,
-    neighbours,
-    place_box,
-    sort,
-)
+from systems.collision.kernels.grid import neighbours, place_box, sort
 from systems.collision.kernels.heap import drop_first, is_void
-from systems.collision.kernels.horizon import is_joined, schedule_impact
+from systems.collision.kernels.horizon import enclose_anew, is_joined, schedule_impact
 from systems.collision.kernels.impact import respond
+from systems.collision.kernels.pair_impact import strike
 from systems.collision.kernels.persistent_contact import (
     enter_persistent,
     find_persistent,
@@ -37,12 +29,14 @@ from systems.collision.kernels.pile_pairs import enter_pushing_pairs
 from systems.collision.kernels.projection import compliance, opening_rate
 from systems.collision.kernels.time_of_impact import (
     INFINITY,
+    are_touching,
     displacement_at,
     is_shared_end,
     nearest,
-    place_noise,
+    relative_motion,
     relative_state,
     rest_speed,
+    rim,
     touch_speed,
     velocity_at,
 )
@@ -81,6 +75,10 @@ def fly(until, most_events, discs, grid, constraints, queue, group, report, numb
 def _next_event(discs, grid, constraints, queue, group, report, numbers, counts):
     """Let the first event of the queue happen. Returns a Reason."""
     i, j = np.int64(queue.impacts[0, 0]), np.int64(queue.impacts[0, 1])
+    if i != j:
+        reason = strike(i, j, discs, grid, constraints, queue, report, numbers, counts)
+        if reason != Reason.GO_ON:
+            return reason
     count, touching = _gather(i, j, discs, grid, constraints, group, numbers, counts)
     full = touching > group.links.shape[0] or 2 * touching > counts[Count.SPARES]
     if full or counts[Count.REPORTED] + touching > report.pairs.shape[0]:
@@ -187,7 +185,7 @@ def _gather(i, j, discs, grid, constraints, group, numbers, counts):
         if not is_held(a, discs):
             count, touching = _gather_persistent(m, count, touching, discs, constraints, group, now)
             left, bottom, right, top = place_box(a, discs, now)
-            near = neighbours(a, left, bottom, right, top, grid, counts[Count.LAYERS], numbers[Number.CELL])
+            near = neighbours(a, left, bottom, right, top, grid, counts[Count.LAYERS], 0)
             sort(grid.found, near)
             for k in range(near):
                 b = grid.found[k]
@@ -210,14 +208,12 @@ def _is_new(m, b, discs, group):
 @compiled
 def _touch(a, b, discs, constraints, now):
     """True if two discs touch, may collide and have no persistent contact."""
+    if not are_touching(relative_motion(discs, a, b, now), a, b, discs, now):
+        return False
     dx, dy, _, _ = relative_state(discs, a, b, now)
-    if is_shared_end(dx, dy, b, discs):
+    if is_shared_end(dx, dy, b, discs) or is_joined(a, b, constraints):
         return False
-    dx, dy, _ = nearest(dx, dy, b, discs)
-    reach = discs[a, Disc.RADIUS] + discs[b, Disc.RADIUS] + place_noise(discs, a, b, now)
-    if dx * dx + dy * dy > reach * reach:
-        return False
-    return not is_joined(a, b, constraints) and find_persistent(a, b, constraints) == NONE
+    return find_persistent(a, b, constraints) == NONE
 
 
 @compiled
@@ -270,16 +266,9 @@ def _report(touching, discs, group, report, numbers, counts):
         i, j = group.members[group.links[c, 0]], group.members[group.links[c, 1]]
         slow = max(group.noise[0], touch_speed(discs, i, j, numbers[Number.NOW]))
         if impulse * group.contacts[c, Contact.COMPLIANCE] > slow:
-            place = _place(i, group.contacts[c], discs, numbers[Number.NOW])
+            nx, ny = group.contacts[c, Contact.NX], group.contacts[c, Contact.NY]
+            place = rim(i, nx, ny, discs, numbers[Number.NOW])
             enter_impact(i, j, numbers[Number.NOW], impulse, loss * (impulse / impulses), place, report, counts)
-
-
-@compiled
-def _place(i, contact, discs, time):
-    """The point at which a disc touches another in the direction of its contact."""
-    ux, uy = displacement_at(i, discs, time)
-    x, y = discs[i, Disc.OX] + ux, discs[i, Disc.OY] + uy
-    return x + discs[i, Disc.RADIUS] * contact[Contact.NX], y + discs[i, Disc.RADIUS] * contact[Contact.NY]
 
 
 @compiled
@@ -346,18 +335,11 @@ def _redirect(count, struck, duration, discs, group, numbers):
 @compiled
 def _enclose_anew(count, discs, grid, group, numbers, counts):
     """Set the boxes of the discs with new paths; a new horizon is opened if a box is too large for the grid."""
-    layers, cell = counts[Count.LAYERS], numbers[Number.CELL]
     for m in range(count):
         i = group.members[m]
-        if discs[i, Disc.EPOCH] == numbers[Number.NOW] and not is_held(i, discs):
-            leave(i, grid, layers, cell)
-            enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.HORIZON_END])
-            level = level_of(i, grid, cell)
-            grid.layer[i] = layer_of(level, grid, layers)
-            if grid.layer[i] == layers:
-                counts[Count.LEVEL] = max(counts[Count.LEVEL], level)
-                counts[Count.RENEW] = 1
-            enter(i, grid, layers, cell)
+        anew = discs[i, Disc.EPOCH] == numbers[Number.NOW] and not is_held(i, discs)
+        if anew and not enclose_anew(i, discs, grid, numbers, counts):
+            counts[Count.RENEW] = 1
 
 
 @compiled
@@ -370,7 +352,7 @@ def _schedule_anew(count, discs, grid, constraints, queue, group, numbers, count
         if discs[i, Disc.EPOCH] != numbers[Number.NOW] or is_held(i, discs):
             continue
         left, bottom, right, top = grid.boxes[i]
-        near = neighbours(i, left, bottom, right, top, grid, counts[Count.LAYERS], numbers[Number.CELL])
+        near = neighbours(i, left, bottom, right, top, grid, counts[Count.LAYERS], 0)
         grid.found[near] = i  # and the end of the step of its persistent contacts
         for k in range(near + 1):
             j = grid.found[k]

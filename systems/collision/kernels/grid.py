@@ -1,12 +1,13 @@
 """A hierarchical hash grid of boxes: which discs can collide before the present horizon ends.
 
 Every disc has a box around its path until the horizon's end, and belongs to the finest layer whose cells are
-larger than the box. It is entered as native into the one to four cells of that layer that its box overlaps,
-and as guest into those of all coarser layers. Two boxes that overlap then share a cell of the coarser one's
-layer, whatever their sizes: a very large or very fast disc costs no more than a look at all others.
+larger than the box. It is entered as native into the cell of that layer that holds the box's left bottom corner, and
+as guest into that of all coarser layers. A box that overlaps another of the same layer then has its corner at most one
+cell to the left of the other, or below, whatever their sizes: a very large or very fast disc costs no more than a look
+at all others.
 
-The entries 4 (kind × discs + disc) to + 3 are a disc's cells, with kind = 2 × layer, + 1 for guests: left bottom,
-left top, right bottom, right top. The entries of a bucket are chained; the cell of an entry follows from the disc's box.
+The entry kind × discs + disc is that of a disc in a layer, with kind = 2 × layer, + 1 for guests. The entries of a
+bucket are chained, to and fro. The buckets of neighbouring cells differ.
 """
 
 import math
@@ -17,6 +18,8 @@ from systems.collision.kernels.time_of_impact import extent
 
 FARTHEST_CELL = 2.0**40  # cells from the origin; farther out cells grow, so that they can be told apart
 COARSEST = 63
+GOLDEN_SECTION = 0.6180339887498949
+KIND = 0x165667B19  # far from 0 in any number of buckets
 BOX_MARGIN = 1e-13  # of a disc's coordinates, added to its box: more than the noise of a gap
 
 
@@ -93,100 +96,83 @@ def layer_of(level, grid, layers):
 
 
 @compiled
-def _bucket(cx, cy, kind, grid):
-    """The bucket of a cell; neighbouring cells lie together in memory."""
-    return (cx + cy * 0x9E3779B97F4A7C1 + kind * 0x165667B19E3779F) & (grid.heads.shape[0] - 1)
+def _row(grid):
+    """How far the bucket of a cell is from that of the cell below: the golden section spreads rows evenly."""
+    return int(GOLDEN_SECTION * grid.heads.shape[0]) | 1
 
 
 @compiled
-def _inverse_size(cell, level):
-    return math.ldexp(1.0 / cell, -level)
+def _bucket(i, k, grid):
+    """The bucket of a disc in layer k."""
+    cx = math.floor(grid.boxes[i, 0] * grid.inverse[k])
+    cy = math.floor(grid.boxes[i, 1] * grid.inverse[k])
+    kind = 2 * k + (1 if k > grid.layer[i] else 0)
+    return (cx + cy * _row(grid) + kind * KIND) & (grid.heads.shape[0] - 1)
 
 
 @compiled
-def _cells(i, boxes, inverse):
-    """The cells of a layer that a disc's box overlaps: first and last in x, in y; two at most."""
-    left, bottom = math.floor(boxes[i, 0] * inverse), math.floor(boxes[i, 1] * inverse)
-    right, top = math.floor(boxes[i, 2] * inverse), math.floor(boxes[i, 3] * inverse)
-    return left, bottom, min(right, left + 1), min(top, bottom + 1)
-
-
-@compiled
-def enter(i, grid, layers, cell):
+def enter(i, grid, layers):
     """Enter a disc into its layer and all coarser ones."""
-    boxes, heads = grid.boxes, grid.heads
+    heads, after, before = grid.heads, grid.after, grid.before
     for k in range(grid.layer[i], layers):
-        inverse = _inverse_size(cell, grid.levels[k])
-        left, bottom, right, top = _cells(i, boxes, inverse)
-        kind = 2 * k + (1 if k > grid.layer[i] else 0)
-        first = 4 * (kind * boxes.shape[0] + i)
-        for cx in range(left, right + 1):
-            for cy in range(bottom, top + 1):
-                entry = first + 2 * (cx - left) + cy - bottom
-                bucket = _bucket(cx, cy, kind, grid)
-                grid.after[entry] = heads[bucket]
-                heads[bucket] = entry
+        bucket = _bucket(i, k, grid)
+        entry = (2 * k + (1 if k > grid.layer[i] else 0)) * grid.boxes.shape[0] + i
+        following = heads[bucket]
+        after[entry], before[entry] = following, NONE
+        if following != NONE:
+            before[following] = entry
+        heads[bucket] = entry
 
 
 @compiled
-def leave(i, grid, layers, cell):
+def leave(i, grid, layers):
     """Take a disc out of the grid, before its box changes."""
-    boxes, heads, after = grid.boxes, grid.heads, grid.after
+    heads, after, before = grid.heads, grid.after, grid.before
     for k in range(grid.layer[i], layers):
-        inverse = _inverse_size(cell, grid.levels[k])
-        left, bottom, right, top = _cells(i, boxes, inverse)
-        kind = 2 * k + (1 if k > grid.layer[i] else 0)
-        first = 4 * (kind * boxes.shape[0] + i)
-        for cx in range(left, right + 1):
-            for cy in range(bottom, top + 1):
-                entry = first + 2 * (cx - left) + cy - bottom
-                bucket = _bucket(cx, cy, kind, grid)
-                if heads[bucket] == entry:
-                    heads[bucket] = after[entry]
-                else:
-                    previous = heads[bucket]
-                    while after[previous] != entry:
-                        previous = after[previous]
-                    after[previous] = after[entry]
+        entry = (2 * k + (1 if k > grid.layer[i] else 0)) * grid.boxes.shape[0] + i
+        following, previous = after[entry], before[entry]
+        if following != NONE:
+            before[following] = previous
+        if previous != NONE:
+            after[previous] = following
+        else:
+            heads[_bucket(i, k, grid)] = following
 
 
 @compiled
-def neighbours(i, left, bottom, right, top, grid, layers, cell):
-    """Discs other than i whose boxes overlap a part of that of i, each once, into `found`; returns how many."""
-    count = 0
+def neighbours(i, left, bottom, right, top, grid, layers, count):
+    """Discs other than i whose boxes overlap a part of that of i, each once, into `found` after the first `count`.
+
+    Returns how many have been found then.
+    """
+    heads, mask, row = grid.heads, grid.heads.shape[0] - 1, _row(grid)
     for k in range(grid.layer[i], layers):
-        inverse = _inverse_size(cell, grid.levels[k])
-        for cx in range(math.floor(left * inverse), math.floor(right * inverse) + 1):
-            for cy in range(math.floor(bottom * inverse), math.floor(top * inverse) + 1):
-                for guests in range(2 if k == grid.layer[i] and k > 0 else 1):
-                    kind = 2 * k + guests
-                    count = _look_into(cx, cy, kind, inverse, i, left, bottom, right, top, count, grid)
+        inverse = grid.inverse[k]
+        first_x, first_y = math.floor(left * inverse) - 1, math.floor(bottom * inverse) - 1
+        columns, rows = math.floor(right * inverse) - first_x + 1, math.floor(top * inverse) - first_y + 1
+        for guests in range(2 if k == grid.layer[i] and k > 0 else 1):
+            kind = 2 * k + guests
+            start = first_x + first_y * row + kind * KIND
+            for _ in range(rows):
+                for cell in range(start, start + columns):
+                    count = _look_into(heads[cell & mask], kind, i, left, bottom, right, top, count, grid)
+                start += row
     return count
 
 
 @compiled
-def _look_into(cx, cy, kind, inverse, i, left, bottom, right, top, count, grid):
-    """Add the discs of one cell whose boxes overlap a part of that of i."""
-    boxes = grid.boxes
-    first = kind * boxes.shape[0]
-    entry = grid.heads[_bucket(cx, cy, kind, grid)]
+def _look_into(entry, kind, i, left, bottom, right, top, count, grid):
+    """Add the discs of a bucket, from an entry on, whose boxes overlap a part of that of i.
+
+    Which do is hard to predict for a processor: it is counted rather than branched upon.
+    """
+    boxes, found = grid.boxes, grid.found
     while entry != NONE:
-        j = (entry >> 2) - first
+        j = entry - kind * boxes.shape[0]
         if 0 <= j < boxes.shape[0]:
-            x, y = max(boxes[j, 0], left), max(boxes[j, 1], bottom)
-            if (
-                x <= min(boxes[j, 2], right)
-                and y <= min(boxes[j, 3], top)
-                and j != i
-                and math.floor(x * inverse) == cx  # of the cells both overlap, count one
-                and math.floor(y * inverse) == cy
-                and math.floor(boxes[j, 0] * inverse) + ((entry >> 1) & 1)
-                == cx  # not of another in this bucket
-                and math.floor(boxes[j, 1] * inverse) + (entry & 1) == cy
-                and count < boxes.shape[0]
-            ):
-                grid.found[count] = j
-                count += 1
+            found[count] = j
+            beside = (boxes[j, 0] <= right) & (left <= boxes[j, 2])
+            count += beside & (boxes[j, 1] <= top) & (bottom <= boxes[j, 3]) & (j != i)
         entry = grid.after[entry]
     return count
 

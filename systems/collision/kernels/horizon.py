@@ -15,6 +15,7 @@ from systems.collision.kernels.grid import (
     enclose,
     enter,
     layer_of,
+    leave,
     level_of,
     neighbours,
     suitable_size,
@@ -27,6 +28,7 @@ from systems.collision.kernels.time_of_impact import (
     first_touch,
     is_straight,
     nearest,
+    pass_by,
     pull_noise,
     relative_motion,
     relative_state,
@@ -34,7 +36,7 @@ from systems.collision.kernels.time_of_impact import (
 )
 
 LONGEST_HORIZON, SHORTEST_HORIZON = 2.0**20, 2.0**-200  # s
-BOX_COST = 2.5  # of renewing a disc's box, relative to that of looking at one neighbour (measured)
+BOX_COST = 1.25  # of renewing a disc's box, relative to that of looking at one neighbour (measured)
 MOST_NEIGHBOURS = 64  # per disc; with more, a shorter horizon is opened
 MOST_CORRECTIONS = 3  # of a time of impact, each of which squares its error
 LARGEST_CORRECTION = 1e-3  # of the step of persistent contact
@@ -61,12 +63,16 @@ def next_impact(i, j, discs, constraints, end):
     if i > j:
         i, j = j, i
     start = max(discs[i, Disc.EPOCH], discs[j, Disc.EPOCH])
-    path = relative_motion(discs, i, j, start)
-    dx, dy, vx, vy, ax, ay = path
+    return impact_on(relative_motion(discs, i, j, start), i, j, start, discs, constraints, end)
+
+
+@compiled
+def impact_on(path, i, j, start, discs, constraints, end):
+    """As next_impact, given the relative motion of i and j, i < j, at `start`, when both are on their paths."""
     straight = is_straight(j, discs)
-    if ax == 0.0 and ay == 0.0 and dx * vx + dy * vy >= 0.0 and not straight:
-        return INFINITY
     reach = discs[i, Disc.RADIUS] + discs[j, Disc.RADIUS]
+    if not straight and pass_by(path, reach):
+        return INFINITY
     noise, growth = speed_noise(discs, i, j, start), pull_noise(discs, i, j)
     if straight:
         tx, ty, shared = discs[j, Disc.TX], discs[j, Disc.TY], discs[j, Disc.SHARED]
@@ -104,12 +110,17 @@ def schedule_impact(i, j, discs, constraints, queue, numbers, counts):
     time = next_impact(i, j, discs, constraints, numbers[Number.HORIZON_END])
     if time > numbers[Number.HORIZON_END]:
         return True
+    return queue_impact(time, min(i, j), max(i, j), discs, queue, counts)
+
+
+@compiled
+def queue_impact(time, i, j, discs, queue, counts):
+    """Queue an impact of two discs, i ≤ j. False if the queue is full."""
     capacity = queue.times.shape[0]
     if counts[Count.QUEUED] == capacity:
         counts[Count.QUEUED] = purge(queue, capacity, discs)
         if counts[Count.QUEUED] > capacity - capacity // 8:
             return False
-    i, j = min(i, j), max(i, j)
     push(queue, counts[Count.QUEUED], time, i, j, changes(i, discs), changes(j, discs))
     counts[Count.QUEUED] += 1
     return True
@@ -142,20 +153,20 @@ def _fill(most, discs, grid, constraints, queue, numbers, counts):
     for i in range(discs.shape[0]):
         enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.HORIZON_END])
     set_layers(grid, numbers, counts)
-    layers, cell = counts[Count.LAYERS], numbers[Number.CELL]
-    if 8 * discs.shape[0] * layers > grid.after.shape[0]:
+    layers = counts[Count.LAYERS]
+    if 2 * discs.shape[0] * layers > grid.after.shape[0]:
         return Reason.GRID_FULL, 0
     grid.heads[:] = NONE
     counts[Count.QUEUED] = 0
     pairs = 0
     for i in range(discs.shape[0]):
         left, bottom, right, top = grid.boxes[i]
-        near = neighbours(i, left, bottom, right, top, grid, layers, cell)
+        near = neighbours(i, left, bottom, right, top, grid, layers, 0)
         grid.found[near] = i  # and the step of its persistent contacts
         for k in range(near + 1):
             if not schedule_impact(i, grid.found[k], discs, constraints, queue, numbers, counts):
                 return Reason.QUEUE_FULL, 0
-        enter(i, grid, layers, cell)
+        enter(i, grid, layers)
         pairs += near
         if pairs > most:
             break
@@ -248,11 +259,27 @@ def set_layers(grid, numbers, counts):
     for level in range(COARSEST + 1):
         if (needed >> level) & 1:
             grid.levels[layers] = level
+            grid.inverse[layers] = math.ldexp(1.0 / numbers[Number.CELL], -level)
             layers += 1
     for i in range(count):
         grid.layer[i] = layer_of(grid.layer[i], grid, layers)
     counts[Count.LAYERS] = layers
     counts[Count.LEVEL] = 0
+
+
+@compiled
+def enclose_anew(i, discs, grid, numbers, counts):
+    """Set the box of a disc with a new path. False if it is too large for the grid: a new horizon must be opened."""
+    layers = counts[Count.LAYERS]
+    leave(i, grid, layers)
+    enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.HORIZON_END])
+    level = level_of(i, grid, numbers[Number.CELL])
+    grid.layer[i] = layer_of(level, grid, layers)
+    enter(i, grid, layers)
+    if grid.layer[i] < layers:
+        return True
+    counts[Count.LEVEL] = max(counts[Count.LEVEL], level)
+    return False
 
 
 @compiled

@@ -18,18 +18,18 @@ from systems.collision.columns import (
     Motion,
     Number,
     PileContact,
+    PilePair,
     Reason,
     Travel,
 )
 from systems.collision.kernels import compiled
 from systems.collision.kernels.pile_pairs import (
-    allow_more_travel,
-    allow_travel,
+    allow_more_shift,
+    allow_shifts,
     choose_contacts,
     choose_length,
     enter_pushing_pairs,
-    list_pairs,
-    separation,
+    find_pairs,
     stays_within_reach,
     velocity_after,
 )
@@ -42,14 +42,16 @@ from systems.collision.kernels.pile_solver import (
 )
 from systems.collision.kernels.time_of_impact import INFINITY, displacement_at, smaller_radius, velocity_at
 
-TOLERANCE = 1e-8  # of the smallest radius: depth by which discs sink in a step whose sweeps have settled
-LARGE_PILE, ROUGHNESS = 1000, 4e-3  # contacts above which this share of the fastest travel is allowed, too
+TOLERANCE = 1e-8  # of the smallest radius: depth by which discs may sink into others in a step
+SMALL_PILE = 50  # contacts; with more of them, these are enough:
+DEPTH = 8e-4  # of the smallest radius
+ROUGHNESS = 0.05  # of the fastest travel in the step
 NEARBY = 0.2  # of the radius of the smaller of two discs: gap below which they move on straight lines
 CALM_TRAVEL = 0.004  # of the smallest radius, in a step: a disc that travels less is calm
 CALM_SPEEDS = 1.0  # of the speed that free fall gives in a step: a slower disc is calm
 LEAST_PATIENCE = 16  # calm steps before a pile first seeks its equilibrium
 LARGE_GROUP = 256  # contacts at one instant, above which weights that press on them make steps cheaper
-WORK_PER_DISC, LEAST_WORK = 2, 3000  # contacts dealt with in WORK_STEPS steps before events give way to steps
+WORK_PER_DISC, LEAST_WORK = 1, 1000  # contacts dealt with in WORK_STEPS steps before events give way to steps
 WORK_STEPS = 10.0
 
 
@@ -95,25 +97,25 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
         end_steps(numbers, counts)
         return Reason.DONE
     h = numbers[Number.STEP_LENGTH]
-    allow_travel(h, discs, pile)
-    reason = list_pairs(h, discs, grid, constraints, pile, numbers, counts)
+    allow_shifts(h, discs, pile)
+    reason = find_pairs(h, False, discs, grid, constraints, pile, numbers, counts)
     if reason != Reason.DONE:
         return reason
     h, fastest = choose_length(discs, pile, numbers, counts)
-    allow_more_travel(h, fastest, discs, pile)
+    allow_more_shift(h, fastest, discs, pile)
     while True:
-        reason = list_pairs(h, discs, grid, constraints, pile, numbers, counts)
+        reason = find_pairs(h, True, discs, grid, constraints, pile, numbers, counts)
         if reason != Reason.DONE:
             return reason
-        active = choose_contacts(discs, pile, numbers, counts)
+        active = choose_contacts(h, pile, counts)
         if counts[Count.REPORTED] + active > report.pairs.shape[0]:
             return Reason.REPORT_FULL
         start_without_contacts(h, discs, pile)
         make_contacts(active, h, discs, pile, numbers)
-        tolerance = TOLERANCE * numbers[Number.SMALLEST] / h
-        if active > LARGE_PILE:
-            tolerance = max(tolerance, ROUGHNESS * fastest)
-        find_impulses(active, tolerance, pile)
+        depth = TOLERANCE * numbers[Number.SMALLEST]
+        if active > SMALL_PILE:
+            depth = max(depth, min(DEPTH * numbers[Number.SMALLEST], ROUGHNESS * h * fastest))
+        find_impulses(active, depth / h, pile)
         if supplies_energy(active, h, discs, pile):
             # the forces of the step before mislead, as in a row that has come loose
             pile.forces[: counts[Count.LISTED]] = 0.0
@@ -122,7 +124,7 @@ def step(discs, grid, constraints, pile, report, numbers, counts):
     numbers[Number.STEP_END] = numbers[Number.NOW] + h
     _report_impacts(active, h, discs, pile, report, numbers, counts)
     pushing = _keep_forces(active, h, pile, counts)
-    _mark_near(active, h, discs, pile, numbers)
+    _mark_near(active, h, discs, pile)
     calm = _start_paths(h, discs, pile, numbers)
     if calm or pushing == 0:
         counts[Count.CALM] += 1
@@ -150,8 +152,8 @@ def _begin_paths(discs, pile, numbers):
         discs[i, Disc.AX], discs[i, Disc.AY] = discs[i, Disc.GX], discs[i, Disc.GY]
         discs[i, Disc.EPOCH], discs[i, Disc.STEP] = numbers[Number.NOW], INFINITY
         discs[i, Disc.CHANGES] += 1.0
-        pile.motion[Motion.ROOT, i, 0] = math.sqrt(discs[i, Disc.WX])
-        pile.motion[Motion.ROOT, i, 1] = math.sqrt(discs[i, Disc.WY])
+        pile.motion[Motion.ROOT, 2 * i] = math.sqrt(discs[i, Disc.WX])
+        pile.motion[Motion.ROOT, 2 * i + 1] = math.sqrt(discs[i, Disc.WY])
 
 
 @compiled
@@ -161,8 +163,8 @@ def _report_impacts(active, h, discs, pile, report, numbers, counts):
         if pile.contacts[c, PileContact.IMPULSE] > 0.0:
             impulse = pile.contacts[c, PileContact.IMPULSE] / pile.scale[c]
             i, j = pile.pairs[pile.order[c], 0], pile.pairs[pile.order[c], 1]
-            nx, ny, _, vx, vy = separation(pile.order[c], discs, pile, numbers)
-            before = nx * vx + ny * vy
+            pair = pile.near[pile.order[c]]
+            nx, ny, before = pair[PilePair.NX], pair[PilePair.NY], pair[PilePair.RATE]
             if bounces(before, i, j, h, discs, pile, numbers):
                 (ivx, ivy), (jvx, jvy) = velocity_after(i, pile), velocity_after(j, pile)
                 vx, vy = jvx - ivx, jvy - ivy
@@ -198,11 +200,12 @@ def _keep_forces(active, h, pile, counts):
 
 
 @compiled
-def _mark_near(active, h, discs, pile, numbers):
+def _mark_near(active, h, discs, pile):
     """Mark the discs that were pushed, and the discs that end the step near another or could reach it on a parabola."""
     for c in range(active):
         i, j = pile.pairs[pile.order[c], 0], pile.pairs[pile.order[c], 1]
-        nx, ny, gap, _, _ = separation(pile.order[c], discs, pile, numbers)
+        pair = pile.near[pile.order[c]]
+        nx, ny, gap = pair[PilePair.NX], pair[PilePair.NY], pair[PilePair.GAP]
         (ivx, ivy), (jvx, jvy) = velocity_after(i, pile), velocity_after(j, pile)
         vx, vy = jvx - ivx, jvy - ivy
         bend = 2.0 * h * h * (pile.travel[Travel.PULL, i] + pile.travel[Travel.PULL, j])
@@ -234,6 +237,6 @@ def _start_paths(h, discs, pile, numbers):
             discs[i, Disc.VX], discs[i, Disc.VY] = vx, vy
             discs[i, Disc.AX], discs[i, Disc.AY] = 0.0, 0.0
             slow = max(CALM_SPEEDS * h * pull, CALM_TRAVEL * numbers[Number.SMALLEST] / h)
-            calm = calm and (pile.travel[Travel.NEAR, i] < 2.0 or math.hypot(vx, vy) <= slow)
+            calm = calm and (pile.travel[Travel.NEAR, i] < 2.0 or vx * vx + vy * vy <= slow * slow)
         discs[i, Disc.NOISE] = SPEED_NOISE * (abs(vx) + abs(vy) + 2.0 * h * pull)
     return calm

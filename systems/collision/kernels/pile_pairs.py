@@ -1,93 +1,119 @@
 """The pairs of a pile: which discs are near each other, and which of the pairs are contacts in a step.
 
-Contacts in a step are all pairs whose gap is within what the two discs may travel; if one then travels farther, the
-step is taken anew with more. They are found in a list of pairs that lasts until a disc may leave its box; which
-contacts there are, and in which order, does not depend on when the list was made.
+Without contacts a disc would go through the step with its velocity and the pull of its weight; contacts shift it from
+that path. Contacts are all pairs that such shifts, of the size allowed for each disc, can bring together; if a disc is
+shifted farther, the step is taken anew with more. They are found in a list of pairs that lasts until a disc may leave
+its box; which contacts there are, and in which order, does not depend on when the list was made.
 """
 
 import math
 
-from systems.collision.columns import NONE, SHORTEST_SHARE, TRAVEL, Count, Disc, Motion, Number, Reason, Travel
+from systems.collision.columns import (
+    NONE,
+    SHORTEST_SHARE,
+    TRAVEL,
+    Count,
+    Disc,
+    Entry,
+    Motion,
+    Number,
+    PilePair,
+    Reason,
+    Travel,
+)
 from systems.collision.kernels import compiled
-from systems.collision.kernels.grid import enclose, enter, neighbours, place_box, sort
+from systems.collision.kernels.grid import enclose, enter, neighbours, sort
 from systems.collision.kernels.horizon import is_joined, set_layers
 from systems.collision.kernels.persistent_contact import (
     enter_persistent,
-    find_persistent,
     forget_persistent,
     is_held,
 )
-from systems.collision.kernels.time_of_impact import nearest, relative_motion, smaller_radius
+from systems.collision.kernels.time_of_impact import nearest, smaller_radius
 
-PASSED_ON = 0.25  # of the travel of the fastest disc, or of a radius: travel that impacts may pass on to a disc in a step
-STEPS_AHEAD, ROOM_AHEAD = 4.0, 0.1  # steps, and radii, that discs may travel until pairs are listed anew
+# Shift that impacts may pass on to a disc in a step, as a share of the travel of the fastest disc, or of a radius.
+PASSED_ON = 0.4
+STEPS_AHEAD, ROOM_AHEAD = 4.0, 0.35  # steps, and radii, that discs may travel until pairs are listed anew
 
 
 @compiled
 def velocity_after(i, pile):
     """Velocity of a disc in the step, from its scaled velocity."""
     speed, root = pile.motion[Motion.SPEED], pile.motion[Motion.ROOT]
-    return speed[i, 0] * root[i, 0], speed[i, 1] * root[i, 1]
+    return speed[2 * i] * root[2 * i], speed[2 * i + 1] * root[2 * i + 1]
 
 
 @compiled
-def allow_travel(h, discs, pile):
-    """Set the farthest travel of discs in a step without impacts."""
+def allow_shifts(h, discs, pile):
+    """Set the farthest shift of discs in a step by what bears their weight."""
     for i in range(discs.shape[0]):
-        pull = math.hypot(discs[i, Disc.GX], discs[i, Disc.GY])
-        speed = math.hypot(discs[i, Disc.VX], discs[i, Disc.VY])
+        pull = math.sqrt(discs[i, Disc.GX] ** 2 + discs[i, Disc.GY] ** 2)
         pile.travel[Travel.PULL, i] = pull
-        pile.travel[Travel.REACH, i] = h * (speed + 2.0 * h * pull)
-        pile.travel[Travel.FASTEST, i] = speed
+        pile.travel[Travel.SHIFT, i] = 2.0 * h * h * pull
+        pile.travel[Travel.FASTEST, i] = 0.0
 
 
 @compiled
-def allow_more_travel(h, fastest, discs, pile):
-    """Set the farthest travel of discs that near discs may strike, directly or through others."""
+def allow_more_shift(h, fastest, discs, pile):
+    """Set the farthest shift of discs that near discs may strike, directly or through others."""
     for i in range(discs.shape[0]):
         if not is_held(i, discs):
-            speed, pull = math.hypot(discs[i, Disc.VX], discs[i, Disc.VY]), pile.travel[Travel.PULL, i]
-            speed += pile.travel[Travel.FASTEST, i]
+            speed, pull = pile.travel[Travel.FASTEST, i], pile.travel[Travel.PULL, i]
             through = PASSED_ON * min(h * fastest, discs[i, Disc.RADIUS])
-            pile.travel[Travel.REACH, i] = h * (speed + 2.0 * h * pull) + through
+            pile.travel[Travel.SHIFT, i] = h * (speed + 2.0 * h * pull) + through
 
 
 @compiled
 def stays_within_reach(h, discs, pile):
-    """False if a disc would travel farther than allowed; twice that travel is then allowed."""
+    """False if contacts shift a disc farther than allowed; twice that shift is then allowed."""
     within = True
     for i in range(discs.shape[0]):
         vx, vy = velocity_after(i, pile)
-        travel = h * math.hypot(vx, vy)
-        if travel > pile.travel[Travel.REACH, i]:
-            pile.travel[Travel.REACH, i] = 2.0 * travel
+        vx, vy = vx - discs[i, Disc.VX] - h * discs[i, Disc.GX], vy - discs[i, Disc.VY] - h * discs[i, Disc.GY]
+        shift = h * h * (vx * vx + vy * vy)
+        if shift > pile.travel[Travel.SHIFT, i] ** 2:
+            pile.travel[Travel.SHIFT, i] = 2.0 * math.sqrt(shift)
             within = False
     return within
 
 
 @compiled
-def list_pairs(h, discs, grid, constraints, pile, numbers, counts):
-    """Ensure that all pairs are listed whose gap is within their reach. Returns a Reason."""
-    if counts[Count.LISTED] != NONE and _stays_in_boxes(discs, grid, pile, numbers):
-        return Reason.DONE
+def find_pairs(h, measured, discs, grid, constraints, pile, numbers, counts):
+    """Ensure that all pairs are listed whose discs can meet in a step, and measured. Returns a Reason.
+
+    measured: those that are listed are.
+    """
+    if not _are_listed(h, discs, grid, pile, counts):
+        reason = _list_pairs(h, discs, grid, constraints, pile, numbers, counts)
+        if reason != Reason.DONE:
+            return reason
+        measured = False
+    if not measured:
+        _measure_pairs(discs, pile, counts)
+    return Reason.DONE
+
+
+@compiled
+def _list_pairs(h, discs, grid, constraints, pile, numbers, counts):
+    """List all pairs whose boxes around the next few steps overlap. Returns a Reason."""
     enter_pushing_pairs(discs, constraints, pile, counts)
     counts[Count.LISTED] = NONE
     for i in range(discs.shape[0]):
         enclose(i, discs, grid, numbers[Number.NOW], numbers[Number.NOW] + STEPS_AHEAD * h)
-        room = 2.0 * pile.travel[Travel.REACH, i] + ROOM_AHEAD * discs[i, Disc.RADIUS]
+        room = 2.0 * pile.travel[Travel.SHIFT, i] + ROOM_AHEAD * discs[i, Disc.RADIUS]
         grid.boxes[i, 0] -= room
         grid.boxes[i, 1] -= room
         grid.boxes[i, 2] += room
         grid.boxes[i, 3] += room
     set_layers(grid, numbers, counts)
-    layers, cell = counts[Count.LAYERS], numbers[Number.CELL]
-    if 8 * discs.shape[0] * layers > grid.after.shape[0]:
+    layers = counts[Count.LAYERS]
+    if 2 * discs.shape[0] * layers > grid.after.shape[0]:
         return Reason.GRID_FULL
     grid.heads[:] = NONE
     pairs = 0
     for i in range(discs.shape[0]):
         left, bottom, right, top = grid.boxes[i]
-        near = neighbours(i, left, bottom, right, top, grid, layers, cell)
+        near = neighbours(i, left, bottom, right, top, grid, layers, 0)
         sort(grid.found, near)
         for k in range(near):
             j = grid.found[k]
@@ -95,10 +121,9 @@ def list_pairs(h, discs, grid, constraints, pile, numbers, counts):
                 continue
             if pairs < pile.forces.shape[0]:
                 pile.pairs[pairs, 0], pile.pairs[pairs, 1] = j, i
-                entry = find_persistent(i, j, constraints)
-                pile.forces[pairs] = 0.0 if entry == NONE else constraints.forces[entry]
+                pile.forces[pairs] = _pushing_force(j, i, discs, constraints)
             pairs += 1
-        enter(i, grid, layers, cell)
+        enter(i, grid, layers)
     if pairs > pile.forces.shape[0] or 2 * pairs > counts[Count.SPARES]:
         return Reason.GROUP_FULL
     counts[Count.LISTED] = pairs
@@ -106,15 +131,34 @@ def list_pairs(h, discs, grid, constraints, pile, numbers, counts):
 
 
 @compiled
-def _stays_in_boxes(discs, grid, pile, numbers):
+def _pushing_force(i, j, discs, constraints):
+    """Force in the persistent contact of two discs, entered for each of them that is not held; 0 if they have none."""
+    if is_held(i, discs):
+        i, j = j, i
+    entry = constraints.first_persistent[i]
+    while entry != NONE and constraints.persistent[entry, Entry.OTHER] != j:
+        entry = constraints.persistent[entry, Entry.NEXT]
+    return 0.0 if entry == NONE else constraints.forces[entry]
+
+
+@compiled
+def _are_listed(h, discs, grid, pile, counts):
     """True if no disc can leave the box for which its pairs were listed."""
+    if counts[Count.LISTED] == NONE:
+        return False
     for i in range(discs.shape[0]):
         if not is_held(i, discs):
-            reach = pile.travel[Travel.REACH, i]
-            left, bottom, right, top = place_box(i, discs, numbers[Number.NOW])
-            if left - reach < grid.boxes[i, 0] or right + reach > grid.boxes[i, 2]:
-                return False
-            if bottom - reach < grid.boxes[i, 1] or top + reach > grid.boxes[i, 3]:
+            x, y = discs[i, Disc.OX] + discs[i, Disc.UX], discs[i, Disc.OY] + discs[i, Disc.UY]
+            dx = h * (discs[i, Disc.VX] + h * discs[i, Disc.GX])
+            dy = h * (discs[i, Disc.VY] + h * discs[i, Disc.GY])
+            around = discs[i, Disc.RADIUS] + pile.travel[Travel.SHIFT, i]
+            inside = (grid.boxes[i, 0] <= x + min(dx, 0.0) - around) & (
+                x + max(dx, 0.0) + around <= grid.boxes[i, 2]
+            )
+            inside &= (grid.boxes[i, 1] <= y + min(dy, 0.0) - around) & (
+                y + max(dy, 0.0) + around <= grid.boxes[i, 3]
+            )
+            if not inside:
                 return False
     return True
 
@@ -134,16 +178,36 @@ def enter_pushing_pairs(discs, constraints, pile, counts):
 
 
 @compiled
-def separation(k, discs, pile, numbers):
-    """Unit vector of a listed pair, their gap, and the velocity of the second relative to the first."""
-    i, j = pile.pairs[k, 0], pile.pairs[k, 1]
-    dx, dy, vx, vy, _, _ = relative_motion(discs, i, j, numbers[Number.NOW])
-    dx, dy, _ = nearest(dx, dy, j, discs)
-    distance = math.sqrt(dx * dx + dy * dy)
-    gap = distance - (discs[i, Disc.RADIUS] + discs[j, Disc.RADIUS])
-    if distance == 0.0:
-        return 1.0, 0.0, gap, vx, vy
-    return dx / distance, dy / distance, gap, vx, vy
+def _measure_pairs(discs, pile, counts):
+    """Fill in the columns of PilePair of all listed pairs, whose discs all begin their paths now."""
+    for k in range(counts[Count.LISTED]):
+        i, j = pile.pairs[k, 0], pile.pairs[k, 1]
+        dx = (discs[j, Disc.OX] - discs[i, Disc.OX]) + (discs[j, Disc.UX] - discs[i, Disc.UX])
+        dy = (discs[j, Disc.OY] - discs[i, Disc.OY]) + (discs[j, Disc.UY] - discs[i, Disc.UY])
+        dx, dy, _ = nearest(dx, dy, j, discs)
+        distance = math.sqrt(dx * dx + dy * dy)
+        nx, ny = 1.0, 0.0
+        if distance > 0.0:
+            nx, ny = dx / distance, dy / distance
+        vx, vy = discs[j, Disc.VX] - discs[i, Disc.VX], discs[j, Disc.VY] - discs[i, Disc.VY]
+        pair = pile.near[k]
+        pair[PilePair.NX], pair[PilePair.NY] = nx, ny
+        pair[PilePair.GAP] = distance - (discs[i, Disc.RADIUS] + discs[j, Disc.RADIUS])
+        pair[PilePair.RATE] = nx * vx + ny * vy
+        gx, gy = discs[j, Disc.GX] - discs[i, Disc.GX], discs[j, Disc.GY] - discs[i, Disc.GY]
+        pair[PilePair.PULL] = nx * gx + ny * gy
+        pair[PilePair.SPEED] = math.sqrt(vx * vx + vy * vy)
+
+
+@compiled
+def _may_meet(k, h, pile):
+    """True if the shifts allowed can bring a listed pair together in a step.
+
+    The distance of two discs on straight lines is no less than its part along the first line of centres.
+    """
+    pair = pile.near[k]
+    gap = pair[PilePair.GAP] + h * (pair[PilePair.RATE] + h * pair[PilePair.PULL])
+    return gap <= pile.travel[Travel.SHIFT, pile.pairs[k, 0]] + pile.travel[Travel.SHIFT, pile.pairs[k, 1]]
 
 
 @compiled
@@ -155,10 +219,8 @@ def choose_length(discs, pile, numbers, counts):
     longest = numbers[Number.STEP_LENGTH]
     h, fastest = longest, 0.0
     for k in range(counts[Count.LISTED]):
-        i, j = pile.pairs[k, 0], pile.pairs[k, 1]
-        _, _, gap, vx, vy = separation(k, discs, pile, numbers)
-        if gap <= pile.travel[Travel.REACH, i] + pile.travel[Travel.REACH, j]:
-            speed = math.sqrt(vx * vx + vy * vy)
+        if _may_meet(k, longest, pile):
+            i, j, speed = pile.pairs[k, 0], pile.pairs[k, 1], pile.near[k, PilePair.SPEED]
             travel = TRAVEL * smaller_radius(i, j, discs)
             fastest = max(fastest, speed)
             if speed * h > travel:
@@ -169,13 +231,11 @@ def choose_length(discs, pile, numbers, counts):
 
 
 @compiled
-def choose_contacts(discs, pile, numbers, counts):
-    """Set `chosen` to the listed pairs whose gap is within their reach; returns their number."""
+def choose_contacts(h, pile, counts):
+    """Set `chosen` to the listed pairs that may meet in a step; returns their number."""
     active = 0
     for k in range(counts[Count.LISTED]):
-        i, j = pile.pairs[k, 0], pile.pairs[k, 1]
-        _, _, gap, _, _ = separation(k, discs, pile, numbers)
-        if gap <= pile.travel[Travel.REACH, i] + pile.travel[Travel.REACH, j]:
+        if _may_meet(k, h, pile):
             pile.chosen[active] = k
             active += 1
     return active

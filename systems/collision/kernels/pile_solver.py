@@ -6,16 +6,17 @@ The step is that of Moreau and Jean (Jean, Comput. Methods Appl. Mech. Eng. 177,
 
 import math
 
-from systems.collision.columns import Disc, Motion, Number, PileContact, Travel
+from systems.collision.columns import Disc, Motion, Number, PileContact, PilePair, Travel
 from systems.collision.kernels import compiled
 from systems.collision.kernels.persistent_contact import is_held
-from systems.collision.kernels.pile_pairs import separation
 from systems.collision.kernels.time_of_impact import rest_speed
 
 MOST_PILE_SWEEPS = 80  # to and fro over the contacts in a step; the next continues from its impulses
+FEW = 0.02  # of the contacts left to correct, at which sweeps end
+MOST_REST = 10  # times that each contact is then looked at, on average
 MOST_RELAXED = 40000  # contacts up to which the sweeps over few are more
 ENERGY_ROUND_OFF = 1e-9  # of the energy of motion
-SIDE_BY_SIDE = 8  # contacts next to each other in the order of sweeps are far apart: computed at once
+SIDE_BY_SIDE = 4  # contacts next to each other in the order of sweeps are far apart: computed at once
 
 
 @compiled
@@ -23,15 +24,15 @@ def start_without_contacts(h, discs, pile):
     """Set the velocities at the end of the step without contacts."""
     for i in range(discs.shape[0]):
         for d in range(2):
-            pile.motion[Motion.SPEED, i, d] = _free(i, d, h, discs, pile)
-            pile.motion[Motion.DIRECTION, i, d] = 0.0
+            pile.motion[Motion.SPEED, 2 * i + d] = _free(i, d, h, discs, pile)
+            pile.motion[Motion.DIRECTION, 2 * i + d] = 0.0
         pile.travel[Travel.NEAR, i] = 0.0
 
 
 @compiled
 def _free(i, d, h, discs, pile):
     """u of a disc at the end of the step, without contacts; 0 where it is held."""
-    root = pile.motion[Motion.ROOT, i, d]
+    root = pile.motion[Motion.ROOT, 2 * i + d]
     return (discs[i, Disc.VX + d] + h * discs[i, Disc.GX + d]) / root if root > 0.0 else 0.0
 
 
@@ -51,12 +52,13 @@ def make_contacts(active, h, discs, pile, numbers):
 def _make_contact(c, k, h, discs, pile, numbers):
     contacts, motion = pile.contacts, pile.motion
     i, j = pile.pairs[k, 0], pile.pairs[k, 1]
-    nx, ny, gap, vx, vy = separation(k, discs, pile, numbers)
+    pair = pile.near[k]
+    nx, ny, gap, speed = pair[PilePair.NX], pair[PilePair.NY], pair[PilePair.GAP], pair[PilePair.RATE]
     pile.order[c] = k
-    contacts[c, PileContact.AX] = -nx * motion[Motion.ROOT, i, 0]
-    contacts[c, PileContact.AY] = -ny * motion[Motion.ROOT, i, 1]
-    contacts[c, PileContact.BX] = nx * motion[Motion.ROOT, j, 0]
-    contacts[c, PileContact.BY] = ny * motion[Motion.ROOT, j, 1]
+    contacts[c, PileContact.AX] = -nx * motion[Motion.ROOT, 2 * i]
+    contacts[c, PileContact.AY] = -ny * motion[Motion.ROOT, 2 * i + 1]
+    contacts[c, PileContact.BX] = nx * motion[Motion.ROOT, 2 * j]
+    contacts[c, PileContact.BY] = ny * motion[Motion.ROOT, 2 * j + 1]
     opening = 0.0
     for d in range(4):
         opening += contacts[c, PileContact.AX + d] ** 2
@@ -69,10 +71,7 @@ def _make_contact(c, k, h, discs, pile, numbers):
     pile.ends[c, 1] = i if is_held(j, discs) else j
     if opening == 0.0:
         return
-    speed = nx * vx + ny * vy
-    gx, gy = discs[j, Disc.GX] - discs[i, Disc.GX], discs[j, Disc.GY] - discs[i, Disc.GY]
-    pulled = speed + h * (nx * gx + ny * gy)
-    bias = gap / h
+    pulled, bias = speed + h * pair[PilePair.PULL], gap / h
     if pulled + bias < 0.0 and bounces(speed, i, j, h, discs, pile, numbers):
         bias = min(bias, discs[j, Disc.BOUNCE] * speed)
     contacts[c, PileContact.BIAS] = bias / root
@@ -80,8 +79,8 @@ def _make_contact(c, k, h, discs, pile, numbers):
         contacts[c, PileContact.AX + d] /= root
     contacts[c, PileContact.IMPULSE] = contacts[c, PileContact.PREVIOUS] = pile.forces[k] * h * root
     for d in range(2):
-        motion[Motion.SPEED, i, d] += contacts[c, PileContact.AX + d] * contacts[c, PileContact.IMPULSE]
-        motion[Motion.SPEED, j, d] += contacts[c, PileContact.BX + d] * contacts[c, PileContact.IMPULSE]
+        motion[Motion.SPEED, 2 * i + d] += contacts[c, PileContact.AX + d] * contacts[c, PileContact.IMPULSE]
+        motion[Motion.SPEED, 2 * j + d] += contacts[c, PileContact.BX + d] * contacts[c, PileContact.IMPULSE]
 
 
 @compiled
@@ -93,40 +92,95 @@ def bounces(speed, i, j, h, discs, pile, numbers):
 
 @compiled
 def find_impulses(active, tolerance, pile):
-    """Find the impulses after which contacts close no faster than about the tolerance.
+    """Find the impulses after which no contact closes faster than the tolerance.
 
     Sweeps to and fro, accelerated by conjugate directions: Silcowitz, Niebe, Erleben, "A nonsmooth nonlinear
     conjugate gradient method for interactive contact force problems", Vis. Comput. 26 (2010). Each sweep goes once
-    through memory: the acceleration of an impulse is added when its contact is relaxed.
+    through memory: the acceleration of an impulse is added when its contact is relaxed. Once few contacts are left to
+    correct, these are relaxed one by one, with those that they upset.
     """
-    size, share, keep = 0.0, 0.0, 0.0
+    size, share, keep, few = 0.0, 0.0, 0.0, FEW * active
     for turn in range(max(MOST_PILE_SWEEPS, MOST_RELAXED // max(active, 1))):
         _accelerate(share, keep, pile)
         for c in range(active):
             _relax_forward(c, share, keep, pile)
-        previous, size, fastest = size, 0.0, 0.0
+        previous, size, rough = size, 0.0, 0
         for c in range(active - 1, -1, -1):
-            impulse = _relax(c, pile.contacts[c, PileContact.IMPULSE], pile)
+            before = pile.contacts[c, PileContact.IMPULSE]
+            impulse = _relax(c, before, pile)
             change = impulse - pile.contacts[c, PileContact.PREVIOUS]
             size += change * change
-            fastest = max(fastest, abs(change) * pile.scale[c])
-        if fastest <= tolerance:
-            return
+            rough += abs(impulse - before) * pile.scale[c] > tolerance
         share = size / previous if turn > 0 and size <= previous else 0.0
         keep = 1.0 if turn == 0 or share > 0.0 else 0.0
+        if rough <= few:
+            if _relax_rest(active, tolerance, pile):
+                return
+            share, keep, few = 0.0, 0.0, 0.25 * few
+
+
+@compiled
+def _relax_rest(active, tolerance, pile):
+    """Relax contacts in a queue until none would change by more than the tolerance; a change queues all of its discs.
+
+    False if that would take long.
+    """
+    first, contacts_of, queue, queued = pile.first, pile.contacts_of, pile.queue, pile.queued
+    _list_contacts(active, pile)
+    for c in range(active):
+        queue[c], queued[c] = c, 1
+    head, waiting, left = 0, active, MOST_REST * active
+    while waiting > 0 and left > 0:
+        c = queue[head]
+        queued[c] = 0
+        head = head + 1 if head + 1 < active else 0
+        waiting, left = waiting - 1, left - 1
+        before = pile.contacts[c, PileContact.IMPULSE]
+        impulse = max(before - opening(c, pile), 0.0)
+        if abs(impulse - before) * pile.scale[c] <= tolerance:
+            continue
+        _relax(c, before, pile)
+        for end in range(2):
+            i = pile.ends[c, end]
+            for k in range(first[i], first[i + 1]):
+                d = contacts_of[k]
+                if queued[d] == 0 and d != c:
+                    last = head + waiting
+                    queue[last if last < active else last - active], queued[d] = d, 1
+                    waiting += 1
+    return waiting == 0
+
+
+@compiled
+def _list_contacts(active, pile):
+    """List the contacts of every disc: contacts_of[first[i] : first[i + 1]]."""
+    first, contacts_of = pile.first, pile.contacts_of
+    n = first.shape[0] - 1
+    for i in range(n + 1):
+        first[i] = 0
+    for c in range(active):
+        for end in range(2):
+            first[pile.ends[c, end]] += 1
+    for i in range(n):
+        first[i + 1] += first[i]
+    for c in range(active):
+        for end in range(2):
+            i = pile.ends[c, end]
+            first[i] -= 1
+            contacts_of[first[i]] = c
 
 
 @compiled
 def _accelerate(share, keep, pile):
     """Move the velocities by a share of the direction of the sweeps so far; `keep` adds the last sweep to it."""
     motion = pile.motion
-    for i in range(motion.shape[1]):
-        for d in range(2):
-            more = share * motion[Motion.DIRECTION, i, d]
-            swept = more + motion[Motion.SPEED, i, d] - motion[Motion.PREVIOUS, i, d]
-            motion[Motion.DIRECTION, i, d] = keep * swept
-            motion[Motion.SPEED, i, d] += more
-            motion[Motion.PREVIOUS, i, d] = motion[Motion.SPEED, i, d]
+    speed, previous, direction = motion[Motion.SPEED], motion[Motion.PREVIOUS], motion[Motion.DIRECTION]
+    for k in range(speed.shape[0]):
+        more = share * direction[k]
+        swept = more + speed[k] - previous[k]
+        direction[k] = keep * swept
+        speed[k] += more
+        previous[k] = speed[k]
 
 
 @compiled
@@ -141,21 +195,26 @@ def _relax_forward(c, share, keep, pile):
 
 
 @compiled
+def opening(c, pile):
+    """Rate at which a contact opens, in the scale of its impulse."""
+    contacts, speed, ends = pile.contacts, pile.motion[Motion.SPEED], pile.ends
+    a, b = ends[c, 0], ends[c, 1]
+    first = contacts[c, PileContact.AX] * speed[2 * a] + contacts[c, PileContact.AY] * speed[2 * a + 1]
+    second = contacts[c, PileContact.BX] * speed[2 * b] + contacts[c, PileContact.BY] * speed[2 * b + 1]
+    return (first + second) + contacts[c, PileContact.BIAS]
+
+
+@compiled
 def _relax(c, before, pile):
     """Change the impulse of a contact so that it neither closes nor pulls; returns the impulse."""
-    contacts, motion = pile.contacts, pile.motion
-    a, b = pile.ends[c, 0], pile.ends[c, 1]
-    ax, ay = contacts[c, PileContact.AX], contacts[c, PileContact.AY]
-    bx, by = contacts[c, PileContact.BX], contacts[c, PileContact.BY]
-    first = ax * motion[Motion.SPEED, a, 0] + ay * motion[Motion.SPEED, a, 1]
-    second = bx * motion[Motion.SPEED, b, 0] + by * motion[Motion.SPEED, b, 1]
-    impulse = max(before - ((first + second) + contacts[c, PileContact.BIAS]), 0.0)
+    contacts, speed = pile.contacts, pile.motion[Motion.SPEED]
+    impulse = max(before - opening(c, pile), 0.0)
     contacts[c, PileContact.IMPULSE] = impulse
-    change = impulse - before
-    motion[Motion.SPEED, a, 0] += ax * change
-    motion[Motion.SPEED, a, 1] += ay * change
-    motion[Motion.SPEED, b, 0] += bx * change
-    motion[Motion.SPEED, b, 1] += by * change
+    change, a, b = impulse - before, pile.ends[c, 0], pile.ends[c, 1]
+    speed[2 * a] += contacts[c, PileContact.AX] * change
+    speed[2 * a + 1] += contacts[c, PileContact.AY] * change
+    speed[2 * b] += contacts[c, PileContact.BX] * change
+    speed[2 * b + 1] += contacts[c, PileContact.BY] * change
     return impulse
 
 
@@ -170,14 +229,14 @@ def supplies_energy(active, h, discs, pile):
     for i in range(discs.shape[0]):
         for d in range(2):
             free = _free(i, d, h, discs, pile)
-            motion[Motion.PREVIOUS, i, d] = free
-            total += 0.5 * (motion[Motion.SPEED, i, d] - free) ** 2
+            motion[Motion.PREVIOUS, 2 * i + d] = free
+            total += 0.5 * (motion[Motion.SPEED, 2 * i + d] - free) ** 2
             size += 0.5 * free * free
     for c in range(active):
         a, b = pile.ends[c, 0], pile.ends[c, 1]
         ax, ay = contacts[c, PileContact.AX], contacts[c, PileContact.AY]
         bx, by = contacts[c, PileContact.BX], contacts[c, PileContact.BY]
-        rate = ax * motion[Motion.PREVIOUS, a, 0] + ay * motion[Motion.PREVIOUS, a, 1]
-        rate += bx * motion[Motion.PREVIOUS, b, 0] + by * motion[Motion.PREVIOUS, b, 1]
+        rate = ax * motion[Motion.PREVIOUS, 2 * a] + ay * motion[Motion.PREVIOUS, 2 * a + 1]
+        rate += bx * motion[Motion.PREVIOUS, 2 * b] + by * motion[Motion.PREVIOUS, 2 * b + 1]
         total += contacts[c, PileContact.IMPULSE] * (rate + contacts[c, PileContact.BIAS])
     return total > ENERGY_ROUND_OFF * size

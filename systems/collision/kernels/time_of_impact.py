@@ -14,8 +14,10 @@ from systems.collision.columns import EPSILON, SHARED_END, SHARED_START, SPEED_N
 from systems.collision.kernels import compiled
 
 INFINITY = math.inf
+ROUND_OFF = 1e-9  # of a distance: more than that of the sums that tell which discs stay apart
 PLACE_NOISE = 64.0 * EPSILON  # of both positions and paths: discs this near touch
-MOST_ROOT_ITERATIONS = 2200  # what bisection alone needs across all exponents and bits of a double; Newton: 5
+TURN_PRECISION = 1e-10
+MOST_ROOT_ITERATIONS = 2200  # what bisection alone needs across all exponents and bits of a double; others: 5
 
 
 @compiled
@@ -51,6 +53,14 @@ def displacement_at(i, discs, time):
         return ux, uy
     x, y, _, _ = bend(i, discs, time)
     return ux + x, uy + y
+
+
+@compiled
+def rim(i, nx, ny, discs, time):
+    """The point of a disc's rim in a direction from its centre."""
+    ux, uy = displacement_at(i, discs, time)
+    x, y = discs[i, Disc.OX] + ux, discs[i, Disc.OY] + uy
+    return x + discs[i, Disc.RADIUS] * nx, y + discs[i, Disc.RADIUS] * ny
 
 
 @compiled
@@ -175,6 +185,21 @@ def place_noise(discs, i, j, time):
 
 
 @compiled
+def are_touching(path, i, j, discs, time):
+    """True if the gap of two discs is round-off, or none, at a time; `path`: their relative motion then."""
+    dx, dy, _, _, _, _ = path
+    if discs[i, Disc.STEP] < INFINITY or discs[j, Disc.STEP] < INFINITY:
+        dx, dy, _, _ = relative_state(discs, i, j, time)
+    dx, dy, _ = nearest(dx, dy, j, discs)
+    reach = discs[i, Disc.RADIUS] + discs[j, Disc.RADIUS]
+    squared = dx * dx + dy * dy
+    if squared > 4.0 * reach * reach:
+        return False
+    reach += place_noise(discs, i, j, time)
+    return squared <= reach * reach
+
+
+@compiled
 def pull_on(discs, i, j):
     """The larger acceleration (m/s²) of two discs without contacts."""
     first = math.hypot(discs[i, Disc.GX], discs[i, Disc.GY])
@@ -201,6 +226,18 @@ def rest_speed(i, j, discs, rest_height, time):
 
 
 @compiled
+def pass_by(path, reach):
+    """True if two discs without relative acceleration pass one another by: what first_approach finds then, sooner."""
+    dx, dy, vx, vy, ax, ay = path
+    if ax != 0.0 or ay != 0.0:
+        return False
+    if dx * vx + dy * vy >= 0.0:
+        return True
+    passing = dx * vy - dy * vx
+    return (vx * vx + vy * vy) * reach * reach < passing * passing and dx * dx + dy * dy > reach * reach
+
+
+@compiled
 def first_approach(path, reach, noise, growth, horizon, overlapping):
     """The least s ≥ 0 at which the distance is at most `reach` and shrinks; INFINITY if there is none.
 
@@ -212,13 +249,32 @@ def first_approach(path, reach, noise, growth, horizon, overlapping):
     dx, dy, vx, vy, ax, ay = path
     if ax == 0.0 and ay == 0.0:
         return _first_on_lines(path, reach, noise, overlapping)
+    distance = math.sqrt(dx * dx + dy * dy)
+    if _stays_beyond(path, reach + ROUND_OFF * (distance + reach), distance, horizon):
+        return INFINITY
     pull = math.sqrt(ax * ax + ay * ay)
     speed = math.sqrt(vx * vx + vy * vy)
-    distance = math.sqrt(dx * dx + dy * dy)
-    if distance - reach > horizon * (speed + 0.5 * horizon * pull):
-        return INFINITY
     last = (speed + math.sqrt(speed * speed + 2.0 * pull * (distance + reach))) / pull
     return _first_on_parabolas(path, reach, noise * reach, growth * reach, horizon, last, overlapping)
+
+
+@compiled
+def _stays_beyond(path, reach, distance, horizon):
+    """True if a line separates two discs until the horizon: one across their line of centres now, or at the end."""
+    dx, dy, vx, vy, ax, ay = path
+    if _least(distance * distance, dx * vx + dy * vy, dx * ax + dy * ay, horizon) > reach * distance:
+        return True
+    x, y = dx + horizon * (vx + 0.5 * horizon * ax), dy + horizon * (vy + 0.5 * horizon * ay)
+    along = math.sqrt(x * x + y * y)
+    return _least(x * dx + y * dy, x * vx + y * vy, x * ax + y * ay, horizon) > reach * along
+
+
+@compiled
+def _least(x, v, a, end):
+    """The least of x + v s + a s²/2 for s from 0 to `end`."""
+    if v < 0.0 < v + a * end:
+        return x - 0.5 * v * v / a
+    return min(x, x + end * (v + 0.5 * end * a))
 
 
 @compiled
@@ -314,7 +370,11 @@ def _curvature(path, s):
 
 @compiled
 def _turn(path, low, high, falling):
-    """Root of f' between low and high, where it is monotone and changes sign: Newton kept in a bracket."""
+    """Root of f' between low and high, where it is monotone and changes sign: Newton kept in a bracket.
+
+    f hardly changes there, so that a root to TURN_PRECISION of the bracket tells as much as one to the last bit.
+    """
+    close = TURN_PRECISION * (high - low)
     s = low - _slope(path, low) / _curvature(path, low)
     if not (low < s < high):
         s = 0.5 * (low + high)
@@ -324,11 +384,13 @@ def _turn(path, low, high, falling):
             low = s
         else:
             high = s
-        step = value / _curvature(path, s)
-        following = s - step
+        step = -value / _curvature(path, s)
+        following = s + step
+        if abs(step) <= close:
+            return following
         if not (low < following < high):
             following = 0.5 * (low + high)
-        if abs(following - s) <= EPSILON * abs(s) or following in (low, high):
+        if abs(following - s) <= close:
             return following
         s = following
     return s
@@ -366,13 +428,25 @@ def _touch(path, reach, noise, growth, low, high, overlapping):
             low = s
         else:
             high = s
-        following = s - value / _slope(path, s)
+        step = _parabolic_step(value, _slope(path, s), _curvature(path, s))
+        following = s + step
+        if abs(step) <= EPSILON * abs(s):
+            return following
         if not (low < following < high):
             following = 0.5 * (low + high)
         if abs(following - s) <= EPSILON * abs(s) or following in (low, high):
             return following
         s = following
     return s
+
+
+@compiled
+def _parabolic_step(value, slope, curvature):
+    """The step to the nearest root of a parabola that falls; that of Newton's method where it has none."""
+    discriminant = slope * slope - 2.0 * value * curvature
+    if discriminant > 0.0:
+        return 2.0 * value / (math.sqrt(discriminant) - slope)
+    return -value / slope
 
 
 # --- a disc and a straight piece ------------------------------------------------------------------------

@@ -146,7 +146,7 @@ def test_a_crowd_has_the_same_bits_in_both_forms(monkeypatch: pytest.MonkeyPatch
     for choice in (Compile.NEVER, Compile.ALWAYS):
         with programs(choice):
             session = heap(40, 0.9)
-            session.run(time=0.18)
+            session.run(time=0.2)
             found.append(bits.columns(session.model))
     assert len(times) >= 2 * 10
     assert bits.different(*found) == []

@@ -380,6 +380,31 @@ def test_a_ball_rests_on_a_cable() -> None:
     assert pull == pytest.approx(9.81e-3 * (1.0 + node) * np.hypot(x, y) / (-2.0 * y), rel=1e-7)
 
 
+def test_elastic_bounces_that_a_damper_calms_end() -> None:
+    """A spring presses a node onto a rock: its bounces become ever shorter, without end, and lose nothing themselves."""
+    particles = [
+        {"name": "pin", "position": [0.0, 1.0], "fixed": [True, True]},
+        {"name": "node", "position": [0.0, 0.5], "fixed": [True, False], "radius": 0.02},
+        {"name": "rock", "position": [0.0, 0.25], "fixed": [True, True], "radius": 0.2},
+    ]
+    spring = {
+        "name": "spring",
+        "between": ["pin", "node"],
+        "stiffness": 1.0,
+        "damping": 0.01,
+        "rest_length": 0.6,
+    }
+    document = {"format": "pinjoint model", "version": 1, "environment": GRAVITY, "rods": [spring]}
+    session = Session.open(document | {"particles": particles, "settings": {"restitution": 1.0}})
+    assert session.run(until="rest", limit=10.0) == "at rest"
+    assert 100 < len(session.impacts) < 2000
+    contacts = persistent_contacts(session.model)
+    assert contacts is not None
+    weight, pressed = 9.81 * session.particles["node"].mass, 1000.0 * (0.6 - 0.53) / 0.6
+    assert contacts.forces == pytest.approx([weight + pressed], rel=1e-9)
+    assert abs(session.energy.imbalance) <= 1e-10 * session.model.clock.energy_scale
+
+
 def test_a_ball_that_makes_a_truss_yield_rests_on_what_is_left() -> None:
     """Its energy goes into impacts, dampers and plastic strain; afterwards no rod exceeds its strength."""
     document = truss({"mass": 20.0}, restitution=0.5)

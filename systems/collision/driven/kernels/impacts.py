@@ -13,16 +13,19 @@ from systems.collision.kernels.pairs import gap_of
 from systems.collision.system import REST_HEIGHT
 from systems.entries import Account, Control
 
+SHORT_BOUNCE = 1.0 / 32.0  # of a step: half of how long a bounce lasts
 ROUND_OFF = 1e-14  # of the fastest speed: slower approaches are none
 
 
 @compiled
-def set_rest_speeds(driven, h, later):
+def set_rest_speeds(driven, h, later, step):
     """The speed of approach below which each pair stays in contact: √(2 a · height), a being the larger acceleration.
 
-    h: length (s) of the step that led to the velocities `later`.
+    h: length (s) of the step that led to the velocities `later`. step: of the next whole one (s). Where impacts are
+    elastic, but dampers calm the motion, bounces on a structure become ever shorter without end: those that would be
+    over in a small part of a step end, too, if they would rise no more than SETTLING_HEIGHT.
     """
-    lasting = 0
+    lasting, calmed = 0, driven.whole[Whole.BOUNCY] == 0 and driven.whole[Whole.DAMPED] == 1
     for k in range(driven.pairs.shape[0]):
         lasting += driven.lasting[k]
     share = SETTLING_HEIGHT if lasting >= SETTLING_CONTACTS else REST_HEIGHT
@@ -34,7 +37,11 @@ def set_rest_speeds(driven, h, later):
         pull = _acceleration(driven, i, h, later)
         if j < later.shape[0]:
             pull = max(pull, _acceleration(driven, j, h, later))
-        driven.slow[k] = math.sqrt(2.0 * pull * height)
+        slow = math.sqrt(2.0 * pull * height)
+        if calmed:
+            risen = SETTLING_HEIGHT * min(driven.size[i], driven.size[j])
+            slow = max(slow, min(math.sqrt(2.0 * pull * risen), SHORT_BOUNCE * pull * step))
+        driven.slow[k] = slow
 
 
 @compiled

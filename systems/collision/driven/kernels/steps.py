@@ -233,7 +233,7 @@ def _press(driven, control, account, place, speed):
     if not _has_room(driven):
         return _leave(driven, Need.ROOM, Phase.HELD)
     real[Real.LAST] = real[Real.NOW]
-    set_rest_speeds(driven, real[Real.NOW] - real[Real.START], later)
+    set_rest_speeds(driven, real[Real.NOW] - real[Real.START], later, control[Control.STEP_SIZE])
     take_back(driven, control, account, place, speed)
     if resolve_touching(driven, control, account, place, speed):
         if whole[Whole.LANDING]:
@@ -255,7 +255,7 @@ def _close(driven, control, account, place, speed):
     if not _has_room(driven):
         return _leave(driven, Need.ROOM, Phase.OVER)
     keep_contacts(driven, h, control, account, place, speed)
-    set_rest_speeds(driven, h, speed)
+    set_rest_speeds(driven, h, speed, control[Control.STEP_SIZE])
     resolve_touching(driven, control, account, place, speed)
     if whole[Whole.LANDING] and whole[Whole.MET]:
         whole[Whole.REASON] = StopReason.EVENT
