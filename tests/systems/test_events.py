@@ -263,7 +263,6 @@ def test_an_event_for_neither_rods_nor_particles_is_refused_by_name() -> None:
         Session.open(pulled(), [Wrong()]).run(steps=1)
 
 
-
 def bouncing(wall: float) -> dict[str, Any]:
     """A particle under drag that flies to a wall, at most 0.5 m, and back; where it was drawn, its quantity changes sign."""
     return {

@@ -213,7 +213,9 @@ class NeighbourList:
         rows = np.flatnonzero(driven.lasting)
         longest = float(driven.real[Real.LONGEST])
         if len(rows) or held is not None:
-            self._held = PersistentContacts(driven.pairs[rows], driven.forces[rows], longest) if len(rows) else None
+            self._held = (
+                PersistentContacts(driven.pairs[rows], driven.forces[rows], longest) if len(rows) else None
+            )
             self.model.writable("clock.collision_state")[0] = self._held
         self._is_stored = True
 
