@@ -18,7 +18,7 @@ from components.handle import Handle
 from components.load import load_breaks, loads_end
 from components.model import Model
 from systems.base import Event, Integrator, StepSystem, StopReason
-from systems.collision.driven.columns import Real, Whole
+from systems.collision.driven.columns import Phase, Real, Whole
 from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
 from systems.physics.kernels import conserved
 from systems.program.between import Between
@@ -295,7 +295,7 @@ class Program:
             "resisting": self._arrays["force"],
             "power": self._arrays["power"],
         }
-        kept |= {name: self.columns[name] for name in self._writer.written}
+        kept |= {name: self.columns[name] for name in self._writer.kept}
         copies: dict[str, Any] = {f"kept_{name}": np.zeros_like(array) for name, array in kept.items()}
         copies |= {f"own_{name}": np.zeros_like(kept["force"]) for name in ("acceleration", "support")}
         copies["every"] = np.arange(self._rows("particles"))
@@ -348,11 +348,7 @@ class Program:
 
     def _take(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         """Take up to `steps` steps, in one call."""
-        if self._sides and not self._is_fresh:
-            for b, sides in self._sides:
-                sides[:] = self._sides_of(b)
-        if self._near is not None:
-            self._renew(self._near)
+        self._catch_up()
         controlled, (time, size) = self.integrator.controlled, self._control[:2].tolist()
         if until < math.inf and not controlled:
             steps = min(steps, max(int((until - time) / size * (1.0 + 1e-12)), 0))
@@ -396,6 +392,8 @@ class Program:
         they are done: Whole.NEED may say what is needed before it goes on.
         """
         wanted = steps if self.module.is_loaded else min(steps, self.module.portion)
+        if driven.whole[Whole.PHASE] == Phase.BETWEEN:
+            self._catch_up()
         driven.real[Real.UNTIL] = until
         driven.real[Real.PUSH] = self.integrator.push if self.integrator.mod is None else 0.0
         try:
@@ -421,7 +419,8 @@ class Program:
         whole[Whole.ALONE], whole[Whole.WANTED] = alone, steps
         whole[Whole.TOTAL] = whole[Whole.FIRST] = total
         whole[Whole.SINCE], whole[Whole.FRESH], whole[Whole.NEED] = since, self._is_fresh, 0
-        whole[Whole.REASON] = StopReason.DONE
+        if whole[Whole.PHASE] == Phase.BETWEEN:  # else the step that is under way may have ended for a reason
+            whole[Whole.REASON] = StopReason.DONE
         driven.real[Real.ORIGIN] = origin
         form.drive(
             self.between.function(compiled=form.is_machine),
@@ -453,6 +452,14 @@ class Program:
     def _motion(self) -> tuple[Column, Column, Column]:
         """The model's row of each particle, of none if they are the same, and the model's displacements and velocities."""
         return np.zeros(0, dtype=np.int64), self._arrays["displacement"], self._arrays["velocity"]
+
+    def _catch_up(self) -> None:
+        """Before steps, bring the sides of events and the list of near pairs up to the present state."""
+        if self._sides and not self._is_fresh:
+            for b, sides in self._sides:
+                sides[:] = self._sides_of(b)
+        if self._near is not None:
+            self._renew(self._near)
 
     def _renew(self, near: NearPairs) -> None:
         """Have the list of near pairs made anew in another state, and room for all of them."""

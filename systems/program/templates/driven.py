@@ -105,7 +105,7 @@ def keep():
             kept_resisting[i, d] = resisting[i, d]
     for k in range(power.shape[0]):
         kept_power[k] = power[k]
-    insert(histories)
+    insert(others)
 
 
 def put_back():
@@ -116,12 +116,12 @@ def put_back():
             resisting[i, d] = kept_resisting[i, d]
     for k in range(power.shape[0]):
         power[k] = kept_power[k]
-    insert(histories)
+    insert(others)
 
 
-def each_history():
-    for r in range(rods_between.shape[0]):  # noqa: B007
-        insert(copied)
+def copy():
+    for r in range(insert(of).shape[0]):
+        insert(to)[r] = insert(of)[r]
 
 
 # --- integrators with fixed steps --------------------------------------------------------------------

@@ -146,7 +146,11 @@ def _begin(driven, control, account, place, speed):
     real[Real.END] = real[Real.UNTIL] if whole[Whole.LANDING] else math.inf
     if whole[Whole.CHOSEN] > 0 and real[Real.LONGEST] < size:
         real[Real.END] = min(real[Real.END], start + real[Real.LONGEST])
-    if real[Real.END] < math.inf and real[Real.END] > real[Real.UNTIL]:
+    if real[Real.END] < math.inf:
+        fits = real[Real.END] <= real[Real.UNTIL]
+    else:  # a step that is not foreseen is found not to fit as it is taken
+        fits = not whole[Whole.FORESEEN] or (real[Real.UNTIL] - start) * (1.0 + 1e-12) >= size
+    if not fits:
         return _leave(driven, Need.NOTHING, Phase.BETWEEN)
     begin_search(driven)
     return _go_on(driven, Phase.TRYING)
@@ -256,13 +260,15 @@ def _press(driven, control, account, place, speed):
     """
     whole, real = driven.whole, driven.real
     later = driven.ahead_speed if whole[Whole.FORESEEN] else speed
+    if not _has_room(driven):
+        return _leave(driven, Need.ROOM, Phase.HELD)
     real[Real.LAST] = real[Real.NOW]
     set_rest_speeds(driven, real[Real.NOW] - real[Real.START], later, control[Control.STEP_SIZE])
     take_back(driven, control, account, place, speed)
     if resolve_touching(driven, control, account, place, speed):
         if whole[Whole.LANDING]:
             whole[Whole.REASON] = StopReason.EVENT
-        return _go_on(driven, Phase.BETWEEN)
+        return _end(driven)
     whole[Whole.GOAL] = Goal.PRESSED  # only round-off presses them together
     real[Real.END] = real[Real.LAST]
     begin_search(driven)
@@ -276,13 +282,25 @@ def _close(driven, control, account, place, speed):
     h = control[Control.TIME] - real[Real.START]
     if h == 0.0 or whole[Whole.REASON] == StopReason.DIVERGED:
         return _leave(driven, Need.NOTHING, Phase.BETWEEN)
-    if whole[Whole.REPORTED] + driven.pairs.shape[0] > driven.report.pairs.shape[0]:
+    if not _has_room(driven):
         return _leave(driven, Need.ROOM, Phase.OVER)
     keep_contacts(driven, h, control, account, place, speed)
     set_rest_speeds(driven, h, speed, control[Control.STEP_SIZE])
     resolve_touching(driven, control, account, place, speed)
     if whole[Whole.LANDING] and whole[Whole.MET]:
         whole[Whole.REASON] = StopReason.EVENT
-    if whole[Whole.NEED] == Need.WAKE:
+    return _end(driven)
+
+
+@compiled
+def _has_room(driven):
+    """True if there is room to report an impact of every pair."""
+    return driven.whole[Whole.REPORTED] + driven.pairs.shape[0] <= driven.report.pairs.shape[0]
+
+
+@compiled
+def _end(driven):
+    """Go on after impacts, in Python if something struck what is asleep."""
+    if driven.whole[Whole.NEED] == Need.WAKE:
         return _leave(driven, Need.WAKE, Phase.BETWEEN)
     return _go_on(driven, Phase.BETWEEN)
