@@ -24,6 +24,29 @@ ROUND_OFF_OF_PATHS = 1e-9  # of how far particles move in a step: by as much mor
 
 
 @compiled
+def keep_state(driven, control, account, place, speed, near_alone):
+    """Keep the state in which a step begins. near_alone: of the particles only those that are near others."""
+    if near_alone:
+        for p in range(driven.near.shape[0]):
+            i = driven.near[p]
+            for d in range(2):
+                driven.before[i, d] = place[i, d]
+                driven.velocity[i, d] = speed[i, d]
+    else:
+        for i in range(place.shape[0]):
+            for d in range(2):
+                driven.before[i, d] = place[i, d]
+                driven.velocity[i, d] = speed[i, d]
+    for k in range(control.shape[0]):
+        driven.kept[k] = control[k]
+    for k in range(account.shape[0]):
+        driven.kept[control.shape[0] + k] = account[k]
+    driven.whole[Whole.KEPT_TOTAL] = driven.whole[Whole.TOTAL]
+    driven.whole[Whole.KEPT_SINCE] = driven.whole[Whole.SINCE]
+    driven.real[Real.KEPT_ORIGIN] = driven.real[Real.ORIGIN]
+
+
+@compiled
 def take_back(driven, control, account, place, speed):
     """Put back the state in which the step begins, if the step was taken."""
     whole = driven.whole

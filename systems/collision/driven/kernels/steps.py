@@ -25,6 +25,7 @@ from systems.collision.driven.kernels.paths import (
     DOUBTFUL,
     first_impact,
     foreseen_span,
+    keep_state,
     meeting,
     plan_clear_steps,
     span_to_list,
@@ -109,22 +110,7 @@ def _begin(driven, control, account, place, speed):
         if span > 0.0:
             real[Real.SPAN] = span
             return _leave(driven, Need.LIST, Phase.BETWEEN)
-        for p in range(driven.near.shape[0]):
-            i = driven.near[p]
-            for d in range(2):
-                driven.before[i, d] = place[i, d]
-                driven.velocity[i, d] = speed[i, d]
-    else:
-        for i in range(place.shape[0]):
-            for d in range(2):
-                driven.before[i, d] = place[i, d]
-                driven.velocity[i, d] = speed[i, d]
-    for k in range(control.shape[0]):
-        driven.kept[k] = control[k]
-    for k in range(account.shape[0]):
-        driven.kept[control.shape[0] + k] = account[k]
-    whole[Whole.KEPT_TOTAL], whole[Whole.KEPT_SINCE] = whole[Whole.TOTAL], whole[Whole.SINCE]
-    real[Real.KEPT_ORIGIN] = real[Real.ORIGIN]
+    keep_state(driven, control, account, place, speed, whole[Whole.FORESEEN] and not clears)
     real[Real.START] = start
     whole[Whole.CHOSEN], whole[Whole.STEPS] = 0, 1
     real[Real.BY] = real[Real.UNTIL]
