@@ -32,8 +32,8 @@ from systems.collision.kernels.persistent_contact import (
 from systems.collision.kernels.time_of_impact import nearest, smaller_radius
 
 # Shift that impacts may pass on to a disc in a step, as a share of the travel of the fastest disc, or of a radius.
-PASSED_ON = 0.4
-STEPS_AHEAD, ROOM_AHEAD = 4.0, 0.35  # steps, and radii, that discs may travel until pairs are listed anew
+PASSED_ON = 0.7
+STEPS_AHEAD, ROOM_AHEAD = 4.0, 0.5  # steps, and radii, that discs may travel until pairs are listed anew
 
 
 @compiled
