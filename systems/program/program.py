@@ -18,7 +18,7 @@ from components.handle import Handle
 from components.load import load_breaks, loads_end
 from components.model import Model
 from systems.base import Event, Integrator, StepSystem, StopReason
-from systems.collision.driven.columns import Real, Whole
+from systems.collision.driven.columns import Phase, Real, Whole
 from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
 from systems.physics.kernels import conserved
 from systems.program.between import Between
@@ -83,7 +83,6 @@ class Program:
     failure: what a kernel raised in a step, and which, if one did.
     impulsive: the systems without a kernel that act by impacts. between: what acts between its steps.
     module: its functions. tolerance: of each step; 0 where the error is not controlled.
-    longest_in_contact: the longest step (s) while contacts persist.
     compile_seconds: time that writing it took, and compiling it, or loading it from the cache, if that was done at once.
     """
 
@@ -99,7 +98,6 @@ class Program:
         self.measures = np.zeros(len(Measure))
         self.follows_state = not self._writer.working and all(b.follows_state for b in self._writer.bound)
         self.failure: ProgramError | None = None
-        self.longest_in_contact = math.inf
         self._types: dict[str, Any] = {}
         self._state_revision = -1
         self.bind()
@@ -297,7 +295,7 @@ class Program:
             "resisting": self._arrays["force"],
             "power": self._arrays["power"],
         }
-        kept |= {name: self.columns[name] for name in self._writer.written}
+        kept |= {name: self.columns[name] for name in self._writer.kept}
         copies: dict[str, Any] = {f"kept_{name}": np.zeros_like(array) for name, array in kept.items()}
         copies |= {f"own_{name}": np.zeros_like(kept["force"]) for name in ("acceleration", "support")}
         copies["every"] = np.arange(self._rows("particles"))
@@ -350,11 +348,7 @@ class Program:
 
     def _take(self, steps: int, until: float, landing: float) -> tuple[int, StopReason]:
         """Take up to `steps` steps, in one call."""
-        if self._sides and not self._is_fresh:
-            for b, sides in self._sides:
-                sides[:] = self._sides_of(b)
-        if self._near is not None:
-            self._renew(self._near)
+        self._catch_up()
         controlled, (time, size) = self.integrator.controlled, self._control[:2].tolist()
         if until < math.inf and not controlled:
             steps = min(steps, max(int((until - time) / size * (1.0 + 1e-12)), 0))
@@ -398,6 +392,8 @@ class Program:
         they are done: Whole.NEED may say what is needed before it goes on.
         """
         wanted = steps if self.module.is_loaded else min(steps, self.module.portion)
+        if driven.whole[Whole.PHASE] == Phase.BETWEEN:
+            self._catch_up()
         driven.real[Real.UNTIL] = until
         driven.real[Real.PUSH] = self.integrator.push if self.integrator.mod is None else 0.0
         try:
@@ -420,12 +416,11 @@ class Program:
         whole, (total, since) = driven.whole, self._counts.tolist()
         origin, limit = self._origin.tolist()
         limit = limit or math.inf
-        if alone and self.model.clock.collision_state is not None:
-            limit = min(limit, self.longest_in_contact)
         whole[Whole.ALONE], whole[Whole.WANTED] = alone, steps
         whole[Whole.TOTAL] = whole[Whole.FIRST] = total
         whole[Whole.SINCE], whole[Whole.FRESH], whole[Whole.NEED] = since, self._is_fresh, 0
-        whole[Whole.REASON] = StopReason.DONE
+        if whole[Whole.PHASE] == Phase.BETWEEN:  # else the step that is under way may have ended for a reason
+            whole[Whole.REASON] = StopReason.DONE
         driven.real[Real.ORIGIN] = origin
         form.drive(
             self.between.function(compiled=form.is_machine),
@@ -458,11 +453,13 @@ class Program:
         """The model's row of each particle, of none if they are the same, and the model's displacements and velocities."""
         return np.zeros(0, dtype=np.int64), self._arrays["displacement"], self._arrays["velocity"]
 
-    def push(self, force: Column) -> None:
-        """Push the particles of the model by these forces (kN) in the next step."""
-        if not (self._support == force[self._held_rows]).all():
-            self._support[...] = force[self._held_rows]
-            self._state_revision = -1  # forces must be evaluated anew
+    def _catch_up(self) -> None:
+        """Before steps, bring the sides of events and the list of near pairs up to the present state."""
+        if self._sides and not self._is_fresh:
+            for b, sides in self._sides:
+                sides[:] = self._sides_of(b)
+        if self._near is not None:
+            self._renew(self._near)
 
     def _renew(self, near: NearPairs) -> None:
         """Have the list of near pairs made anew in another state, and room for all of them."""

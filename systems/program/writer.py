@@ -230,7 +230,7 @@ class Writer:
             "scratch": self.scratch,
             "bounds": ("breaks", "until", "landing"),
             "limits": self._limits,
-            "kept": (*_KEPT, *(f"kept_{name}" for name in self.written)),
+            "kept": (*_KEPT, *(f"kept_{name}" for name in self.kept)),
             "observed": _OBSERVED,
             "columns": self.columns,
         }
@@ -246,6 +246,11 @@ class Writer:
         return [_column(b) for b in self.commits]
 
     @property
+    def kept(self) -> list[str]:
+        """What steps change by row besides the state: columns that commits write, and the sides of events."""
+        return [*self.written, *map(sides_of, self.events)]
+
+    @property
     def _limits(self) -> tuple[str, ...]:
         """What `drive` takes that bounds its steps."""
         return ()
@@ -256,14 +261,14 @@ class Writer:
             driven.drive,
             "entered",
             "",
-            keep=self._copies(driven.keep, "kept_{0}[r] = {0}[r]"),
-            put_back=self._copies(driven.put_back, "{0}[r] = kept_{0}[r]"),
+            keep=self._copies(driven.keep, "kept_{0}", "{0}"),
+            put_back=self._copies(driven.put_back, "{0}", "kept_{0}"),
             **self._driven_steps(),
         )
 
-    def _copies(self, template: Callable[[], None], copy: str) -> list[str]:
-        copied = [copy.format(name) for name in self.written]
-        return fragment(template, histories=fragment(driven.each_history, copied=copied) if copied else [])
+    def _copies(self, template: Callable[[], None], to: str, of: str) -> list[str]:
+        loops = [fragment(driven.copy, to=to.format(name), of=of.format(name)) for name in self.kept]
+        return fragment(template, others=[line for loop in loops for line in loop])
 
     def _driven_steps(self) -> dict[str, Sequence[str]]:
         """How `drive` evaluates forces, takes steps, and what follows from other contact forces."""

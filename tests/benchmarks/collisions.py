@@ -1,4 +1,6 @@
-"""Colliding discs against pymunk in the same run: gases, what an impact costs, piles, memory, energy kept."""
+"""Colliding discs against pymunk in the same run: gases, what an impact costs, piles, memory, energy kept; and discs on
+structures, beside the same structures without discs.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +13,7 @@ import numpy as np
 import pymunk  # here, so that a missing peer is told before anything is measured
 
 from systems.collision.free.discs import EVENTS, HORIZONS, PILES, Discs
+from tests.benchmarks.structures_and_discs import driven
 from tests.reference.scenes_of_discs import GRAVITY, Scene, gas, lattice, packed, stacked
 
 STEP = 1 / 240  # s; pymunk's
@@ -210,4 +213,5 @@ def report(*, quick: bool) -> dict[str, list[Row]]:
         module.load()
     _ours(packed(20, 20), 0.2, acceleration=DOWN)  # imports what finds equilibria
     tables: dict[str, Callable[..., list[Row]]] = {"gases": gases, "growth": growth, "piles": piles}
+    tables["driven"] = driven
     return {"memory": memory()} | {name: table(quick=quick) for name, table in tables.items()}

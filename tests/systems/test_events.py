@@ -261,3 +261,40 @@ def test_an_event_for_neither_rods_nor_particles_is_refused_by_name() -> None:
         ProgramError, match=r"test\.wrong is an event for each of 'loads'; choose rods or particles"
     ):
         Session.open(pulled(), [Wrong()]).run(steps=1)
+
+
+def bouncing(wall: float) -> dict[str, Any]:
+    """A particle under drag that flies to a wall, at most 0.5 m, and back; where it was drawn, its quantity changes sign."""
+    return {
+        "format": "pinjoint model",
+        "version": 1,
+        "environment": {"drag": 0.1},
+        "particles": [
+            {"name": "p", "position": [0.0, 0.0], "displacement": [0.5, 0.0], "velocity": [-5.0, 0.0]}
+        ],
+        "components": {"walls.Wall": [{"name": "w", "start": [wall, -1.0], "end": [wall, 1.0]}]},
+    }
+
+
+def test_what_a_step_that_is_taken_again_would_have_led_to_does_not_happen() -> None:
+    """Error control would have steps lead beyond the wall."""
+    crossing = Crossing()
+    session = Session.open(bouncing(-0.04), [crossing])
+    session.run(time=0.3)
+    assert len(session.impacts) == 1
+    assert crossing.seen == []
+
+
+def test_events_happen_between_impacts_again_after_undo() -> None:
+    """v = v₀ exp(−c t) at first: 0.5 m are past at −ln(1 − 0.01)/0.1 s."""
+    crossing = Crossing()
+    session = Session.open(bouncing(-0.55), [crossing])
+    session.run(time=0.05)
+    session.run(time=0.2)
+    (first,) = crossing.seen
+    assert first == (pytest.approx(-10.0 * math.log(0.99), rel=1e-9), "fell", 0)
+    session.undo()
+    session.run(time=0.4)
+    assert len(session.impacts) == 1
+    assert crossing.seen[:2] == [first, first]
+    assert [way for _, way, _ in crossing.seen] == ["fell", "fell", "rose"]

@@ -27,11 +27,13 @@ class Phase(IntEnum):
 
     BETWEEN = 0  # no step has begun
     READY = 1  # the forces at its beginning are known
-    CLEAR = 6  # steps were taken in which nothing can meet
-    TRYING = 2  # contact forces are to be tried
-    TRIED = 3  # it was taken, or foreseen, with them
-    HELD = 4  # contacts are closed at its end: does it hold an impact?
-    OVER = 5  # it was taken for good, up to an impact if there is one
+    CLEAR = 2  # steps were taken in which nothing can meet
+    TRYING = 3  # contact forces are to be tried
+    TRIED = 4  # it was taken, or foreseen, with them
+    HELD = 5  # contacts are closed at its end: does it hold an impact?
+    CROWD_TRYING = 6  # forces in a crowd are to be tried
+    CROWD_TRIED = 7  # it was taken with them
+    OVER = 8  # it was taken for good, up to an impact if there is one
 
 
 class Goal(IntEnum):
@@ -77,12 +79,15 @@ class Whole(IntEnum):
     REGULAR = 19  # 1: the slope of the search is that of both ends of the step
     TRIES = 20  # of the end of a step that ends at an impact
     MET = 21  # 1: it ends at an impact
-    BOUNCY = 22  # 1: some restitution is below 1
-    DAMPED = 23  # 1: dampers or drag calm the motion
-    REPORTED = 24  # impacts
-    STEPS = 25  # to take at once
-    PUSHED = 26  # 1: contact forces acted in the last step
-    EXAMINE = 27  # 1: the next step is one that is looked through, though nothing seems near
+    CROWD = 22  # 1: the step is one of a crowd
+    CROWDS = 23  # steps of crowds so far
+    MEMBERS = 24  # of the crowd
+    BOUNCY = 25  # 1: some restitution is below 1
+    DAMPED = 26  # 1: dampers or drag calm the motion
+    REPORTED = 27  # impacts
+    STEPS = 28  # to take at once
+    PUSHED = 29  # 1: contact forces acted in the last step
+    EXAMINE = 30  # 1: the next step is one that is looked through, though nothing seems near
 
 
 class Real(IntEnum):
@@ -103,10 +108,14 @@ class Real(IntEnum):
     SPAN = 12  # m; within which pairs must be listed
     KEPT_ORIGIN = 13
     CROWD_STEP = 14  # s; longest step of a crowd
-    STRONGEST = 15  # m/s²; the largest `pull`
-    BY = 16  # s; when the steps that are taken now have to end
-    ROOM = 17  # m; how far particles may move while nothing can meet
-    FASTEST = 18  # m/s; of them, in that time
+    CROWD_LENGTH = 15  # s; of the next step of a crowd
+    CROWD_TRAVEL = 16  # m; how far particles may go in it
+    CROWD_TOLERANCE = 17  # m; by which pairs may close beyond their room
+    CROWD_LOSS = 18  # J; by the impacts in it
+    STRONGEST = 19  # m/s²; the largest `pull`
+    BY = 20  # s; when the steps that are taken now have to end
+    ROOM = 21  # m; how far particles may move while nothing can meet
+    FASTEST = 22  # m/s; of them, in that time
 
 
 class Tried(IntEnum):
@@ -137,6 +146,8 @@ class Driven(NamedTuple):
     Of the search for contact forces: chosen, the pairs in persistent contact; search, with the rows of Tried; start, end:
     their normals at both ends of the step; block: the first contact of its block and the one after the last, as only
     contacts of particles that others connect depend on one another; slope, learnt (m/N); matrix, sides: work space.
+    Of crowds: of each pair room, the gap at the start, if it is one (m), pushes, forces that are tried (N), and impulses
+    (N·s).
     Of impacts: group, report; touching: the pairs that touch; parent, chain: work space, by which they are grouped.
     """
 
@@ -157,6 +168,9 @@ class Driven(NamedTuple):
     normal: Floats
     slow: Floats
     rate: Floats
+    room: Floats
+    pushes: Floats
+    impulses: Floats
     listed: Floats
     margin: Floats
     before: Floats
@@ -192,7 +206,7 @@ class Driven(NamedTuple):
             "near": ((0,), np.int64),
             "pairs": ((pairs, 2), np.int64),
             **dict.fromkeys(("lasting", "touching", "chain"), ((pairs,), np.int64)),
-            **dict.fromkeys(("forces", "slow", "rate"), ((pairs,), np.float64)),
+            **dict.fromkeys(("forces", "slow", "rate", "room", "pushes", "impulses"), ((pairs,), np.float64)),
             "normal": ((pairs, 2), np.float64),
             **dict.fromkeys(
                 ("listed", "before", "velocity", "ahead", "ahead_speed", "acceleration", "support"),

@@ -38,6 +38,7 @@ class NeighbourList:
         self.model = model
         self._revision = -1
         self._held: PersistentContacts | None = None
+        self._is_stored = False
 
     # --- the document --------------------------------------------------------------------------------
 
@@ -139,16 +140,8 @@ class NeighbourList:
         rows = np.searchsorted(self._keys(pairs), self._keys(old.pairs[lasting]))
         new.lasting[rows], new.forces[rows] = 1, old.forces[lasting]
         of_pairs = (
-            "pairs",
-            "lasting",
-            "forces",
-            "normal",
-            "slow",
-            "rate",
-            "touching",
-            "chain",
-            "group",
-            "report",
+            *("pairs", "lasting", "forces", "normal", "slow", "rate", "room", "pushes", "impulses"),
+            *("touching", "chain", "group", "report"),
         )
         members = np.unique(pairs)
         near = np.ascontiguousarray(members[members < self.count])
@@ -191,9 +184,9 @@ class NeighbourList:
     def load_contacts(self) -> None:
         """Begin with the state of the model: take its persistent contacts, if they are others than were stored last."""
         driven, held = self.driven, persistent_contacts(self.model)
-        interrupted = driven.whole[Whole.PHASE] != Phase.BETWEEN
+        known, self._is_stored = self._is_stored and held is self._held, False  # not stored: interrupted
         driven.whole[Whole.PHASE], driven.whole[Whole.EXAMINE] = Phase.BETWEEN, 0
-        if held is self._held and not interrupted:
+        if known:
             return
         driven.lasting[:], driven.forces[:] = 0, 0.0
         driven.real[Real.LONGEST] = np.inf if held is None else held.longest_step
@@ -211,10 +204,12 @@ class NeighbourList:
         driven, held = self.driven, self._held
         rows = np.flatnonzero(driven.lasting)
         longest = float(driven.real[Real.LONGEST])
-        if len(rows) == 0 and held is None:
-            return
-        self._held = PersistentContacts(driven.pairs[rows], driven.forces[rows], longest) if len(rows) else None
-        self.model.writable("clock.collision_state")[0] = self._held
+        if len(rows) or held is not None:
+            self._held = (
+                PersistentContacts(driven.pairs[rows], driven.forces[rows], longest) if len(rows) else None
+            )
+            self.model.writable("clock.collision_state")[0] = self._held
+        self._is_stored = True
 
     # --- how near ------------------------------------------------------------------------------------
 
@@ -233,9 +228,3 @@ class NeighbourList:
         gap, normal, driven = np.empty(len(pairs)), np.empty((len(pairs), 2)), self.driven
         kernels().gaps(pairs, driven.position, displacement, driven.radius, driven.span, gap, normal)
         return gap, normal
-
-    def rates(self, pairs: Rows, normal: Floats) -> Floats:
-        """Speeds (m/s) at which pairs part along their lines of centres."""
-        velocity = self.everywhere(self.velocity)
-        rates: Floats = (normal * (velocity[pairs[:, 1]] - velocity[pairs[:, 0]])).sum(axis=1)
-        return rates

@@ -3,7 +3,7 @@
 The integrator takes its steps. Each is looked through: the paths of the particles in it are taken as parabolas, whose
 first impact is found like that of free particles. The step is taken again to end there, and after the impact forces are
 evaluated anew. All of that happens in the step program and the kernel `collide` that it calls; it returns to Python
-for a list of near pairs, for room, for the steps of crowds, and where something strikes what is asleep.
+for a list of near pairs, for room, and where something strikes what is asleep.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from systems.base import StopReason
 from systems.collision.columns import Detail
 from systems.collision.driven.columns import Need, Real, Whole
 from systems.collision.driven.compiled import DRIVEN, idle, kernels
-from systems.collision.driven.crowds import NO_IMPACT, CrowdStepper
+from systems.collision.driven.kernels.joint_impacts import SEPARATE
 from systems.collision.driven.neighbours import NeighbourList
 from systems.collision.impacts import Impacts
 from systems.collision.overlaps import part_overlaps
@@ -37,9 +37,6 @@ class Steps(Protocol):
     def rebound(self) -> Program:
         """The program that takes the next steps, now that an impact woke something."""
 
-    def land(self, target: float) -> StopReason:
-        """Take the last, short step, to exactly the time `target` (s)."""
-
     @property
     def longest_in_contact(self) -> float:
         """The longest step (s) while contacts persist."""
@@ -53,7 +50,6 @@ class DrivenCollisions:
         self._steps = steps
         self._impacts = impacts
         self._neighbours = NeighbourList(model)
-        self._crowds = CrowdStepper(model, self._neighbours, impacts, steps.land)
 
     def advance(self, steps: int, until: float = math.inf) -> tuple[int, StopReason]:
         """Take up to `steps` steps that end by `until` (s), as every stepper does."""
@@ -74,7 +70,6 @@ class DrivenCollisions:
         near.look_up()
         near.load_contacts()
         near.driven.real[Real.HELD_LIMIT] = self._steps.longest_in_contact
-        program.longest_in_contact = self._steps.longest_in_contact
         last = clock.steps + steps
         while True:
             near.driven.whole[Whole.LANDING] = landing
@@ -87,13 +82,6 @@ class DrivenCollisions:
                 near.list_within(float(near.driven.real[Real.SPAN]))
             elif need == Need.ROOM:
                 near.make_room()
-            elif need == Need.CROWD:
-                near.store_contacts()
-                before = clock.steps
-                reason = self._crowds.step(program, until, landing=landing)
-                near.load_contacts()
-                if reason is not StopReason.DONE or clock.steps == before:
-                    return reason
             elif need == Need.WAKE:
                 near.store_contacts()
                 program = self._steps.rebound()
@@ -125,7 +113,7 @@ def _warm_up() -> None:
     near.look_up()
     near.gaps(near.pairs, near.displacement)
     form = kernels()
-    form.resolve(0, 0, NO_IMPACT, 0.0, arrays.group)
+    form.resolve(0, 0, SEPARATE, 0.0, arrays.group)
     form.collide(arrays, np.zeros(len(Control)), np.zeros(len(Account)), np.zeros((0, 2)), np.zeros((0, 2)))
 
 

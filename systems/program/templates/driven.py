@@ -105,7 +105,7 @@ def keep():
             kept_resisting[i, d] = resisting[i, d]
     for k in range(power.shape[0]):
         kept_power[k] = power[k]
-    insert(histories)
+    insert(others)
 
 
 def put_back():
@@ -116,12 +116,12 @@ def put_back():
             resisting[i, d] = kept_resisting[i, d]
     for k in range(power.shape[0]):
         power[k] = kept_power[k]
-    insert(histories)
+    insert(others)
 
 
-def each_history():
-    for r in range(rods_between.shape[0]):  # noqa: B007
-        insert(copied)
+def copy():
+    for r in range(insert(of).shape[0]):
+        insert(to)[r] = insert(of)[r]
 
 
 # --- integrators with fixed steps --------------------------------------------------------------------
@@ -210,7 +210,7 @@ def take_controlled():
     end = real[Real.END]
     until = real[Real.UNTIL] if alone else (real[Real.BY] if end == math.inf else end)
     wanted = whole[Whole.WANTED] if alone else (whole[Whole.STEPS] if end == math.inf else REVIEW_INTERVAL)
-    longest = limit if alone or whole[Whole.CHOSEN] == 0 else min(limit, real[Real.HELD_LIMIT])
+    longest = limit if whole[Whole.CHOSEN] == 0 else min(limit, real[Real.HELD_LIMIT])
     ended = StopReason.DONE.value
     while True:
         total = whole[Whole.TOTAL]

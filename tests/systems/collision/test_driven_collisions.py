@@ -1,5 +1,7 @@
 """Impacts and contacts with structures, and of particles under drag or a person's hand, through Session."""
 
+import contextlib
+import itertools
 import time
 from pathlib import Path
 from typing import Any
@@ -14,6 +16,7 @@ from systems.collision.driven.compiled import DRIVEN, kernels
 from systems.collision.driven.neighbours import NeighbourList
 from systems.collision.system import persistent_contacts
 from systems.edit.pull import hand_on
+from systems.program.program import Program
 
 GRAVITY = {"acceleration": [0.0, -9.81]}
 
@@ -109,6 +112,22 @@ def test_nothing_tunnels_through_a_node(speed: float) -> None:
     assert session.impacts.impulse[0] == pytest.approx(1.5 * speed * 2.0 * node / (2.0 + node), rel=1e-12)
 
 
+@pytest.mark.parametrize("integrator", ["velocity_verlet", "rk4", "dop853"])
+def test_a_run_ends_at_its_time_also_shortly_before_an_impact(integrator: str) -> None:
+    """The ball meets the node at 0.1 s; steps of 0.04 s would end there."""
+    document = truss({"position": [1.0, 0.7], "velocity": [0.0, -1.0]}, integrator=integrator)
+    document["environment"] = {}
+    if integrator != "dop853":
+        document["settings"]["time_step"] = 0.04
+    session = Session.open(document)
+    session.run(time=0.095)
+    assert session.time == 0.095
+    assert len(session.impacts) == 0
+    assert session.particles["ball"].displacement[1] == pytest.approx(-0.095, rel=1e-12)
+    session.run(time=0.01)
+    assert session.impacts.time.tolist() == pytest.approx([0.1], rel=1e-12)
+
+
 def test_how_a_run_is_divided_does_not_matter_nor_is_anything_lost_by_saving(tmp_path: Path) -> None:
     whole, divided = Session.open(truss({})), Session.open(truss({}))
     whole.run(steps=160)
@@ -136,6 +155,25 @@ def test_undo_returns_the_same_bits_through_impacts_and_contact() -> None:
     assert session.step(-30)
     session.run(steps=30)
     straight.run(steps=40)
+    assert state(session) == state(straight)
+
+
+def test_interrupts_leave_no_contacts_that_the_state_does_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each comes after the program returned and before what began to persist is noted."""
+    session, straight = Session.open(truss({})), Session.open(truss({}))
+    straight.run(steps=160)
+    drive, calls = Program.drive, itertools.count(1)
+
+    def interrupted(program: Program, *bounds: Any) -> Any:
+        done = drive(program, *bounds)
+        if next(calls) % 3 == 0:
+            raise KeyboardInterrupt
+        return done
+
+    monkeypatch.setattr(Program, "drive", interrupted)
+    while (left := 160 - session.model.clock.steps) > 0:
+        with contextlib.suppress(KeyboardInterrupt):
+            session.run(steps=min(4, left))
     assert state(session) == state(straight)
 
 

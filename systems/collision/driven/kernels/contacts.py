@@ -253,7 +253,8 @@ def _set_slope(driven, free, normal):
 def keep_contacts(driven, h, control, account, place, speed):
     """At the end of a step keep the contacts that push or touch; among many, also those with a small gap now and later.
 
-    What their forces did is entered in the account: they are constant, so that it is exact.
+    What their forces did is entered in the account: they are constant, so that force times displacement is exact. By steps
+    that are foreseen they act on the motion at its mean velocity.
     """
     whole, real = driven.whole, driven.real
     number = whole[Whole.CHOSEN]
@@ -265,9 +266,7 @@ def keep_contacts(driven, h, control, account, place, speed):
         gap -= driven.search[Tried.LEAST, c]
         force = driven.search[Tried.FORCES, c]
         for d in range(2):
-            apart = driven.before[i, d] - place[i, d]
-            if j < place.shape[0]:
-                apart += place[j, d] - driven.before[j, d]
+            apart = _moved(driven, j, d, h, place, speed) - _moved(driven, i, d, h, place, speed)
             account[Account.WORK] += force * driven.start[c, d] * apart
         persists = force > 0.0 or gap <= CLOSED_GAP * size
         if number >= SETTLING_CONTACTS:
@@ -278,3 +277,13 @@ def keep_contacts(driven, h, control, account, place, speed):
     real[Real.LONGEST] = (
         real[Real.CUT] if number > 0 and real[Real.CUT] < control[Control.STEP_SIZE] else math.inf
     )
+
+
+@compiled
+def _moved(driven, i, d, h, place, speed):
+    """How far a particle, or an obstacle, moved in the step, as far as the energy of its motion knows."""
+    if i >= place.shape[0]:
+        return 0.0
+    if driven.whole[Whole.FORESEEN]:
+        return 0.5 * h * (driven.velocity[i, d] + speed[i, d])
+    return place[i, d] - driven.before[i, d]

@@ -1,18 +1,30 @@
-"""Whether the next step is one of a crowd: of driven particles, no nodes, of which so many touch that single impacts
-no longer pay.
+"""Crowds: driven particles, no nodes of structures, of which so many touch that single impacts no longer pay.
+
+At the start of a step all impacts happen, and in it particles that would sink in push each other. Impacts and forces are
+projections, of the velocities and of the displacements in the step: the least change after which no pair closes by more
+than its gap along the line of centres at the start. Distances are convex, so that no particle sinks in; no force does
+work; and no impact supplies energy.
 """
 
 import math
 
-from systems.collision.columns import SHORTEST_SHARE, TRAVEL
-from systems.collision.driven.columns import Need, Real
-from systems.collision.driven.kernels.paths import opening
+from systems.base import StopReason
+from systems.collision.columns import NONE, SHORTEST_SHARE, TRAVEL, Contact, Detail
+from systems.collision.driven.columns import Need, Order, Phase, Real, Whole
+from systems.collision.driven.kernels.contacts import SETTLING_HEIGHT, clear_support
+from systems.collision.driven.kernels.joint_impacts import separate_motion
+from systems.collision.driven.kernels.paths import opening, take_back
 from systems.collision.kernels import compiled
 from systems.collision.kernels.pairs import gap_of
-from systems.entries import Control
+from systems.collision.kernels.projection import push_apart
+from systems.entries import Account, Control
 
 CROWD_CONTACTS = 24  # persistent contacts and impacts in the next step, from which on particles are a crowd
 CROWD_PARTICLES = 8  # particles that are no nodes, below which they are no crowd
+DEEPEST_OVERLAP = 1e-12  # of a radius, by which particles may sink into others in a step
+WANTED_OVERLAP = 1e-13  # as long as tries are left: what is at rest would be moved to and fro by more
+ROUND_OFF = 1e-14  # of an energy
+MOST_FORCE_TRIES = 4  # of the forces in a step
 
 
 @compiled
@@ -24,7 +36,7 @@ def is_crowd(driven, control, place, speed):
     real, pairs = driven.real, driven.pairs
     if driven.loose.shape[0] < CROWD_PARTICLES:
         return Need.NOTHING
-    longest = min(control[Control.STEP_SIZE], real[Real.CROWD_STEP])
+    longest = min(control[Control.STEP_SIZE], real[Real.CROWD_STEP], real[Real.HELD_LIMIT])
     fastest = 0.0
     for p in range(driven.loose.shape[0]):
         i = driven.loose[p]
@@ -42,20 +54,280 @@ def is_crowd(driven, control, place, speed):
     for k in range(pairs.shape[0]):
         i, j = pairs[k, 0], pairs[k, 1]
         gap, nx, ny = gap_of(i, j, driven.position, place, driven.radius, driven.span)
-        driven.slow[k] = gap
+        driven.room[k] = gap
         if gap > 2.0 * travel:
             continue
         if driven.node[i] or (j < place.shape[0] and driven.node[j]):
             return Need.NOTHING
+        driven.normal[k, 0], driven.normal[k, 1] = nx, ny
         driven.rate[k] = opening(i, j, nx, ny, speed)
-        far = TRAVEL * min(driven.size[i], driven.size[j])
+        far = TRAVEL * _size(driven, k)
         if -driven.rate[k] * longest > max(far, gap):
             h = min(h, far / -driven.rate[k])
     h = max(h, SHORTEST_SHARE * longest)
     number = 0
     for k in range(pairs.shape[0]):
-        meets = driven.slow[k] <= 2.0 * travel and max(driven.slow[k], 0.0) + h * driven.rate[k] < 0.0
+        close = driven.room[k] <= 2.0 * travel
         number += driven.lasting[k]
-        if meets and driven.restitution[pairs[k, 1]] < 1.0:
+        if close and _meets(driven, k, h) and driven.restitution[pairs[k, 1]] < 1.0:
             number += 1
+    real[Real.CROWD_LENGTH], real[Real.CROWD_TRAVEL] = h, travel
     return Need.CROWD if number >= CROWD_CONTACTS else Need.NOTHING
+
+
+@compiled
+def _size(driven, k):
+    return min(driven.size[driven.pairs[k, 0]], driven.size[driven.pairs[k, 1]])
+
+
+@compiled
+def _meets(driven, k, h):
+    return max(driven.room[k], 0.0) + h * driven.rate[k] < 0.0
+
+
+@compiled
+def begin_crowd(driven, account, place, speed):
+    """Gather the contacts of a crowd, and carry out its impacts: `speed` is then that after them."""
+    whole, group = driven.whole, driven.group
+    count, members, least = 0, 0, math.inf
+    for k in range(driven.pairs.shape[0]):
+        if driven.room[k] > 2.0 * driven.real[Real.CROWD_TRAVEL]:
+            continue
+        driven.room[k] = max(driven.room[k], 0.0)
+        driven.touching[count] = k
+        for e in range(2):
+            i = driven.pairs[k, e]
+            if group.place[i] == NONE:
+                group.place[i], group.members[members] = members, i
+                for d in range(2):
+                    group.mobility[members, d] = driven.weight[i, d]
+                members += 1
+            group.links[count, e] = group.place[i]
+        group.contacts[count, Contact.NX] = driven.normal[k, 0]
+        group.contacts[count, Contact.NY] = driven.normal[k, 1]
+        driven.pushes[k] = driven.forces[k] if driven.lasting[k] else 0.0
+        least = min(least, _size(driven, k))
+        count += 1
+    for m in range(members):
+        group.place[group.members[m]] = NONE
+    whole[Whole.CHOSEN], whole[Whole.MEMBERS], whole[Whole.TURN] = count, members, 0
+    driven.real[Real.CROWD_TOLERANCE] = 0.1 * WANTED_OVERLAP * least
+    for i in range(speed.shape[0]):
+        for d in range(2):
+            driven.ahead_speed[i, d] = speed[i, d]
+    before = _energy(driven, speed)
+    _collide_all(driven, before, place, speed)
+    account[Account.DISSIPATED_IMPACT] += before - _energy(driven, speed)
+    driven.real[Real.CROWD_LOSS] = before - _energy(driven, speed)
+    for i in range(speed.shape[0]):
+        for d in range(2):
+            driven.velocity[i, d] = speed[i, d]
+    whole[Whole.FRESH] = 0
+
+
+@compiled
+def _energy(driven, speed):
+    """Of the motion of the members of a crowd, J."""
+    energy = 0.0
+    for m in range(driven.whole[Whole.MEMBERS]):
+        i = driven.group.members[m]
+        if i < speed.shape[0]:
+            for d in range(2):
+                if driven.weight[i, d] > 0.0:
+                    energy += 0.5 * speed[i, d] * speed[i, d] / driven.weight[i, d]
+    return energy
+
+
+@compiled
+def _collide_all(driven, energy, place, speed):
+    """Poisson's law: e times the impulse of the plastic impact is added where two particles approach faster than two steps
+    of free fall make them, and would rise more than SETTLING_HEIGHT.
+    """
+    group, h, back = driven.group, driven.real[Real.CROWD_LENGTH], False
+    count = driven.whole[Whole.CHOSEN]
+    _load(driven, speed)
+    for c in range(count):
+        k = driven.touching[c]
+        i, j = driven.pairs[k, 0], driven.pairs[k, 1]
+        pull = max(driven.pull[i], driven.pull[j]) if j < speed.shape[0] else driven.pull[i]
+        slow = max(2.0 * h * pull, math.sqrt(2.0 * pull * SETTLING_HEIGHT * _size(driven, k)))
+        fast = _meets(driven, k, h) and driven.rate[k] < -slow
+        group.contacts[c, Contact.BIAS] = 0.0 if fast else driven.room[k] / h
+        group.contacts[c, Contact.IMPULSE] = 0.0
+        driven.slow[k] = 1.0 if fast else 0.0
+    separate_motion(driven.whole[Whole.MEMBERS], count, driven.real[Real.CROWD_TOLERANCE] / h, group)
+    _store(driven, speed)
+    for c in range(count):
+        k = driven.touching[c]
+        driven.impulses[k] = driven.slow[k] * group.contacts[c, Contact.IMPULSE]
+        more = driven.restitution[driven.pairs[k, 1]] * driven.impulses[k]
+        if more > 0.0:
+            push_apart(c, more, group)
+            back = True
+        group.contacts[c, Contact.IMPULSE] = 0.0
+    if not back:
+        return
+    separate_motion(driven.whole[Whole.MEMBERS], count, driven.real[Real.CROWD_TOLERANCE] / h, group)
+    bounced = 0.0
+    for m in range(driven.whole[Whole.MEMBERS]):
+        for d in range(2):
+            if group.mobility[m, d] > 0.0:
+                bounced += 0.5 * group.motion[m, d] * group.motion[m, d] / group.mobility[m, d]
+    if bounced <= energy * (1.0 + ROUND_OFF):
+        _store(driven, speed)
+        for c in range(count):
+            k = driven.touching[c]
+            driven.impulses[k] += driven.restitution[driven.pairs[k, 1]] * driven.impulses[k]
+
+
+@compiled
+def _load(driven, motion):
+    """The motion of the members of a crowd; obstacles have none."""
+    for m in range(driven.whole[Whole.MEMBERS]):
+        i = driven.group.members[m]
+        for d in range(2):
+            driven.group.motion[m, d] = motion[i, d] if i < motion.shape[0] else 0.0
+
+
+@compiled
+def _store(driven, motion):
+    for m in range(driven.whole[Whole.MEMBERS]):
+        i = driven.group.members[m]
+        if i < motion.shape[0]:
+            for d in range(2):
+                motion[i, d] = driven.group.motion[m, d]
+
+
+@compiled
+def try_crowd(driven, account):
+    """Take the step with the forces that are to be tried."""
+    clear_support(driven)
+    energy, n = 0.0, driven.support.shape[0]
+    for c in range(driven.whole[Whole.CHOSEN]):
+        k = driven.touching[c]
+        i, j = driven.pairs[k, 0], driven.pairs[k, 1]
+        energy += driven.pushes[k] * _size(driven, k)
+        for d in range(2):
+            push = 0.001 * driven.pushes[k] * driven.normal[k, d]
+            driven.support[i, d] -= push
+            if j < n:
+                driven.support[j, d] += push
+    account[Account.ENERGY_SCALE] = max(account[Account.ENERGY_SCALE], energy)
+    driven.whole[Whole.PUSHED] = 1
+    driven.whole[Whole.PHASE] = Phase.CROWD_TRIED
+    return Order.TAKE
+
+
+@compiled
+def judge_crowd(driven, control, account, place, speed):
+    """See whether no particle sinks into another, and none is pushed away from another; if not, choose the next forces."""
+    whole, real = driven.whole, driven.real
+    h = control[Control.TIME] - real[Real.START]
+    if h == 0.0 or whole[Whole.REASON] == StopReason.DIVERGED:
+        reason = whole[Whole.REASON]
+        _give_up(driven, control, account, place, speed)
+        whole[Whole.REASON] = reason
+        whole[Whole.PHASE], whole[Whole.NEED] = Phase.BETWEEN, Need.NOTHING
+        return Order.LEAVE
+    whole[Whole.TURN] += 1
+    overlap = WANTED_OVERLAP if whole[Whole.TURN] < MOST_FORCE_TRIES - 1 else DEEPEST_OVERLAP
+    if not _holds(driven, place, overlap) and whole[Whole.TURN] < MOST_FORCE_TRIES:
+        if real[Real.END] == math.inf:
+            real[Real.END] = control[Control.TIME]
+        _improve(driven, h, place)
+        take_back(driven, control, account, place, speed)
+        whole[Whole.PHASE] = Phase.CROWD_TRYING
+        return Order.GO_ON
+    _keep(driven, account, place)
+    whole[Whole.CROWDS] += 1
+    whole[Whole.PHASE] = Phase.BETWEEN
+    return Order.GO_ON
+
+
+@compiled
+def _give_up(driven, control, account, place, speed):
+    """Put back the state before the impacts."""
+    take_back(driven, control, account, place, speed)
+    account[Account.DISSIPATED_IMPACT] -= driven.real[Real.CROWD_LOSS]
+    for i in range(speed.shape[0]):
+        for d in range(2):
+            speed[i, d] = driven.ahead_speed[i, d]
+    driven.whole[Whole.FRESH] = 0
+
+
+@compiled
+def _closed(driven, k, place):
+    """The gap (m) along the line of centres at the start, after the particles moved."""
+    i, j = driven.pairs[k, 0], driven.pairs[k, 1]
+    apart = driven.room[k]
+    for d in range(2):
+        moved = driven.before[i, d] - place[i, d]
+        if j < place.shape[0]:
+            moved += place[j, d] - driven.before[j, d]
+        apart += driven.normal[k, d] * moved
+    return apart
+
+
+@compiled
+def _holds(driven, place, overlap):
+    for c in range(driven.whole[Whole.CHOSEN]):
+        k = driven.touching[c]
+        left = _closed(driven, k, place)
+        wrong = abs(left) if driven.pushes[k] > 0.0 else -left
+        if wrong > overlap * _size(driven, k):
+            return False
+    return True
+
+
+@compiled
+def _improve(driven, h, place):
+    """The next forces after some with which particles are here after h seconds."""
+    group, free, count = driven.group, 0.5 * h * h, driven.whole[Whole.CHOSEN]
+    for m in range(driven.whole[Whole.MEMBERS]):
+        i = group.members[m]
+        for d in range(2):
+            group.motion[m, d] = place[i, d] - driven.before[i, d] if i < place.shape[0] else 0.0
+    for c in range(count):
+        k = driven.touching[c]
+        push_apart(c, -free * driven.pushes[k], group)
+        group.contacts[c, Contact.BIAS] = driven.room[k]
+        group.contacts[c, Contact.IMPULSE] = free * driven.pushes[k]
+    separate_motion(driven.whole[Whole.MEMBERS], count, driven.real[Real.CROWD_TOLERANCE], group)
+    for c in range(count):
+        driven.pushes[driven.touching[c]] = group.contacts[c, Contact.IMPULSE] / free
+
+
+@compiled
+def _keep(driven, account, place):
+    """Enter what the forces did, report the impacts, and note which contacts persist."""
+    for k in range(driven.pairs.shape[0]):
+        driven.lasting[k] = 0
+    total = 0.0
+    for c in range(driven.whole[Whole.CHOSEN]):
+        k = driven.touching[c]
+        i, j, force = driven.pairs[k, 0], driven.pairs[k, 1], driven.pushes[k]
+        account[Account.WORK] += force * (_closed(driven, k, place) - driven.room[k])
+        gap, _, _ = gap_of(i, j, driven.position, place, driven.radius, driven.span)
+        persists = force > 0.0 or gap <= SETTLING_HEIGHT * _size(driven, k)
+        driven.lasting[k] = 1 if persists else 0
+        driven.forces[k] = force if persists else 0.0
+        total += driven.impulses[k]
+    driven.real[Real.LONGEST] = math.inf
+    for c in range(driven.whole[Whole.CHOSEN]):
+        k = driven.touching[c]
+        if driven.impulses[k] > 0.0:
+            _report(driven, k, total)
+
+
+@compiled
+def _report(driven, k, total):
+    """Report an impact at the start of the step, with a share of the energy lost by its impulse."""
+    report, row = driven.report, driven.whole[Whole.REPORTED]
+    i, j, impulse = driven.pairs[k, 0], driven.pairs[k, 1], driven.impulses[k]
+    report.pairs[row, 0], report.pairs[row, 1] = i, j
+    report.details[row, Detail.TIME], report.details[row, Detail.IMPULSE] = driven.real[Real.START], impulse
+    report.details[row, Detail.LOSS] = driven.real[Real.CROWD_LOSS] * impulse / total
+    for d in range(2):
+        centre = driven.position[i, d] + driven.before[i, d]
+        report.details[row, Detail.X + d] = centre + driven.normal[k, d] * driven.radius[i]
+    driven.whole[Whole.REPORTED] += 1

@@ -7,7 +7,7 @@ from systems.collision.driven.columns import Need, Real, Whole
 from systems.collision.driven.kernels.contacts import SETTLING_CONTACTS, SETTLING_HEIGHT
 from systems.collision.driven.kernels.groups import chain_groups, end_groups, root_of
 from systems.collision.driven.kernels.joint_impacts import resolve
-from systems.collision.driven.kernels.paths import TOUCHING_GAP, is_left_alone, opening
+from systems.collision.driven.kernels.paths import TOUCHING_GAP, is_left_alone, opening, touching_gap
 from systems.collision.kernels import compiled
 from systems.collision.kernels.pairs import gap_of
 from systems.collision.system import REST_HEIGHT
@@ -63,7 +63,7 @@ def resolve_touching(driven, control, account, place, speed):
     for k in range(driven.pairs.shape[0]):
         i, j = driven.pairs[k, 0], driven.pairs[k, 1]
         gap, nx, ny = gap_of(i, j, driven.position, place, driven.radius, driven.span)
-        touches = gap <= 4.0 * TOUCHING_GAP * (driven.radius[i] + driven.radius[j])
+        touches = gap <= 4.0 * touching_gap(driven, i, j, place)
         if not touches or (driven.lasting[k] == 0 and is_left_alone(driven, k)):
             continue
         driven.touching[count] = k

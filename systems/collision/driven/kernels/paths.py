@@ -239,8 +239,15 @@ def meeting(driven, after, later):
         late = gap / rate if rate < 0.0 else -math.inf
         if late > latest:
             latest = late
-            closed = abs(gap) <= TOUCHING_GAP * (driven.radius[i] + driven.radius[j])
+            closed = abs(gap) <= touching_gap(driven, i, j, after)
     return latest, closed
+
+
+@compiled
+def touching_gap(driven, i, j, place):
+    """The gap (m) below which a pair touches: more where places are so large that gaps are rounded by more."""
+    far = abs(driven.position[i, 0] + place[i, 0]) + abs(driven.position[i, 1] + place[i, 1])
+    return max(TOUCHING_GAP * (driven.radius[i] + driven.radius[j]), EPSILON * far)
 
 
 @compiled

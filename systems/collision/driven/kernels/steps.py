@@ -19,7 +19,7 @@ from systems.collision.driven.kernels.contacts import (
     keep_contacts,
     try_forces,
 )
-from systems.collision.driven.kernels.crowd import is_crowd
+from systems.collision.driven.kernels.crowd import begin_crowd, is_crowd, judge_crowd, try_crowd
 from systems.collision.driven.kernels.impacts import resolve_touching, set_rest_speeds
 from systems.collision.driven.kernels.paths import (
     DOUBTFUL,
@@ -53,6 +53,10 @@ def collide(driven, control, account, place, speed):
             order = _begin(driven, control, account, place, speed)
         elif phase == Phase.CLEAR:
             order = _check_clear(driven, control, account, place, speed)
+        elif phase == Phase.CROWD_TRYING:
+            order = try_crowd(driven, account)
+        elif phase == Phase.CROWD_TRIED:
+            order = judge_crowd(driven, control, account, place, speed)
         elif phase == Phase.TRYING:
             order = try_forces(driven, control, account, place, speed)
         elif phase == Phase.TRIED:
@@ -84,8 +88,9 @@ def _open(driven, control, place, speed):
     if whole[Whole.REASON] != StopReason.DONE or whole[Whole.TOTAL] - whole[Whole.FIRST] >= whole[Whole.WANTED]:
         return _leave(driven, Need.NOTHING, Phase.BETWEEN)
     need = is_crowd(driven, control, place, speed)
-    if need != Need.NOTHING:
+    if need == Need.LIST:
         return _leave(driven, need, Phase.BETWEEN)
+    whole[Whole.CROWD] = need == Need.CROWD
     whole[Whole.PHASE] = Phase.READY
     return Order.EVALUATE
 
@@ -95,7 +100,9 @@ def _begin(driven, control, account, place, speed):
     """Keep the state, and choose where the step is to end."""
     whole, real = driven.whole, driven.real
     start, size = control[Control.TIME], control[Control.STEP_SIZE]
-    whole[Whole.FORESEEN] = real[Real.PUSH] > 0.0 and real[Real.BREAK] > start + 2.0 * size
+    whole[Whole.FORESEEN] = (
+        real[Real.PUSH] > 0.0 and real[Real.BREAK] > start + 2.0 * size and not whole[Whole.CROWD]
+    )
     clears = driven.pairs.shape[0] == 0 and not whole[Whole.LANDING] and not whole[Whole.EXAMINE]
     if whole[Whole.FORESEEN] and not clears:
         span = foreseen_span(driven, size, place, speed)
@@ -129,6 +136,8 @@ def _begin(driven, control, account, place, speed):
         whole[Whole.EXAMINE] = 1
         return Order.GO_ON
     whole[Whole.EXAMINE] = 0
+    if whole[Whole.CROWD]:
+        return _begin_crowd(driven, control, account, place, speed)
     whole[Whole.KEEP] = whole[Whole.FORESEEN] == 0
     if not choose_contacts(driven, place):
         return _leave(driven, Need.ROOM, Phase.READY)
@@ -137,10 +146,35 @@ def _begin(driven, control, account, place, speed):
     real[Real.END] = real[Real.UNTIL] if whole[Whole.LANDING] else math.inf
     if whole[Whole.CHOSEN] > 0 and real[Real.LONGEST] < size:
         real[Real.END] = min(real[Real.END], start + real[Real.LONGEST])
-    if real[Real.END] < math.inf and real[Real.END] > real[Real.UNTIL]:
+    if real[Real.END] < math.inf:
+        fits = real[Real.END] <= real[Real.UNTIL]
+    else:  # a step that is not foreseen is found not to fit as it is taken
+        fits = not whole[Whole.FORESEEN] or (real[Real.UNTIL] - start) * (1.0 + 1e-12) >= size
+    if not fits:
         return _leave(driven, Need.NOTHING, Phase.BETWEEN)
     begin_search(driven)
     return _go_on(driven, Phase.TRYING)
+
+
+@compiled
+def _begin_crowd(driven, control, account, place, speed):
+    """Begin a step of a crowd, with its impacts, or leave where it would end after Real.UNTIL."""
+    whole, real = driven.whole, driven.real
+    start, h = control[Control.TIME], real[Real.CROWD_LENGTH]
+    if whole[Whole.REPORTED] + driven.pairs.shape[0] > driven.report.pairs.shape[0]:
+        return _leave(driven, Need.ROOM, Phase.BETWEEN)
+    end = min(start + h, real[Real.UNTIL]) if whole[Whole.LANDING] else start + h
+    if end > real[Real.UNTIL]:
+        return _leave(driven, Need.NOTHING, Phase.BETWEEN)
+    real[Real.END] = math.inf if h == control[Control.STEP_SIZE] and not whole[Whole.LANDING] else end
+    control[Control.STEP_SIZE] = min(control[Control.STEP_SIZE], real[Real.HELD_LIMIT])
+    driven.kept[Control.STEP_SIZE] = control[Control.STEP_SIZE]
+    begin_crowd(driven, account, place, speed)
+    for k in range(account.shape[0]):
+        driven.kept[control.shape[0] + k] = account[k]
+    whole[Whole.KEEP] = 1
+    whole[Whole.PHASE] = Phase.CROWD_TRYING
+    return Order.EVALUATE
 
 
 @compiled
@@ -226,13 +260,15 @@ def _press(driven, control, account, place, speed):
     """
     whole, real = driven.whole, driven.real
     later = driven.ahead_speed if whole[Whole.FORESEEN] else speed
+    if not _has_room(driven):
+        return _leave(driven, Need.ROOM, Phase.HELD)
     real[Real.LAST] = real[Real.NOW]
     set_rest_speeds(driven, real[Real.NOW] - real[Real.START], later, control[Control.STEP_SIZE])
     take_back(driven, control, account, place, speed)
     if resolve_touching(driven, control, account, place, speed):
         if whole[Whole.LANDING]:
             whole[Whole.REASON] = StopReason.EVENT
-        return _go_on(driven, Phase.BETWEEN)
+        return _end(driven)
     whole[Whole.GOAL] = Goal.PRESSED  # only round-off presses them together
     real[Real.END] = real[Real.LAST]
     begin_search(driven)
@@ -246,13 +282,25 @@ def _close(driven, control, account, place, speed):
     h = control[Control.TIME] - real[Real.START]
     if h == 0.0 or whole[Whole.REASON] == StopReason.DIVERGED:
         return _leave(driven, Need.NOTHING, Phase.BETWEEN)
-    if whole[Whole.REPORTED] + driven.pairs.shape[0] > driven.report.pairs.shape[0]:
+    if not _has_room(driven):
         return _leave(driven, Need.ROOM, Phase.OVER)
     keep_contacts(driven, h, control, account, place, speed)
     set_rest_speeds(driven, h, speed, control[Control.STEP_SIZE])
     resolve_touching(driven, control, account, place, speed)
     if whole[Whole.LANDING] and whole[Whole.MET]:
         whole[Whole.REASON] = StopReason.EVENT
-    if whole[Whole.NEED] == Need.WAKE:
+    return _end(driven)
+
+
+@compiled
+def _has_room(driven):
+    """True if there is room to report an impact of every pair."""
+    return driven.whole[Whole.REPORTED] + driven.pairs.shape[0] <= driven.report.pairs.shape[0]
+
+
+@compiled
+def _end(driven):
+    """Go on after impacts, in Python if something struck what is asleep."""
+    if driven.whole[Whole.NEED] == Need.WAKE:
         return _leave(driven, Need.WAKE, Phase.BETWEEN)
     return _go_on(driven, Phase.BETWEEN)
