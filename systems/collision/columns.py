@@ -23,7 +23,7 @@ SHARED_START, SHARED_END = 1.0, 2.0  # flags of Disc.SHARED
 OVERLAP = 1e-9  # of the reach of two nodes; a larger overlap at the start of a step is older than the run
 
 
-# Steps of crowds, and the last two also of piles
+# Steps of crowds; SHORTEST_SHARE also of piles
 STEP_SHARE = 0.04  # longest step, as a share of the time in which a disc falls through its diameter
 SHORTEST_SHARE = 1.0 / 16.0  # shortest step, where discs are fast, as a share of the longest
 # Relative travel of two discs in a longer step than the shortest, at most, in radii of the smaller.

@@ -44,7 +44,7 @@ from systems.collision.kernels.time_of_impact import INFINITY, displacement_at, 
 
 TOLERANCE = 1e-8  # of the smallest radius: depth by which discs may sink into others in a step
 SMALL_PILE = 50  # contacts; with more of them, these are enough:
-DEPTH = 8e-4  # of the smallest radius
+DEPTH = 9.5e-4  # of the smallest radius
 ROUGHNESS = 0.05  # of the fastest travel in the step
 NEARBY = 0.2  # of the radius of the smaller of two discs: gap below which they move on straight lines
 CALM_TRAVEL = 0.004  # of the smallest radius, in a step: a disc that travels less is calm

@@ -11,7 +11,6 @@ import math
 from systems.collision.columns import (
     NONE,
     SHORTEST_SHARE,
-    TRAVEL,
     Count,
     Disc,
     Entry,
@@ -31,9 +30,10 @@ from systems.collision.kernels.persistent_contact import (
 )
 from systems.collision.kernels.time_of_impact import nearest, smaller_radius
 
+TRAVEL = 0.45  # of two discs relative to one another in a longer step than the shortest: radii of the smaller
 # Shift that impacts may pass on to a disc in a step, as a share of the travel of the fastest disc, or of a radius.
-PASSED_ON = 0.4
-STEPS_AHEAD, ROOM_AHEAD = 4.0, 0.35  # steps, and radii, that discs may travel until pairs are listed anew
+PASSED_ON = 0.7
+STEPS_AHEAD, ROOM_AHEAD = 4.0, 0.5  # steps, and radii, that discs may travel until pairs are listed anew
 
 
 @compiled

@@ -16,6 +16,7 @@ FEW = 0.02  # of the contacts left to correct, at which sweeps end
 MOST_REST = 10  # times that each contact is then looked at, on average
 MOST_RELAXED = 40000  # contacts up to which the sweeps over few are more
 ENERGY_ROUND_OFF = 1e-9  # of the energy of motion
+ALL_AGAIN = 8  # turns, after which sweeps go over idle contacts too
 SIDE_BY_SIDE = 4  # contacts next to each other in the order of sweeps are far apart: computed at once
 
 
@@ -81,6 +82,12 @@ def _make_contact(c, k, h, discs, pile, numbers):
     for d in range(2):
         motion[Motion.SPEED, 2 * i + d] += contacts[c, PileContact.AX + d] * contacts[c, PileContact.IMPULSE]
         motion[Motion.SPEED, 2 * j + d] += contacts[c, PileContact.BX + d] * contacts[c, PileContact.IMPULSE]
+    if is_held(j, discs):  # the part of the disc that moves comes second, see _relax
+        for d in range(2):
+            contacts[c, PileContact.BX + d], contacts[c, PileContact.AX + d] = (
+                contacts[c, PileContact.AX + d],
+                0.0,
+            )
 
 
 @compiled
@@ -97,15 +104,17 @@ def find_impulses(active, tolerance, pile):
     Sweeps to and fro, accelerated by conjugate directions: Silcowitz, Niebe, Erleben, "A nonsmooth nonlinear
     conjugate gradient method for interactive contact force problems", Vis. Comput. 26 (2010). Each sweep goes once
     through memory: the acceleration of an impulse is added when its contact is relaxed. Once few contacts are left to
-    correct, these are relaxed one by one, with those that they upset.
+    correct, these are relaxed one by one, with those that they upset. Most sweeps leave out contacts that do not push.
     """
-    size, share, keep, few = 0.0, 0.0, 0.0, FEW * active
+    size, share, keep, few, busy = 0.0, 0.0, 0.0, FEW * active, active
     for turn in range(max(MOST_PILE_SWEEPS, MOST_RELAXED // max(active, 1))):
+        if turn % ALL_AGAIN == 0:
+            busy = active
         _accelerate(share, keep, pile)
-        for c in range(active):
+        for c in range(busy):
             _relax_forward(c, share, keep, pile)
         previous, size, rough = size, 0.0, 0
-        for c in range(active - 1, -1, -1):
+        for c in range(busy - 1, -1, -1):
             before = pile.contacts[c, PileContact.IMPULSE]
             impulse = _relax(c, before, pile)
             change = impulse - pile.contacts[c, PileContact.PREVIOUS]
@@ -113,10 +122,37 @@ def find_impulses(active, tolerance, pile):
             rough += abs(impulse - before) * pile.scale[c] > tolerance
         share = size / previous if turn > 0 and size <= previous else 0.0
         keep = 1.0 if turn == 0 or share > 0.0 else 0.0
+        if turn % ALL_AGAIN == 0:
+            busy = _put_idle_last(active, pile)
         if rough <= few:
             if _relax_rest(active, tolerance, pile):
                 return
-            share, keep, few = 0.0, 0.0, 0.25 * few
+            share, keep, few, busy = 0.0, 0.0, 0.25 * few, active
+
+
+@compiled
+def _put_idle_last(active, pile):
+    """Put contacts last that have not pushed of late; returns the number of the others, which keep their order."""
+    contacts, busy = pile.contacts, 0
+    for c in range(active):
+        impulse, previous = contacts[c, PileContact.IMPULSE], contacts[c, PileContact.PREVIOUS]
+        if impulse > 0.0 or previous != 0.0 or contacts[c, PileContact.DIRECTION] != 0.0:
+            if busy < c:
+                _exchange(busy, c, pile)
+            busy += 1
+    return busy
+
+
+@compiled
+def _exchange(b, c, pile):
+    """Let two contacts change places."""
+    contacts, scale, order, ends = pile.contacts, pile.scale, pile.order, pile.ends
+    for k in range(contacts.shape[1]):
+        contacts[b, k], contacts[c, k] = contacts[c, k], contacts[b, k]
+    scale[b], scale[c] = scale[c], scale[b]
+    order[b], order[c] = order[c], order[b]
+    for end in range(2):
+        ends[b, end], ends[c, end] = ends[c, end], ends[b, end]
 
 
 @compiled
@@ -206,15 +242,21 @@ def opening(c, pile):
 
 @compiled
 def _relax(c, before, pile):
-    """Change the impulse of a contact so that it neither closes nor pulls; returns the impulse."""
+    """Change the impulse of a contact so that it neither closes nor pulls; returns the impulse.
+
+    Where one disc is held, both ends are the other: what the second writes then counts.
+    """
     contacts, speed = pile.contacts, pile.motion[Motion.SPEED]
-    impulse = max(before - opening(c, pile), 0.0)
+    a, b = 2 * pile.ends[c, 0], 2 * pile.ends[c, 1]
+    ax, ay = contacts[c, PileContact.AX], contacts[c, PileContact.AY]
+    bx, by = contacts[c, PileContact.BX], contacts[c, PileContact.BY]
+    ux, uy, vx, vy = speed[a], speed[a + 1], speed[b], speed[b + 1]
+    rate = ((ax * ux + ay * uy) + (bx * vx + by * vy)) + contacts[c, PileContact.BIAS]
+    impulse = max(before - rate, 0.0)
+    change = impulse - before
     contacts[c, PileContact.IMPULSE] = impulse
-    change, a, b = impulse - before, pile.ends[c, 0], pile.ends[c, 1]
-    speed[2 * a] += contacts[c, PileContact.AX] * change
-    speed[2 * a + 1] += contacts[c, PileContact.AY] * change
-    speed[2 * b] += contacts[c, PileContact.BX] * change
-    speed[2 * b + 1] += contacts[c, PileContact.BY] * change
+    speed[a], speed[a + 1] = ux + ax * change, uy + ay * change
+    speed[b], speed[b + 1] = vx + bx * change, vy + by * change
     return impulse
 
 
