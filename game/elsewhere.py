@@ -91,7 +91,7 @@ class Elsewhere:
                 if self._can_load and module.is_compiled() and module.load_kept():
                     return
                 if not self.is_ready(module):
-                    module.rewritten  # noqa: B018 (it is kept)
+                    module.rewrite_all()
                     return
             except Exception as error:  # such as a compiler that is damaged
                 self._can_load = False
