@@ -55,7 +55,8 @@ class NeighbourList:
         self._joined = np.append(joined, -1)  # the sentinel equals no pair that is looked up
         self._moves: NDArray[np.bool_] = self.everywhere(np.any(particles.mobility > 0.0, axis=1))
         self._least: Floats = LISTED_AROUND * particles.radius
-        self.driven = Driven.empty(self._of_document(), self.count, 0, CONTACTS)
+        self._document = self._of_document()
+        self.driven = Driven.empty(self._document, self.count, 0, CONTACTS)
         self.driven.margin[:] = -1.0  # no pair is listed yet
         whole, real = self.driven.whole, self.driven.real
         whole[Whole.BOUNCY] = (self.driven.restitution < 1.0).any()
@@ -134,7 +135,7 @@ class NeighbourList:
     def _put(self, pairs: Rows) -> None:
         """Put pairs in place of those listed; what lasts in those that stay goes on."""
         old = self.driven
-        new = Driven.empty(self._kept(), self.count, len(pairs), 0)
+        new = Driven.empty(self._document, self.count, len(pairs), 0)
         new.pairs[:] = pairs
         lasting = np.flatnonzero(old.lasting)
         rows = np.searchsorted(self._keys(pairs), self._keys(old.pairs[lasting]))
@@ -148,36 +149,17 @@ class NeighbourList:
         self.driven = old._replace(near=near, **{name: getattr(new, name) for name in of_pairs})
         self.driven.support[:] = 0.0
         self.driven.whole[Whole.PUSHED] = 1
-        number = int(old.whole[Whole.CHOSEN])
-        chosen = np.searchsorted(self._keys(pairs), self._keys(old.pairs[old.chosen[:number]]))
-        self.driven.chosen[:number] = chosen
-
-    def _kept(self) -> dict[str, Any]:
-        names = (
-            "position",
-            "span",
-            "weight",
-            "radius",
-            "size",
-            "restitution",
-            "node",
-            "loose",
-            "asleep",
-            "pull",
-        )
-        return {name: getattr(self.driven, name) for name in names}
+        if old.whole[Whole.PHASE] == Phase.HELD:  # else they are chosen anew before they are used
+            chosen = self.driven.chosen[: old.whole[Whole.CHOSEN]]
+            chosen[:] = np.searchsorted(self._keys(pairs), self._keys(old.pairs[chosen]))
 
     def make_room(self) -> None:
         """Make room for twice as many persistent contacts, if there are more than before."""
         if self.driven.lasting.sum() <= len(self.driven.chosen):
             return
-        new = Driven.empty(self._kept(), self.count, len(self.pairs), 2 * len(self.driven.chosen))
+        new = Driven.empty(self._document, self.count, 0, 2 * len(self.driven.chosen))
         of_contacts = ("chosen", "search", "start", "end", "slope", "learnt", "matrix", "block", "sides")
-        room = {name: getattr(new, name) for name in of_contacts}
-        for name in ("chosen", "search", "start"):
-            there = getattr(self.driven, name)
-            room[name][tuple(slice(n) for n in there.shape)] = there
-        self.driven = self.driven._replace(**room)
+        self.driven = self.driven._replace(**{name: getattr(new, name) for name in of_contacts})
 
     # --- persistent contacts ----------------------------------------------------------------------------
 

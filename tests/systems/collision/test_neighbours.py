@@ -10,6 +10,7 @@ import pytest
 from game import Session
 from systems.broad_phase import ALL_PAIRS_DISCS, near_pairs
 from systems.collision.driven import neighbours
+from systems.collision.driven.columns import Whole
 from systems.collision.driven.neighbours import NeighbourList
 from tests.benchmarks.models import lattice
 from tests.systems.collision.test_driven_collisions import truss
@@ -51,6 +52,19 @@ def test_all_pairs_within_reach_are_found_once_and_in_order(sizes: tuple[float, 
 
 def test_no_discs_are_near_no_discs() -> None:
     assert near_pairs(np.zeros((0, 2)), np.zeros(0)).shape == (0, 2)
+
+
+def test_a_list_forgets_contacts_that_were_chosen_for_a_step_long_over() -> None:
+    session = Session.open(truss({"position": [1.0, 0.6]}))
+    near = NeighbourList(session.model)
+    near.look_up()
+    near.list_within(1.0)
+    near.driven.whole[Whole.CHOSEN] = 1
+    near.driven.chosen[0] = len(near.pairs) - 1
+    session.particles["ball"].displacement = (50.0, 0.0)
+    for _ in range(2):
+        near.list_within(1e-3)
+    assert near.driven.pairs.shape == near.pairs.shape
 
 
 # --- steps in which nothing can meet ---------------------------------------------------------------------------
