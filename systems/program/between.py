@@ -31,5 +31,6 @@ class Between:
         if compiled:
             from systems.machine_code import addressed
 
-            return addressed(self.module.load().collide)
+            form = self.module.form if self.module.is_loaded else self.module.load()
+            return addressed(form.collide)
         return in_lists(self.kernel)

@@ -135,7 +135,8 @@ def judge_forces(driven, control, account, place, speed):
         return Order.GO_ON  # contact forces that were tried are not to blame
     after = driven.ahead if whole[Whole.FORESEEN] else place
     if not lost and (_measure(driven, after) or whole[Whole.CUTS] == MOST_STEP_CUTS):
-        _lengthen(driven, h, control)
+        if h > 0.5 * real[Real.CUT]:  # the next step may be longer than one that was cut
+            real[Real.CUT] *= 2.0
         return Order.GO_ON
     if not whole[Whole.FORESEEN] and not lost:
         real[Real.END] = real[Real.NOW]
@@ -149,16 +150,6 @@ def judge_forces(driven, control, account, place, speed):
         begin_search(driven)
     whole[Whole.PHASE] = Phase.TRYING
     return Order.GO_ON
-
-
-@compiled
-def _lengthen(driven, h, control):
-    """Let the next step be longer than one that was cut."""
-    real = driven.real
-    longest = real[Real.CUT]
-    if h > 0.5 * longest:
-        longest *= 2.0
-    real[Real.CUT] = longest
 
 
 @compiled

@@ -9,9 +9,10 @@ work; and no impact supplies energy.
 import math
 
 from systems.base import StopReason
-from systems.collision.columns import NONE, SHORTEST_SHARE, TRAVEL, Contact, Detail
+from systems.collision.columns import NONE, SHORTEST_SHARE, TRAVEL, Contact
 from systems.collision.driven.columns import Need, Order, Phase, Real, Whole
 from systems.collision.driven.kernels.contacts import SETTLING_HEIGHT, clear_support
+from systems.collision.driven.kernels.impacts import report_impact
 from systems.collision.driven.kernels.joint_impacts import separate_motion
 from systems.collision.driven.kernels.paths import opening, take_back
 from systems.collision.kernels import compiled
@@ -316,18 +317,5 @@ def _keep(driven, account, place):
     for c in range(driven.whole[Whole.CHOSEN]):
         k = driven.touching[c]
         if driven.impulses[k] > 0.0:
-            _report(driven, k, total)
-
-
-@compiled
-def _report(driven, k, total):
-    """Report an impact at the start of the step, with a share of the energy lost by its impulse."""
-    report, row = driven.report, driven.whole[Whole.REPORTED]
-    i, j, impulse = driven.pairs[k, 0], driven.pairs[k, 1], driven.impulses[k]
-    report.pairs[row, 0], report.pairs[row, 1] = i, j
-    report.details[row, Detail.TIME], report.details[row, Detail.IMPULSE] = driven.real[Real.START], impulse
-    report.details[row, Detail.LOSS] = driven.real[Real.CROWD_LOSS] * impulse / total
-    for d in range(2):
-        centre = driven.position[i, d] + driven.before[i, d]
-        report.details[row, Detail.X + d] = centre + driven.normal[k, d] * driven.radius[i]
-    driven.whole[Whole.REPORTED] += 1
+            loss = driven.real[Real.CROWD_LOSS] * driven.impulses[k] / total
+            report_impact(driven, k, driven.real[Real.START], driven.impulses[k], loss, driven.before)

@@ -147,7 +147,6 @@ def _member(driven, i, members, speed):
 @compiled
 def _report(driven, first, loss, total, control, place):
     """Report the impacts of a group, each with a share of the energy lost by its impulse."""
-    report, whole = driven.report, driven.whole
     c, t = 0, first
     while t != NONE:
         impulse, k = driven.group.contacts[c, Contact.TOTAL_IMPULSE], driven.touching[t]
@@ -155,14 +154,19 @@ def _report(driven, first, loss, total, control, place):
         t = driven.chain[t]
         if impulse <= 0.0:
             continue
-        i, j, row = driven.pairs[k, 0], driven.pairs[k, 1], whole[Whole.REPORTED]
-        report.pairs[row, 0], report.pairs[row, 1] = i, j
-        details = report.details
-        details[row, Detail.TIME], details[row, Detail.IMPULSE] = control[Control.TIME], impulse
-        details[row, Detail.LOSS] = loss * impulse / total
-        details[row, Detail.X] = driven.position[i, 0] + place[i, 0] + driven.normal[k, 0] * driven.radius[i]
-        details[row, Detail.Y] = driven.position[i, 1] + place[i, 1] + driven.normal[k, 1] * driven.radius[i]
-        whole[Whole.REPORTED] += 1
+        report_impact(driven, k, control[Control.TIME], impulse, loss * impulse / total, place)
+
+
+@compiled
+def report_impact(driven, k, time, impulse, loss, place):
+    """Report the impact of a pair at a time (s) and these displacements, with its impulse (N·s) and energy lost (J)."""
+    details, row = driven.report.details, driven.whole[Whole.REPORTED]
+    i = driven.pairs[k, 0]
+    driven.report.pairs[row, 0], driven.report.pairs[row, 1] = i, driven.pairs[k, 1]
+    details[row, Detail.TIME], details[row, Detail.IMPULSE], details[row, Detail.LOSS] = time, impulse, loss
+    details[row, Detail.X] = driven.position[i, 0] + place[i, 0] + driven.normal[k, 0] * driven.radius[i]
+    details[row, Detail.Y] = driven.position[i, 1] + place[i, 1] + driven.normal[k, 1] * driven.radius[i]
+    driven.whole[Whole.REPORTED] += 1
 
 
 @compiled
