@@ -139,13 +139,13 @@ class _Writer:
         return marks
 
     def _frame(self, place: Place, selected: bool, hovered: bool) -> list[Mark]:
-        """The white box, red when selected."""
+        """The white box; when selected, with the frame of the accent."""
         theme, u, radius = self.theme, self.unit, 4.0 * self.unit
         box = _grown(place, 0.0, radius, theme.box)
         if selected:
-            tint = _grown(place, 0.0, radius, faded(theme.selected, 0.14))
-            return [_grown(place, 2.5 * u, radius + 2.0 * u, theme.selected), box, tint]
-        return [_grown(place, 2.0 * u, radius + 1.5 * u, theme.hover), box] if hovered else [box]
+            tint = _grown(place, 0.0, radius, faded(theme.accent, 0.14))
+            return [_grown(place, 2.5 * u, radius + 2.0 * u, theme.accent), box, tint]
+        return [_grown(place, 2.0 * u, radius + 1.5 * u, theme.form_muted), box] if hovered else [box]
 
     def _contents(self, place: Place, box: Box) -> list[Mark]:
         """Text, caret or mark, and the note at the right while nothing was typed."""
@@ -159,7 +159,7 @@ class _Writer:
             before = text_width(box.text[start : box.caret], size)
             x, w = (left, width) if box.marked and box.text else (left + before, max(1.5 * u, 1.0))
             mark = Rectangle(round(x), place.top + 5.0 * u, max(round(w), 1), place.height - 10.0 * u)
-            colour = faded(theme.selected, 0.3) if box.marked and box.text else theme.box_text
+            colour = faded(theme.accent, 0.3) if box.marked and box.text else theme.box_text
             marks.append(_grown(mark, 0.0, 1.0 * u, colour))
         marks.append(Text(visible, left, middle, size, theme.box_text))
         note_size = self.font(11.0)
@@ -178,7 +178,7 @@ class _Writer:
         radius = 6.0 * u
         marks: list[Mark] = []
         if tile is self.chosen or tile is self.hovered:
-            colour = theme.selected if tile is self.chosen else theme.hover
+            colour = theme.accent if tile is self.chosen else theme.form_muted
             marks.append(_grown(card, 3.0 * u, radius + 2.0 * u, colour))
         marks.append(_grown(card, 0.0, radius, theme.background)._replace(outline=theme.line))
         if tile.picture is not None:
