@@ -112,13 +112,12 @@ def _at_rims(
     """Arrows from the rims of particles outwards, or (pushes) ending there."""
     reach = (sheet.radii[rows] + GAP * sheet.unit)[:, None] * along
     back = -reach - length[:, None] * along
-    return arrows(
-        sheet, sheet.centres[rows] + np.where(np.reshape(pushes, (-1, 1)), back, reach), along, length, colour
-    )
+    tail = sheet.centres[rows] + np.where(np.reshape(pushes, (-1, 1)), back, reach)
+    return arrows(sheet, rows, tail, along, length, colour)
 
 
-def arrows(sheet: Sheet, tail: Points, along: Points, length: Values, colour: Colour) -> list[Mark]:
-    """Arrows from `tail` (n, 2) along unit vectors (n, 2), of so many pixels (n,)."""
+def arrows(sheet: Sheet, rows: Rows, tail: Points, along: Points, length: Values, colour: Colour) -> list[Mark]:
+    """Arrows of particles from `tail` (n, 2) along unit vectors (n, 2), of so many pixels (n,)."""
     u = sheet.unit
     tip, across = tail + length[:, None] * along, along[:, ::-1] * [-1.0, 1.0]
     head = np.minimum(HEAD * u, _SHORT_HEAD * length)[:, None]
@@ -127,7 +126,6 @@ def arrows(sheet: Sheet, tail: Points, along: Points, length: Values, colour: Co
     _, _, seen = clip_segments(tail, tip, low - HEAD * u, high + HEAD * u)  # rims may be beyond all pixels
     tail, tip, across, neck, head = tail[seen], tip[seen], across[seen], neck[seen], head[seen]
     sheet.occupancy.line(tail, tip, STRONG)
-    return [
-        Strokes(tail, neck, 2.0 * u, colour),
-        Fills(np.stack([tip, neck + 0.5 * head * across, neck - 0.5 * head * across], axis=1), colour),
-    ]
+    points = np.stack([tip, neck + 0.5 * head * across, neck - 0.5 * head * across], axis=1)
+    of = ("particles", rows[seen])
+    return [Strokes(tail, neck, 2.0 * u, colour, of), Fills(points, colour, of)]

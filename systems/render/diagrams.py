@@ -15,7 +15,7 @@ from components.tags import DiagramShown, Selected
 from components.view import View
 from systems.render.arrows import FORCES, arrows, full_load, lengths
 from systems.render.labels import FAINT, Key, Label, half_size
-from systems.render.marks import Bars, Points, Strokes
+from systems.render.marks import Bars, Owner, Points, Strokes
 from systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
 from systems.render.supports import NO_SUPPORT, crowding
 from systems.render.symbols import SUPPORT_DEPTH
@@ -93,7 +93,7 @@ def draw_rod_diagrams(sheet: Sheet) -> None:
     nothing = ~(pulled | pushed | sheet.model.rods.tension_only[rows])  # a slack cable stays dashed
     for name, mask in (("tension", pulled), ("compression", pushed), ("zero", nothing)):
         if mask.any():
-            _draw_rectangles(sheet, name, start[mask], end[mask], rise[mask])
+            _draw_rectangles(sheet, name, rows[mask], start[mask], end[mask], rise[mask])
     _label_rods(sheet, rows, values, (start + end) / 2, normal, height)
 
 
@@ -141,16 +141,18 @@ def _outward_normals(sheet: Sheet, rows: Rows, start: Points, end: Points) -> Po
     return np.stack([along_y * scale, -along_x * scale], axis=1)
 
 
-def _draw_rectangles(sheet: Sheet, name: str, start: Points, end: Points, rise: Points) -> None:
+def _draw_rectangles(sheet: Sheet, name: str, rows: Rows, start: Points, end: Points, rise: Points) -> None:
     colour: Colour = getattr(sheet.theme, name)
     outlined = typical_length(sheet.start, sheet.end) > 16.0 * sheet.unit
-    bars = Bars(start, end, rise, faded(colour, 0.16 if outlined else 0.5))
+    bars = Bars(start, end, rise, faded(colour, 0.16 if outlined else 0.5), ("rods", rows))
     sheet.marks.append(bars)
     if outlined:
         corners = bars.corners
         first, last = corners[:, :-1].reshape(-1, 2), corners[:, 1:].reshape(-1, 2)
         sheet.occupancy.line(first, last, FAINT)
-        sheet.marks.append(Strokes(first, last, 1.25 * sheet.unit, faded(colour, 0.9)))
+        sheet.marks.append(
+            Strokes(first, last, 1.25 * sheet.unit, faded(colour, 0.9), ("rods", np.repeat(rows, 3)))
+        )
     if name != "zero":
         sheet.legend.append(name)
 
@@ -177,7 +179,8 @@ def _label_rods(
     signs = ("zero" if abs(n) <= SMALLEST_FORCE else "tension" if n > 0.0 else "compression" for n in numbers)
     colours = [getattr(sheet.theme, sign) for sign in signs]
     keys = [(_ROD_VALUE, row) for row in rows[shown].tolist()]
-    values_of = zip(texts, places, colours, (-worth[shown]).tolist(), keys, strict=True)
+    of = [("rods", row) for row in rows[shown].tolist()]
+    values_of = zip(texts, places, colours, (-worth[shown]).tolist(), keys, of, strict=True)
     _add_values(sheet, values_of, size, "spare" if few else "cover")
 
 
@@ -211,15 +214,15 @@ def _value_texts(sheet: Sheet, numbers: Iterable[str], few: bool) -> tuple[list[
 
 def _add_values(
     sheet: Sheet,
-    values: Iterable[tuple[str, Points, Colour, float, Key]],
+    values: Iterable[tuple[str, Points, Colour, float, Key, Owner]],
     size: int,
     lines: Literal["spare", "cover"],
 ) -> None:
-    """Labels of values: text, places, colour, rank and key of each."""
+    """Labels of values: text, places, colour, rank, key and owner of each."""
     backing = faded(sheet.theme.background, _BACKING)
     sheet.labels += [
-        Label(text, places, size, colour, rank, "semibold", backing, lines, key)
-        for text, places, colour, rank, key in values
+        Label(text, places, size, colour, rank, "semibold", backing, lines, key, of)
+        for text, places, colour, rank, key, of in values
     ]
 
 
@@ -287,7 +290,7 @@ def _draw_forces(
     taken[rows, axis] = outer
     along = DIRECTIONS[direction]
     middle = tail + along * length[:, None] / 2
-    sheet.marks += arrows(sheet, tail, along, length, getattr(sheet.theme, name))
+    sheet.marks += arrows(sheet, rows, tail, along, length, getattr(sheet.theme, name))
     sheet.occupancy.block_squares(middle, 0.2 * length)
     _label_arrows(sheet, name, 2 * rows + axis, value, middle, length, outer)
 
@@ -360,7 +363,8 @@ def _label_arrows(
     # Arrows are few and say little without their value: before the rods.
     ranks, keys = (-worth[shown] - 1e9).tolist(), [(field, number) for number in which[shown].tolist()]
     colours = [getattr(sheet.theme, name)] * len(texts)
-    _add_values(sheet, zip(texts, places, colours, ranks, keys, strict=True), font, "spare")
+    of = [("particles", row) for row in (which[shown] // 2).tolist()]
+    _add_values(sheet, zip(texts, places, colours, ranks, keys, of, strict=True), font, "spare")
 
 
 def _places_by_arrows(

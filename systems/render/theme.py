@@ -21,16 +21,13 @@ class Theme:
     ink, hollow: rods, rims and supports; the inside of particles and supports.
     ghost, grid: the undeformed structure; lines to draw along.
     selected, hover: halos of what a person selected, and of what a click would hit; neutral, so that they hide no force.
-    accent: the box that is typed into, and what is pressed, of panels and bars; not used among elements.
     sketch: what is about to be drawn; mechanisms and modes.
     tension, compression, zero, yielding: rods by their axial force.
     load, reaction: what acts on particles, and what their supports answer.
     curve_1, …: curves of plots, in their order.
     problem, problem_panel: why something stopped, and what it is written on.
     running, resting, halted: the state's dot in the status bar.
-    form, form_raised: behind the boxes of properties, save and load; what stands out of it.
-    form_text, form_muted, form_problem: what is written there.
-    box, box_text, box_muted: a box to type into; its contents; what is said in it in passing.
+    focus: the box that is typed into, the tile that Return opens, and buttons that are pressed; not used among elements.
     """
 
     title: str
@@ -45,7 +42,6 @@ class Theme:
     grid: Colour
     selected: Colour
     hover: Colour
-    accent: Colour
     sketch: Colour
     tension: Colour
     compression: Colour
@@ -62,14 +58,7 @@ class Theme:
     running: Colour
     resting: Colour
     halted: Colour
-    form: Colour
-    form_raised: Colour
-    form_text: Colour
-    form_muted: Colour
-    form_problem: Colour
-    box: Colour
-    box_text: Colour
-    box_muted: Colour
+    focus: Colour
 
 
 def theme_names() -> list[str]:

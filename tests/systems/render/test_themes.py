@@ -81,7 +81,7 @@ def test_colour_blind_themes_tell_meanings_apart(name: str, vision: str) -> None
 def test_red_and_blue_mean_forces_and_nothing_else(name: str) -> None:
     """Every other colour among elements, plots and messages keeps away from both; halos are neutral."""
     theme = load_theme(name)
-    others = ("ink", "selected", "hover", "sketch", "load", "reaction", "problem", "form_problem", *CURVES)
+    others = ("ink", "selected", "hover", "sketch", "load", "reaction", "problem", *CURVES)
     for meaning in ("tension", "compression"):
         for other in others:
             apart = np.linalg.norm(
