@@ -152,7 +152,9 @@ class _Writer:
         above, below = place.top - 9.0 * u, place.bottom + 9.0 * u
         marks = [*self._frame(place, box is self.selected, box is self.hovered), *self._contents(place, box)]
         if above > self.layout.header:
-            unit = "" if self._has_room_for_unit(place, box) else box.unit
+            unit = box.unit
+            if self._has_room_for_unit(place, box):
+                unit = "" if box.changed or self._has_room_for_note(place, box) else box.note
             title = shortened(box.title, place.width - text_width(unit, size) - 8.0 * u, size)
             marks.append(Text(title, place.left, above, size, theme.muted))
             if unit:
@@ -187,11 +189,9 @@ class _Writer:
             colour = faded(theme.focus, 0.3) if box.marked and text else theme.text
             marks.append(_grown(mark, 0.0, 1.0 * u, colour))
         marks.append(Text(visible, left, middle, size, theme.text))
-        taken: float = width
         if self._has_room_for_unit(place, box):
             marks.append(Text(box.unit, left + width + _GAP * u, middle, small, theme.muted))
-            taken += _GAP * u + text_width(box.unit, small)
-        if box.note and not box.changed and taken + text_width(box.note, small) + 10.0 * u <= room:
+        if box.note and not box.changed and self._has_room_for_note(place, box):
             x, anchor = (left + room, "right") if text else (left + 2.0 * u, "left")
             marks.append(Text(box.note, x, middle, small, theme.muted, anchor=anchor))
         if box.accepts == WORD:
@@ -206,8 +206,17 @@ class _Writer:
         """True if the unit stands behind the number, not above the box."""
         if not box.text or not box.unit or box.text in (box.words or ()):
             return False
-        taken = text_width(written(box), self.font(_TEXT)) + text_width(box.unit, self.font(_SMALL))
-        return taken + (_GAP + 2.0) * self.unit <= self._room(place, box)
+        return self._taken(box, box.unit) <= self._room(place, box)
+
+    def _has_room_for_note(self, place: Place, box: Box) -> bool:
+        """True if the note stands in the box, behind the number and its unit."""
+        unit = box.unit if self._has_room_for_unit(place, box) else ""
+        return self._taken(box, unit, box.note) + 6.0 * self.unit <= self._room(place, box)
+
+    def _taken(self, box: Box, *behind: str) -> float:
+        """Pixels that the text of a box takes with what stands behind it."""
+        small = sum(text_width(text, self.font(_SMALL)) + (_GAP + 2.0) * self.unit for text in behind if text)
+        return text_width(written(box), self.font(_TEXT)) + small
 
     def _tile(self, place: Place, tile: Tile) -> list[Mark]:
         """A picture of the model, its title and its caption."""
