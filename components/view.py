@@ -21,7 +21,10 @@ COMFORTABLE_HEIGHT, LEAST_HEIGHT = 480.0, 240.0  # points that are left in a win
 BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
 COLUMN, COLUMN_SHARE, WIDEST_COLUMN = 306.0, 0.34, 340.0  # points, share of the canvas: the column of panels
-SIDE, LEAST_MODEL = 332.0, 240.0  # points: boxes to type into; what the model keeps beside them, or they take all
+SIDE, LEAST_MODEL = (
+    332.0,
+    240.0,
+)  # points: boxes to type into; what the model keeps beside them, or they take all
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
 
 
@@ -125,7 +128,7 @@ class Shape:
 class View:
     """How one model is shown in one viewport.
 
-    heading: the word top left in red ("Pause"), or "". all_diagrams: force diagrams of all elements.
+    heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements.
     legend: show the meaning of colours. help: the page of keys that is shown, from 1; 0: none. keys: its lines
     (key, meaning). more_keys: there is another page.
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
@@ -136,6 +139,7 @@ class View:
     flashes: points (m) where particles collided just now, shape (k, 2).
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
+    largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     theory, energy: show theory beside the run, and its energy account, among them.
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
@@ -163,6 +167,7 @@ class View:
     theme: str = "light"
     readouts: tuple[Readout, ...] = ()
     since: dict[str, int] = field(default_factory=dict)
+    largest_force: float = 0.0
     theory: bool = False
     energy: bool = False
     shape: Shape | None = None

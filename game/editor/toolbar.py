@@ -23,7 +23,9 @@ def toolbar_of(context: Context) -> Toolbar:
 def _tool(context: Context, binding: Binding) -> Tool:
     action = binding.action
     pressed = action == _in_hand(context) or (action in _PRESSED and _PRESSED[action](context))
-    enabled = context.scenes.active.tools in binding.scenes and (action not in _NEEDS or _NEEDS[action](context))
+    enabled = context.scenes.active.tools in binding.scenes and (
+        action not in _NEEDS or _NEEDS[action](context)
+    )
     icon = "pause" if action == "toggle run" and pressed else action
     return Tool(action, binding.title, binding.key, icon, pressed, enabled)
 

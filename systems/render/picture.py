@@ -64,6 +64,7 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Pla
     overlays += draw_readouts(sheet, room)
     overlays += draw_notice(sheet, room)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
+    sheet.placed |= sheet.scales
     scale = draw_scale(sheet, room) if model.particles.count else []
     over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays]
     return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over])
