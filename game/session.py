@@ -29,7 +29,7 @@ from game.editor.context import FAULTS, Context, Stage
 from game.editor.frame import Actions, Frame, HeadlessFrame, ShowView
 from game.editor.dropping import open_dropped
 from game.editor.menu import IN_MENU
-from game.editor.routing import Layer, layer, meaning
+from game.editor.routing import Layer, for_tools, layer, meaning
 from game.editor.scenes import all_scenes, scene_systems
 from game.editor.scenes.files import FileScene
 from game.editor.toolbar import toolbar_of
@@ -273,8 +273,8 @@ class Session(Context):
         self.offer_tools()
 
     def offer_tools(self) -> None:
-        """Let the toolbar show what can be done now; behind a panel it stays as it was."""
-        if self.scene not in FORMS:
+        """Let the toolbar show what can be done now; where it is not seen it stays as it was."""
+        if not self.scenes.active.covers(self):
             self.view.toolbar = toolbar_of(self)
 
     def press(self, key: str, pixel: Vector | None = None) -> None:
@@ -307,7 +307,19 @@ class Session(Context):
                 self.on_press(key, pressed)
             if self.time_passes:
                 self.get_ready()
-            self.act(name, at)
+            left = self._left_for_tools() if for_tools(self, key, pixel) else ""
+            if name != left:  # the tool that opens a scene closes it, too
+                self.act(name, at)
+
+    def _left_for_tools(self) -> str:
+        """Leave a scene in which tools do not act, for the one in which they do; returns its name, or ""."""
+        scene, tools = self.scene, self.scenes.active.tools
+        if tools == scene:
+            return ""
+        self.scenes.request(*dict.fromkeys(("pause", tools)))
+        self.scenes.apply(self)
+        self.offer_tools()
+        return scene
 
     def _slipped(self, key: str, pixel: Vector) -> bool:
         """True for the second click of a double click whose first one led elsewhere: it is not meant for what is there."""
@@ -425,7 +437,7 @@ class Session(Context):
     def stages(self) -> Sequence[Stage]:
         """All that is drawn: models and forms of the active scene, each in its view, toolbar and footer."""
         stages = list(self.scenes.active.stages(self))
-        if self.scene not in FORMS:
+        if not self.scenes.active.covers(self):
             stages.append((self.view.toolbar, self.view))
         if self.footer is not None:
             stages.append((self._blank, self.footer))

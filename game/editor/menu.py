@@ -20,7 +20,7 @@ Groups = Sequence[Sequence[Entry]]
 IN_MENU = ("open menu", "choose entry", *(f"menu {way}" for way in ("up", "down", "left", "right")))  # keep it open
 
 _PLOT = "probes.plot"  # offered where the mod that plots is there
-_RESULTS = (("properties", "properties …"), ("toggle diagrams", "forces"), (_PLOT, "plot of it: next, none"))
+_RESULTS = (("properties", "properties"), ("toggle diagrams", "force diagram"), (_PLOT, "plot"))
 _SUPPORTS = ("free", "pin", "hold y", "hold x")
 _FROM_HERE = (("force", "force: click its end"), ("velocity", "velocity: click its end"), ("rod", "rod from here"))
 _PARTS = (("copy", "copy"), ("duplicate", "duplicate"), ("delete", "delete"))
@@ -50,7 +50,7 @@ def _groups(context: Context) -> Groups:
     if context.scene == FORCE_METHOD:
         unknown = [("pick unknown", "release this")]
         return [unknown, *([binding.action for binding in group] for group in toolbar(context.scene))]
-    return _of_selection(context.selected) if context.has_selected else _of_canvas()
+    return _of_selection(context.selected) if context.has_selected else _of_canvas(context)
 
 
 def _of_selection(selected: Sequence[Handle]) -> Groups:
@@ -63,13 +63,18 @@ def _of_selection(selected: Sequence[Handle]) -> Groups:
     return [results, _SUPPORTS if particles else (), _FROM_HERE if one else (), only_rod if rods else (), _PARTS]
 
 
-def _of_canvas() -> Groups:
-    tools = [("place", "new particle here"), "rod", "support", "force", "velocity", *ADDED_TOOLS]
-    return [
-        [*tools, ("paste", "paste here"), "select all"],
-        ["toggle run", "restart", "settle", "undo", "redo"],
-        ["toggle diagrams", "toggle theory", "toggle energy", "next shape", "force method", "environment"],
+def _of_canvas(context: Context) -> Groups:
+    """Where the toolbar is hidden, all that it has, too."""
+    groups: list[list[Entry]] = [
+        [("place", "new particle here"), "rod", *ADDED_TOOLS, ("paste", "paste here"), "select all"],
+        ["toggle run", "restart", "settle"],
+        ["toggle diagrams", "toggle theory", "toggle energy", "next shape"],
         [binding.action for binding in ADDED_BUTTONS],
         ["fit", "zoom in", "zoom out", "new grid", "next grid", "toggle legend", "next theme"],
-        ["new", "load", "save again", "save", "screenshot", "toggle full screen", "toggle help"],
+        ["environment", "screenshot", "toggle full screen", "toggle help"],
     ]
+    if context.view.strip.width == 0:
+        known = {entry if isinstance(entry, str) else entry[0] for group in groups for entry in group}
+        whole = [[binding.action for binding in group] for group in toolbar(context.scene)]
+        groups += [[action for action in group if action not in known] for group in whole]
+    return groups

@@ -5,9 +5,11 @@ from __future__ import annotations
 from components.field import Vector
 from game.editor.context import Context
 from game.editor.view_model import pages_of_help
-from systems.input.bindings import FORMS, MENU, action_for
+from systems.input.bindings import FORMS, LIVE, MENU, action_for
 from systems.render.help import help_closed_by
 from systems.render.menu import menu_of
+from systems.render.picture import lies_under
+from systems.render.theme import load_theme
 
 CLICKS = ("click", "ctrl+click", "double click", "drag", "ctrl+drag")  # the pointer may slip a little in a click
 BUTTONS = (*CLICKS, "right click")
@@ -24,9 +26,25 @@ def meaning(context: Context, key: str, pixel: Vector) -> Meaning:
         return found
     if view.help and (key == "escape" or key in AT_POINTER):
         return _on_help(context, key, pixel), pixel
-    if key in AT_POINTER and context.scene not in FORMS and view.strip.contains(pixel):
-        return _on_toolbar(context, key, pixel), pixel
+    if for_tools(context, key, pixel):
+        on_toolbar = view.strip.contains(pixel)
+        return _on_toolbar(context, key, pixel) if on_toolbar else action_for(LIVE[0], key), pixel
+    if key in BUTTONS and context.scene in LIVE and not context.performing:
+        if lies_under(context.model, view, load_theme(view.theme), pixel):
+            return None, pixel
     return scene_meaning(context.scene, key), pixel
+
+
+def for_tools(context: Context, key: str, pixel: Vector) -> bool:
+    """True if a press belongs to the toolbar, or is a right click on the model beside boxes to type into.
+
+    A scene in which tools do not act is left first.
+    """
+    view, scene = context.view, context.scenes.active
+    if key not in AT_POINTER or view.menu is not None or view.help or scene.covers(context):
+        return False
+    beside = key == "right click" and context.scene in FORMS and not context.focus[1].covers(pixel)
+    return beside or view.strip.contains(pixel)
 
 
 def layer(context: Context, pixel: Vector) -> Layer:

@@ -45,10 +45,10 @@ class Binding:
 _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
     "Time": (
         Binding("space", "toggle run", LIVE, "run / pause"),
-        Binding("right", "arrow right", (PAUSE,), "single step; before a run, move the selection", repeats=True),
-        Binding("left", "arrow left", (PAUSE,), "step back; before a run, move the selection", repeats=True),
-        Binding("shift+right", "far arrow right", (PAUSE,), "skip ahead; before a run, move far", repeats=True),
-        Binding("shift+left", "far arrow left", (PAUSE,), "skip back; before a run, move far", repeats=True),
+        Binding("right", "arrow right", (PAUSE,), "single step", repeats=True),
+        Binding("left", "arrow left", (PAUSE,), "step back", repeats=True),
+        Binding("shift+right", "far arrow right", (PAUSE,), "skip ahead", repeats=True),
+        Binding("shift+left", "far arrow left", (PAUSE,), "skip back", repeats=True),
         Binding(".", "step", (PAUSE,), "single step", repeats=True),
         Binding(",", "step back", (PAUSE,), "step back", repeats=True),
         Binding("r", "restart", LIVE, "restart from the undeformed beginning"),
@@ -83,10 +83,10 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("return", "properties", LIVE, "properties of the selected elements"),
         Binding("delete", "delete", LIVE, "delete the selection"),
         Binding("backspace", "delete", LIVE, "delete the selection"),
-        Binding("up", "arrow up", (PAUSE,), "before a run, move the selection", repeats=True),
-        Binding("down", "arrow down", (PAUSE,), "before a run, move the selection", repeats=True),
-        Binding("shift+up", "far arrow up", (PAUSE,), "before a run, move it by the grid", repeats=True),
-        Binding("shift+down", "far arrow down", (PAUSE,), "before a run, move it by the grid", repeats=True),
+        Binding("up", "arrow up", (PAUSE,), "before a run, like left and right: move it", repeats=True),
+        Binding("down", "arrow down", (PAUSE,), "before a run, like left and right: move it", repeats=True),
+        Binding("shift+up", "far arrow up", (PAUSE,), "the same, by the grid", repeats=True),
+        Binding("shift+down", "far arrow down", (PAUSE,), "the same, by the grid", repeats=True),
         *(
             Binding(f"ctrl+{shift}{way}", f"move {far}{way}", (PAUSE,), title, repeats=True)
             for shift, far, title in (("", "", "move the selection"), ("shift+", "far ", "move it by the grid"))
