@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.kind import all_points
+from components.menu import Menu
 from components.model import Model
 from components.toolbar import Toolbar
 
@@ -137,6 +138,7 @@ class View:
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
     flashes: points (m) where particles collided just now, shape (k, 2).
+    menu: the list of what can be done somewhere, while it is open.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
@@ -164,6 +166,7 @@ class View:
     caption: tuple[str, ...] = ()
     page: Page | None = None
     toolbar: Toolbar = field(default_factory=Toolbar)
+    menu: Menu | None = None
     theme: str = "light"
     readouts: tuple[Readout, ...] = ()
     since: dict[str, int] = field(default_factory=dict)
