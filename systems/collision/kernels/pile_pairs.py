@@ -16,6 +16,7 @@ from systems.collision.columns import (
     Entry,
     Motion,
     Number,
+    Part,
     PilePair,
     Reason,
     Travel,
@@ -50,7 +51,7 @@ def allow_shifts(h, discs, pile):
         pull = math.sqrt(discs[i, Disc.GX] ** 2 + discs[i, Disc.GY] ** 2)
         pile.travel[Travel.PULL, i] = pull
         pile.travel[Travel.SHIFT, i] = 2.0 * h * h * pull
-        pile.travel[Travel.FASTEST, i] = 0.0
+        pile.travel[Travel.FASTEST, i] = pile.parts[Part.LAW, i] = 0.0
 
 
 @compiled
