@@ -26,7 +26,9 @@ def tool(context: Context, binding: Binding, title: str = "") -> Tool:
     """What a button or an entry of a menu says of an action now; title: where that of the table does not fit."""
     action = binding.action
     pressed = action == _in_hand(context) or (action in _PRESSED and _PRESSED[action](context))
-    enabled = context.scenes.active.tools in binding.scenes and (action not in _NEEDS or _NEEDS[action](context))
+    enabled = context.scenes.active.tools in binding.scenes and (
+        action not in _NEEDS or _NEEDS[action](context)
+    )
     icon = "pause" if action == "toggle run" and pressed else action
     return Tool(action, title or binding.title, binding.key, icon, pressed, enabled)
 
