@@ -22,10 +22,8 @@ COMFORTABLE_HEIGHT, LEAST_HEIGHT = 480.0, 240.0  # points that are left in a win
 BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
 COLUMN, COLUMN_SHARE, WIDEST_COLUMN = 306.0, 0.34, 340.0  # points, share of the canvas: the column of panels
-SIDE, LEAST_MODEL = (
-    332.0,
-    240.0,
-)  # points: boxes to type into; what the model keeps beside them, or they take all
+# points: boxes to type into; what the model keeps beside them, or they take all
+SIDE, LEAST_MODEL = 332.0, 240.0
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
 
 
