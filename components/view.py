@@ -127,7 +127,7 @@ class Shape:
 class View:
     """How one model is shown in one viewport.
 
-    heading: the word top left in red ("Pause"), or "". all_diagrams: force diagrams of all elements.
+    heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements.
     legend: show the meaning of colours. help: the page of keys that is shown, from 1; 0: none. keys: its lines
     (key, meaning). more_keys: there is another page.
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
@@ -139,6 +139,7 @@ class View:
     menu: the list of what can be done somewhere, while it is open.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
+    largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     theory, energy: show theory beside the run, and its energy account, among them.
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
@@ -167,6 +168,7 @@ class View:
     theme: str = "light"
     readouts: tuple[Readout, ...] = ()
     since: dict[str, int] = field(default_factory=dict)
+    largest_force: float = 0.0
     theory: bool = False
     energy: bool = False
     shape: Shape | None = None

@@ -161,6 +161,8 @@ class Session(Context):
     ) -> str:
         """Let time pass: until "rest" (at most `limit` s of simulated time), by `time` s, or by `steps`.
 
+        Exactly so many steps are taken unless the run ends; the part of one up to an impact counts as a step.
+
         Returns "at rest", "time reached", "limit reached" or "diverged"; `message` says more. Raises ValueError, and
         ModError if a mod fails meanwhile: the run stops where it did, and a further one goes on without the mod. An
         interrupt (Ctrl+C) leaves the state after a step shortly before, from which a further run goes on.

@@ -110,7 +110,7 @@ class SceneError(ValueError):
 class Scene:
     """One mode. Systems say by their `scenes` in which they are active; keys are in input/bindings.py.
 
-    heading: the word shown top left in red. targets: scenes that may follow. sources: further scenes that
+    heading: the word shown top left. targets: scenes that may follow. sources: further scenes that
     this one may follow, which need not know it. systems: names, or patterns such as "physics.*", of systems that
     are active in it although they do not name it; PHYSICS lists those that let time pass.
     mod: the mod that brought it, if one did; set by the program.

@@ -85,6 +85,7 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[Rectangle]]:
     overlays += readouts
     overlays += draw_notice(sheet, room)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
+    sheet.placed |= sheet.scales
     scale = draw_scale(sheet, room) if model.particles.count else []
     over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays]
     return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over]), panels

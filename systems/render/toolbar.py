@@ -49,11 +49,11 @@ class _Writer:
         """The icon, on a plate if it is pressed or would be by a click."""
         u, tool, theme = self.unit, button.tool, self.theme
         middle = np.array([[button.left + button.width / 2, button.top + button.height / 2]])
-        ink = faded(theme.muted, 0.4) if not tool.enabled else theme.hover if tool.pressed else theme.text
+        ink = faded(theme.muted, 0.4) if not tool.enabled else theme.focus if tool.pressed else theme.text
         icon = Stamps(tool.icon, middle, _ICON * u, u, ink, ink)
         if not tool.pressed and not (button is self.hovered and tool.enabled):
             return [icon]
-        colour = faded(theme.hover, 0.16) if tool.pressed else faded(theme.text, 0.09)
+        colour = faded(theme.focus, 0.16) if tool.pressed else faded(theme.text, 0.09)
         width, height = button.width - 2 * u, button.height - 2 * u
         return [Panel(button.left + u, button.top + u, width, height, _RADIUS * u, colour), icon]
 

@@ -155,8 +155,8 @@ def test_escape_drops_the_selection_and_never_runs(session: Session) -> None:
     assert "Space runs" in session.notice
 
 
-def test_a_click_selects_particle_rod_or_grid(session: Session) -> None:
-    """Particles before rods before lines of the shown grid, each within its reach in pixels."""
+def test_a_click_selects_particle_or_rod_and_never_the_grid(session: Session) -> None:
+    """Particles before rods, each within its reach in pixels; the grid on purpose only, by Ctrl."""
     scale = session.view.camera.scale
     middle = (0.5, 0.5)  # of AB
     across = 1.0 / (scale * 2**0.5)  # 1 px at right angles to AB, in each coordinate
@@ -164,11 +164,28 @@ def test_a_click_selects_particle_rod_or_grid(session: Session) -> None:
         ((1.0, 1.0), session.particles["B"]),
         ((middle[0] - 9 * across, middle[1] + 9 * across), session.rods["AB"]),
         ((middle[0] - 11 * across, middle[1] + 11 * across), None),
-        ((2.5 + 4 / scale, 0.75), session.model.grids[0]),
-        ((2.5 + 6 / scale, 0.75), None),
+        ((2.5 + 4 / scale, 0.75), None),
     ]:
         session.click(x, y)
         assert session.selected == ([] if expected is None else [expected])
+    session.click(2.5 + 6 / scale, 0.75, "ctrl+click")
+    assert session.selected == []
+    session.click(2.5 + 4 / scale, 0.75, "ctrl+click")
+    assert session.selected == [session.model.grids[0]]
+
+
+def test_properties_without_a_selection_hold_the_shown_grid(session: Session) -> None:
+    session.press("return")
+    session.click_box("spacing x")
+    session.type("25")
+    session.press("return")
+    while session.scene != "pause":
+        session.press("escape")
+    assert session.model.grids[0].spacing == (0.25, 0.5)
+    while any(grid.shown for grid in session.model.grids):
+        session.press("h")
+    session.press("return")
+    assert "spacing x" not in session.boxes
 
 
 def test_i_shows_the_diagrams_of_the_selected_or_of_all(session: Session) -> None:

@@ -66,6 +66,8 @@ def test_delete_removes_the_selected_with_what_depends_on_it_and_undo_brings_it_
 def test_delete_of_a_shown_grid(empty: Session) -> None:
     empty.press("g")
     empty.click(0.2, 0.5)
+    assert empty.selected == []
+    empty.click(0.2, 0.5, "ctrl+click")
     empty.press("delete")
     assert empty.model.grids.count == 0
 

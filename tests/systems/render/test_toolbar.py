@@ -208,6 +208,6 @@ def test_pressed_and_unavailable_tools_look_different() -> None:
     toolbar, view = session.stages[-1]
     theme = load_theme()
     inks = {mark.symbol: mark.ink for mark in compose(toolbar, view, theme).marks if isinstance(mark, Stamps)}
-    assert inks["toggle diagrams"] == theme.hover
+    assert inks["toggle diagrams"] == theme.focus
     assert inks["place"] == theme.text
     assert inks["redo"][3] < 128
