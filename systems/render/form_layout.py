@@ -25,7 +25,10 @@ COLUMN_GAP = 14.0
 HEADING = 104.0  # points, where a low viewport has the box beside the heading
 NARROW = 130.0  # points, a box less wide does not share its row
 TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
+PILL, PILL_WIDTH, PILL_GAP = 40.0, 186.0, 10.0  # points: tiles of a section without pictures
+BESIDE, SEARCH = 860.0, 340.0  # points of width from which the name stands beside the heading, and that it takes there
 LOWEST = 0.65  # share of a picture's height that it keeps where one more row fits then
+LEAST_PICTURE = 40.0  # points
 
 PROPERTIES = "Properties"  # the heading of an element's own boxes, where its results stand above them
 
@@ -86,18 +89,13 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
     header = v.top + (18.0 if low else 26.0) * u
     top = header + (16.0 if low else 24.0) * u
     bottom = v.top + v.height - (22.0 if low else 58.0) * u
-    fixed: list[Place] = []
+    fixed, heading_width = [], width
     if _has_files(form):
-        beside_heading = HEADING * u if low else 0.0
-        top = v.top + 6.0 * u if low else top + TITLE * u
-        room = min(width - beside_heading, 420.0 * u)
-        fixed = [Place(left + beside_heading, top, room, BOX * u, box) for box in form.boxes]
-        top += (BOX + 22.0) * u
-    shares_line = low and bool(fixed)
-    heading_width = (HEADING - 8.0) * u if shares_line else width
-    message, lines = top - 11.0 * u, message_lines(form, width, u)
-    top += max(len(lines) - 1, 0) * MESSAGE_LINE * u
-    rows = list(_tile_rows(form, width / u) if _has_files(form) else _box_rows(form, width / u))
+        fixed, heading_width = _name_place(form, left, width, v, u)
+        top = fixed[0].bottom + 22.0 * u
+        rows = list(_tile_rows(form, width / u))
+    else:
+        rows = list(_box_rows(form, width / u))
     readings = list(_reading_rows(form))
     if len(readings) * READING * u > MOST_READINGS * (bottom - top):
         rows, readings = readings + rows, []
@@ -105,8 +103,22 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         height = _height(row, 0.0, u)
         fixed += _placed(row, left, top, width, height, u)
         top += height
-    layout = FormLayout(v, u, left, left + width, header, heading_width, message, top, bottom)
-    return _with_rows(form, layout, fixed, rows)
+    message, lines = top - 11.0 * u, message_lines(form, width, u)
+    top += max(len(lines) - 1, 0) * MESSAGE_LINE * u
+    layout = FormLayout(v, u, left, left + width, header, heading_width, message, top, bottom, form.heading.first)
+    return _with_rows(layout, fixed, rows)
+
+
+def _name_place(form: Form, left: float, width: float, v: Viewport, u: float) -> tuple[list[Place], float]:
+    """The place of the box for a name, beside the heading where there is room, else below; and the heading's width."""
+    if v.height < LOW * u:
+        x, top, room, heading = left + HEADING * u, v.top + 6.0 * u, width - HEADING * u, (HEADING - 8.0) * u
+    elif width >= BESIDE * u:
+        room = SEARCH * u
+        x, top, heading = left + width - room, v.top + 13.0 * u, width - room - COLUMN_GAP * u
+    else:
+        x, top, room, heading = left, v.top + 46.0 * u, min(width, 420.0 * u), width
+    return [Place(x, top, room, BOX * u, box) for box in form.boxes], heading
 
 
 def message_lines(form: Form, width: float, u: float) -> list[str]:
@@ -119,11 +131,11 @@ def _has_files(form: Form) -> bool:
     return any(box.target == "name" for box in form.boxes)
 
 
-def _with_rows(form: Form, layout: FormLayout, fixed: list[Place], rows: list[Row]) -> FormLayout:
+def _with_rows(layout: FormLayout, fixed: list[Place], rows: list[Row]) -> FormLayout:
     u, room, width = layout.unit, layout.bottom - layout.top, layout.right - layout.left
     picture = _picture_height(rows, width, room, u)
     heights = [_height(row, picture, u) for row in rows]
-    first = min(form.heading.first, _last_first(heights, room))
+    first = min(layout.first, _last_first(heights, room))
     places, top, shown = list(fixed), layout.top, 0
     for row, height in zip(rows[first:], heights[first:], strict=True):
         if top + height > layout.bottom + 0.5 and shown:
@@ -178,12 +190,22 @@ def _partner(box: Box) -> str:
 
 
 def _tile_rows(form: Form, width: float) -> Iterator[Row]:
-    columns = tile_columns(width)
+    """Sections and tiles; of a section with a tile that stands for the rest one row."""
     shown = (tile for tile in form.tiles if not tile.hidden)
     for section, group in groupby(shown, lambda tile: tile.section):
+        tiles = list(group)
+        columns = pill_columns(width) if _are_pills(tiles) else tile_columns(width)
+        those, rest = [t for t in tiles if not t.rest], [t for t in tiles if t.rest]
+        if rest and len(those) > columns:
+            those = [*those[: max(columns - 1, 1)], *rest[: columns - 1]]  # of one column the first tile only
         if section:
             yield section
-        yield from in_rows(list(group), columns)
+        yield from in_rows(those, columns)
+
+
+def _are_pills(tiles: Sequence[Tile]) -> bool:
+    """True for tiles without pictures."""
+    return all(tile.symbol for tile in tiles)
 
 
 def tile_columns(width: float) -> int:
@@ -191,25 +213,33 @@ def tile_columns(width: float) -> int:
     return max(int((width + TILE_GAP) / (min(TILE, 0.45 * width) + TILE_GAP)), 1)
 
 
+def pill_columns(width: float) -> int:
+    """How many tiles without pictures stand side by side in a width in points."""
+    return max(int((width + PILL_GAP) / (PILL_WIDTH + PILL_GAP)), 1)
+
+
 def _height(row: Row, picture: float, u: float) -> float:
     if isinstance(row, str):
         return SECTION * u
     if isinstance(row[0], Reading):
         return READING * u
-    if isinstance(row[0], Tile):
-        return picture + (CAPTION + TILE_GAP) * u
-    return (TITLE + BOX + BELOW + PROBLEM * any(box.problem for box in row)) * u
+    if isinstance(row[0], Box):
+        return (TITLE + BOX + BELOW + PROBLEM * any(box.problem for box in row)) * u
+    return (PILL + PILL_GAP) * u if _are_pills(row) else picture + (CAPTION + TILE_GAP) * u
 
 
 def _picture_height(rows: Sequence[Row], width: float, room: float, u: float) -> float:
-    """Height of the pictures of tiles: reduced where one more row becomes visible."""
-    sections = sum(isinstance(row, str) for row in rows)
-    below, high = (CAPTION + TILE_GAP) * u, _tile_width(width, u) * PROPORTION
-    for seen in range(len(rows) - sections, 0, -1):
-        headings = min(sections, max(seen - 1, 1)) * SECTION * u  # of few rows rather the first section's only
-        each = (room - headings) / seen - below
-        if each >= LOWEST * high or seen == 1:
-            return max(min(each, high), 40.0 * u)
+    """Height of the pictures of tiles: reduced until the first row of each section is in sight, or where one more row is."""
+    high, least = _tile_width(width, u) * PROPORTION, LEAST_PICTURE * u
+    pictured = [not isinstance(row, str) and isinstance(row[0], Tile) and not _are_pills(row) for row in rows]
+    ends = [number + 1 for number, has in enumerate(pictured) if has]
+    headings = [number for number, row in enumerate(rows) if isinstance(row, str)]
+    needed = next((end for end in ends if end > max(headings, default=0)), 0)
+    for end in reversed(ends):
+        fixed = sum(_height(row, 0.0, u) for row in rows[:end])
+        each = (room - fixed) / sum(pictured[:end])
+        if end <= needed or each >= LOWEST * high:
+            return max(min(each, high), least)
     return high
 
 
@@ -228,6 +258,11 @@ def _placed(row: Row, left: float, top: float, width: float, height: float, u: f
         each = (width - gap) / 2 if (width - gap) / 2 >= NARROW * u else width
         for column, box in enumerate(row):
             yield Place(left + column * (each + gap), top + TITLE * u, each, BOX * u, box)
+    elif _are_pills(row):
+        gap, columns = PILL_GAP * u, pill_columns(width / u)
+        each = min((width - (columns - 1) * gap) / columns, 1.4 * PILL_WIDTH * u)
+        for column, tile in enumerate(row):
+            yield Place(left + column * (each + gap), top, each, height - gap, tile)
     else:
         each = _tile_width(width, u)
         for column, tile in enumerate(row):
