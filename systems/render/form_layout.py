@@ -23,6 +23,7 @@ MESSAGE, MESSAGE_LINE = 12.0, 16.0  # points, size of type and distance of lines
 SECTION = 28.0
 COLUMN_GAP = 14.0
 HEADING = 104.0  # points, where a low viewport has the box beside the heading
+CLOSE, ACCEPT = 24.0, 64.0  # points, side of the button that leaves; width of that which does what Return does
 NARROW = 130.0  # points, a box less wide does not share its row
 TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
 PILL, PILL_WIDTH, PILL_GAP = 40.0, 186.0, 10.0  # points: tiles of a section without pictures
@@ -49,6 +50,7 @@ class FormLayout:
     unit: pixels per point. left, right: the edges of all text. header: the middle of the heading's line, whose text
     has the room `heading_width`. message: the middle of the message's first line. top, bottom: the edges of the rows.
     rows: those that are scrolled. first, shown: the number of the first one in sight, and of those in sight.
+    close, accept: the buttons that leave it, and that do what Return does.
     """
 
     viewport: Viewport
@@ -60,6 +62,8 @@ class FormLayout:
     message: float
     top: float
     bottom: float
+    close: Rectangle
+    accept: Rectangle | None
     first: int = 0
     shown: int = 0
     rows: list[Row] = field(default_factory=list)
@@ -89,10 +93,11 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
     header = v.top + (18.0 if low else 26.0) * u
     top = header + (16.0 if low else 24.0) * u
     bottom = v.top + v.height - (22.0 if low else 58.0) * u
-    fixed, heading_width = [], width
+    close = Rectangle(left + width - CLOSE * u, header - CLOSE * u / 2, CLOSE * u, CLOSE * u)
+    fixed, accept, heading_width = [], None, width - (CLOSE + 8.0) * u
     if _has_files(form):
-        fixed, heading_width = _name_place(form, left, width, v, u)
-        top = fixed[0].bottom + 22.0 * u
+        fixed, accept, heading_width = _name_place(form, left, width, v, u)
+        top = accept.bottom + 22.0 * u
         rows = list(_tile_rows(form, width / u))
     else:
         rows = list(_box_rows(form, width / u))
@@ -105,20 +110,31 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         top += height
     message, lines = top - 11.0 * u, message_lines(form, width, u)
     top += max(len(lines) - 1, 0) * MESSAGE_LINE * u
-    layout = FormLayout(v, u, left, left + width, header, heading_width, message, top, bottom, form.heading.first)
+    layout = FormLayout(
+        v, u, left, left + width, header, heading_width, message, top, bottom, close, accept, form.heading.first
+    )
     return _with_rows(layout, fixed, rows)
 
 
-def _name_place(form: Form, left: float, width: float, v: Viewport, u: float) -> tuple[list[Place], float]:
-    """The place of the box for a name, beside the heading where there is room, else below; and the heading's width."""
+def _name_place(
+    form: Form, left: float, width: float, v: Viewport, u: float
+) -> tuple[list[Place], Rectangle, float]:
+    """The places of the box for a name and of the button beside it, and the heading's width.
+
+    They stand beside the heading where there is room or little height, else below it.
+    """
+    button, closes, heading = (ACCEPT + 8.0) * u, (CLOSE + 8.0) * u, width - (CLOSE + 8.0) * u
+    x, top, room = left, v.top + 46.0 * u, 420.0 * u
     if v.height < LOW * u:
-        x, top, room, heading = left + HEADING * u, v.top + 6.0 * u, width - HEADING * u, (HEADING - 8.0) * u
+        x, top, heading = left + HEADING * u, v.top + 6.0 * u, (HEADING - 8.0) * u
+        width -= HEADING * u + closes
     elif width >= BESIDE * u:
-        room = SEARCH * u
-        x, top, heading = left + width - room, v.top + 13.0 * u, width - room - COLUMN_GAP * u
-    else:
-        x, top, room, heading = left, v.top + 46.0 * u, min(width, 420.0 * u), width
-    return [Place(x, top, room, BOX * u, box) for box in form.boxes], heading
+        room, top = SEARCH * u, v.top + 13.0 * u
+        x = left + width - closes - button - room
+        heading = x - left - COLUMN_GAP * u
+    room = max(min(width - button, room), 40.0 * u)
+    accept = Rectangle(x + room + 8.0 * u, top, ACCEPT * u, BOX * u)
+    return [Place(x, top, room, BOX * u, box) for box in form.boxes], accept, heading
 
 
 def message_lines(form: Form, width: float, u: float) -> list[str]:
