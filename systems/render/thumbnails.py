@@ -104,6 +104,6 @@ def _tinted(theme: Theme) -> Colour:
     """The paper of discs, so that they are seen as bodies."""
     red, green, blue = (
         round((1.0 - _TINT) * paper + _TINT * ink)
-        for paper, ink in zip(theme.hollow[:3], theme.force[:3], strict=True)
+        for paper, ink in zip(theme.hollow[:3], theme.focus[:3], strict=True)
     )
     return red, green, blue, 255
