@@ -13,7 +13,7 @@ from components.form import Form, Reading, Tile
 from systems.render.typography import font_size, in_rows, wrapped
 
 WIDEST = 1500.0  # points that tiles spread over
-EDGE = 16.0  # points around everything
+EDGE, CLOSE_EDGE, SLIM = 16.0, 10.0, 325.0  # points around everything; of a viewport less wide than the last, less
 LOW = 330.0  # points: a viewport less high does without explanations
 
 TITLE, BOX, BELOW = 18.0, 26.0, 10.0  # points: title above a box, the box, to what follows
@@ -21,13 +21,13 @@ PROBLEM = 14.0  # points that the reason for which a box is refused takes below 
 READING, MOST_READINGS = 20.0, 0.4  # points of a row; share of the height that they take without being scrolled
 MESSAGE, MESSAGE_LINE = 12.0, 16.0  # points, size of type and distance of lines of a message
 SECTION = 28.0
-COLUMN_GAP = 14.0
+COLUMN_GAP = 10.0
 HEADING = 104.0  # points, where a low viewport has the box beside the heading
 CLOSE, ACCEPT = 24.0, 64.0  # points, side of the button that leaves; width of that which does what Return does
-NARROW = 130.0  # points, a box less wide does not share its row
+NARROW, NARROWEST = 140.0, 120.0  # points, a box less wide does not share its row; one of a vector
 TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
 PILL, PILL_WIDTH, PILL_GAP = 40.0, 186.0, 10.0  # points: tiles of a section without pictures
-BESIDE, SEARCH = 860.0, 340.0  # points of width from which the name stands beside the heading, and that it takes there
+BESIDE, SEARCH = 985.0, 340.0  # points of width from which the name stands beside the heading, and that it takes there
 LOWEST = 0.65  # share of a picture's height that it keeps where one more row fits then
 LEAST_PICTURE = 40.0  # points
 
@@ -87,7 +87,8 @@ class FormLayout:
 def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
     """Place all visible rows; rows that do not fit whole are scrolled away."""
     u, v = unit, viewport
-    width = max(min(v.width - 2 * EDGE * u, WIDEST * u), 1.0)
+    edge = EDGE if v.width >= SLIM * u else CLOSE_EDGE
+    width = max(min(v.width - 2 * edge * u, WIDEST * u), 1.0)
     left = v.left + (v.width - width) / 2
     low = v.height < LOW * u
     header = v.top + (18.0 if low else 26.0) * u
@@ -191,12 +192,12 @@ def _reading_rows(form: Form) -> Iterator[Row]:
 
 def _box_rows(form: Form, width: float) -> Iterator[Row]:
     """Sections and boxes: the two components of a vector share a row, and so do single boxes."""
-    together = 2 if (width - COLUMN_GAP) / 2 >= NARROW else 1
+    half = (width - COLUMN_GAP) / 2
     for section, boxes in groupby(form.boxes, lambda box: box.section):
         if section != form.heading.text or len(form.readings):
             yield section if section != form.heading.text else PROPERTIES
-        for _, partners in groupby(boxes, _partner):
-            yield from in_rows(list(partners), together)
+        for vector, partners in groupby(boxes, _partner):
+            yield from in_rows(list(partners), 2 if half >= (NARROWEST if vector else NARROW) else 1)
 
 
 def _partner(box: Box) -> str:
@@ -271,7 +272,8 @@ def _placed(row: Row, left: float, top: float, width: float, height: float, u: f
         yield Place(left, top, width, height, row[0])
     elif isinstance(row[0], Box):
         gap = COLUMN_GAP * u
-        each = (width - gap) / 2 if (width - gap) / 2 >= NARROW * u else width
+        half = (width - gap) / 2
+        each = half if len(row) > 1 or half >= NARROW * u else width
         for column, box in enumerate(row):
             yield Place(left + column * (each + gap), top + TITLE * u, each, BOX * u, box)
     elif _are_pills(row):

@@ -43,7 +43,7 @@ class Load(FileScene):
         yours = _yours(context)
         lessons = [new, *_lessons()]
         if yours:
-            lessons.append(Offer(LESSONS, "All lessons", "to watch", "", ALL, symbol="…", rest=True))
+            lessons.append(Offer(LESSONS, "All lessons", "to watch", "", ALL, symbol="»", rest=True))
         offers = [*yours, *lessons, *_examples()]
         form = self.new_form(WELCOME if self.welcome else "Load", "", offers, "Open")
         form.boxes[0].note = "type to search, or click a picture"
@@ -132,7 +132,7 @@ def _yours(context: Context) -> list[Offer]:
         offers.append(Offer(YOURS, "Discard", "what was not saved", "", DISCARD, symbol="×"))
     offers += [offer._replace(section=YOURS) for offer in saved_models()]
     count = sum(offer.source is not DISCARD for offer in offers)
-    everything = Offer(YOURS, f"All {count}", "of your models", "", ALL, symbol="…", rest=True)
+    everything = Offer(YOURS, f"All {count}", "of your models", "", ALL, symbol="»", rest=True)
     return [*offers, everything] if offers else []
 
 
