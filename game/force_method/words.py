@@ -175,7 +175,11 @@ class Superposition(Sequence[tuple[str, ...]]):
             return ("kN", "set 1", "= set 2", "+ set 3", "residual")
         rod = place - 1
         forces = (signed(column[rod]) for column in self._forces)
-        return (self._names[rod], *forces, written.number(float(self._residual[rod]), 1, nothing=self._rounding))
+        return (
+            self._names[rod],
+            *forces,
+            written.number(float(self._residual[rod]), 1, nothing=self._rounding),
+        )
 
 
 def _mm(metres: float, *, bracket: bool = False) -> str:

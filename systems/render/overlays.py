@@ -291,7 +291,10 @@ def draw_scale(sheet: Sheet, room: tuple[float, float]) -> list[Mark]:
     longest = min(120.0 * u, 0.25 * v.width) / sheet.view.camera.scale
     metres = round_down(longest)
     notes = _displacements(sheet) + sheet.notes
-    for length, said in ((metres * sheet.view.camera.scale, [written.scale_length(metres), *notes]), (0.0, notes)):
+    for length, said in (
+        (metres * sheet.view.camera.scale, [written.scale_length(metres), *notes]),
+        (0.0, notes),
+    ):
         ruler = length + 8.0 * u if length else 0.0
         room_beside = v.width - ruler - 2 * _EDGE * u
         text = shortened("   ".join(said), room_beside, size)
