@@ -66,16 +66,17 @@ def draw(sheet: Sheet) -> Iterator[Mark]:
     selected, hovered = (sheet.tagged(tag, "walls") for tag in (Selected, Hovered))
     layers = [(selected, sheet.theme.selected), (hovered, sheet.theme.hover)]
     for colour, chosen in sheet.colours_of(rows, layers, sheet.theme.ink):
-        yield Strokes(start[chosen], end[chosen], width, colour)
+        of = rows[chosen]
+        yield Strokes(start[chosen], end[chosen], width, colour, ("walls", of))
         caps = np.concatenate([start[chosen], end[chosen]])
-        yield Discs(caps, np.full(len(caps), 0.5 * width), colour, colour)
+        yield Discs(caps, np.full(len(caps), 0.5 * width), colour, colour, of=("walls", np.tile(of, 2)))
     for row in np.union1d(selected, hovered).tolist():
-        name_wall(sheet, walls.names[row], *ends[row])
+        name_wall(sheet, row, *ends[row])
 
 
-def name_wall(sheet: Sheet, name: str, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
+def name_wall(sheet: Sheet, row: int, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:
     """Place the name of a wall beside its middle, where there is room."""
-    size = sheet.font(12.0)
+    size, name = sheet.font(12.0), sheet.model.tables["walls"].names[row]
     half = half_size(name, size, "semibold", sheet.unit)
     along = (end - start) / max(float(np.hypot(*(end - start))), 1e-9)
     reach = abs(along[1]) * half[0] + abs(along[0]) * half[1] + WIDTH * sheet.unit
@@ -85,7 +86,8 @@ def name_wall(sheet: Sheet, name: str, start: NDArray[np.float64], end: NDArray[
         for side in (-1.0, 1.0)
     ]
     backing = faded(sheet.theme.background, 0.86)
-    sheet.labels.append(Label(name, places, size, sheet.theme.text, -1e12, "semibold", backing))
+    label = Label(name, places, size, sheet.theme.text, -1e12, "semibold", backing, of=("walls", row))
+    sheet.labels.append(label)
 
 
 def plugin(app: App) -> None:

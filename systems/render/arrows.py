@@ -77,7 +77,8 @@ def _arrows(
     neck = tip - HEAD * u * along
     low, high = bounds(sheet.viewport)
     _, _, seen = clip_segments(tail, tip, low - HEAD * u, high + HEAD * u)  # rims may be beyond all pixels
-    tail, tip, across, neck = tail[seen], tip[seen], across[seen], neck[seen]
+    tail, tip, across, neck, of = tail[seen], tip[seen], across[seen], neck[seen], ("particles", rows[seen])
     sheet.occupancy.line(tail, tip, STRONG)
-    yield Strokes(tail, neck, 2.0 * u, colour)
-    yield Fills(np.stack([tip, neck + 0.5 * HEAD * u * across, neck - 0.5 * HEAD * u * across], axis=1), colour)
+    yield Strokes(tail, neck, 2.0 * u, colour, of)
+    head = np.stack([tip, neck + 0.5 * HEAD * u * across, neck - 0.5 * HEAD * u * across], axis=1)
+    yield Fills(head, colour, of)

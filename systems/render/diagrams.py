@@ -13,7 +13,7 @@ from components.load import CONSTANT
 from components.model import Model
 from components.tags import DiagramShown, Selected
 from systems.render.labels import FAINT, Key, Label, half_size
-from systems.render.marks import Bars, Points, Stamps, Strokes
+from systems.render.marks import Bars, Owner, Points, Stamps, Strokes
 from systems.render.sheet import DIRECTIONS, Rows, Sheet, typical_length
 from systems.render.supports import NO_SUPPORT, crowding
 from systems.render.symbols import ARROW_LENGTH, SUPPORT_DEPTH
@@ -89,7 +89,7 @@ def draw_rod_diagrams(sheet: Sheet) -> None:
     nothing = ~(pulled | pushed | sheet.model.rods.tension_only[rows])  # a slack cable stays dashed
     for name, mask in (("tension", pulled), ("compression", pushed), ("zero", nothing)):
         if mask.any():
-            _draw_rectangles(sheet, name, start[mask], end[mask], rise[mask])
+            _draw_rectangles(sheet, name, rows[mask], start[mask], end[mask], rise[mask])
     _label_rods(sheet, rows, values, (start + end) / 2, normal, height)
 
 
@@ -137,16 +137,18 @@ def _outward_normals(sheet: Sheet, rows: Rows, start: Points, end: Points) -> Po
     return np.stack([along_y * scale, -along_x * scale], axis=1)
 
 
-def _draw_rectangles(sheet: Sheet, name: str, start: Points, end: Points, rise: Points) -> None:
+def _draw_rectangles(sheet: Sheet, name: str, rows: Rows, start: Points, end: Points, rise: Points) -> None:
     colour: Colour = getattr(sheet.theme, name)
     outlined = typical_length(sheet.start, sheet.end) > 16.0 * sheet.unit
-    bars = Bars(start, end, rise, faded(colour, 0.16 if outlined else 0.5))
+    bars = Bars(start, end, rise, faded(colour, 0.16 if outlined else 0.5), ("rods", rows))
     sheet.marks.append(bars)
     if outlined:
         corners = bars.corners
         first, last = corners[:, :-1].reshape(-1, 2), corners[:, 1:].reshape(-1, 2)
         sheet.occupancy.line(first, last, FAINT)
-        sheet.marks.append(Strokes(first, last, 1.25 * sheet.unit, faded(colour, 0.9)))
+        sheet.marks.append(
+            Strokes(first, last, 1.25 * sheet.unit, faded(colour, 0.9), ("rods", np.repeat(rows, 3)))
+        )
     if name != "zero":
         sheet.legend.append(name)
 
@@ -173,7 +175,8 @@ def _label_rods(
     signs = ("zero" if abs(n) <= SMALLEST_FORCE else "tension" if n > 0.0 else "compression" for n in numbers)
     colours = [getattr(sheet.theme, sign) for sign in signs]
     keys = [(_ROD_VALUE, row) for row in rows[shown].tolist()]
-    values_of = zip(texts, places, colours, (-worth[shown]).tolist(), keys, strict=True)
+    of = [("rods", row) for row in rows[shown].tolist()]
+    values_of = zip(texts, places, colours, (-worth[shown]).tolist(), keys, of, strict=True)
     _add_values(sheet, values_of, size, "spare" if few else "cover")
 
 
@@ -207,15 +210,15 @@ def _value_texts(sheet: Sheet, numbers: Iterable[str], few: bool) -> tuple[list[
 
 def _add_values(
     sheet: Sheet,
-    values: Iterable[tuple[str, Points, Colour, float, Key]],
+    values: Iterable[tuple[str, Points, Colour, float, Key, Owner]],
     size: int,
     lines: Literal["spare", "cover"],
 ) -> None:
-    """Labels of values: text, places, colour, rank and key of each."""
+    """Labels of values: text, places, colour, rank, key and owner of each."""
     backing = faded(sheet.theme.background, _BACKING)
     sheet.labels += [
-        Label(text, places, size, colour, rank, "semibold", backing, lines, key)
-        for text, places, colour, rank, key in values
+        Label(text, places, size, colour, rank, "semibold", backing, lines, key, of)
+        for text, places, colour, rank, key, of in values
     ]
 
 
@@ -259,9 +262,8 @@ def draw_particle_diagrams(sheet: Sheet, sides: NDArray[np.int64]) -> None:
     for turns in range(4):
         mask = direction == turns
         if mask.any():
-            sheet.marks.append(
-                Stamps("arrow", tail[mask], length, sheet.unit, sheet.theme.force, sheet.theme.force, turns)
-            )
+            colour, of = sheet.theme.force, ("particles", rows[mask])
+            sheet.marks.append(Stamps("arrow", tail[mask], length, sheet.unit, colour, colour, turns, of))
     sheet.occupancy.block_squares(tail + DIRECTIONS[direction] * length / 2, np.full(len(rows), 0.2 * length))
     _label_arrows(sheet, 2 * rows + axis, value, tail + DIRECTIONS[direction] * length / 2, outer)
 
@@ -326,7 +328,8 @@ def _label_arrows(
     # Arrows are few and say little without their value: before the rods.
     ranks, keys = (-worth[shown] - 1e9).tolist(), [(_ARROW_VALUE, number) for number in which[shown].tolist()]
     colours = [sheet.theme.force] * len(texts)
-    _add_values(sheet, zip(texts, places, colours, ranks, keys, strict=True), font, "spare")
+    of = [("particles", row) for row in (which[shown] // 2).tolist()]
+    _add_values(sheet, zip(texts, places, colours, ranks, keys, of, strict=True), font, "spare")
 
 
 def _places_by_arrows(middle: Points, outward: Points, half: Points, u: float) -> Points:

@@ -275,7 +275,7 @@ def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[M
     if name == "yielding":
         return [Strokes(*ends, 3.0 * u, colour)]
     if name == "slack":
-        return [Strokes(*dashed(*ends, width / 5), 1.25 * u, colour)]
+        return [Strokes(*dashed(*ends, width / 5)[:2], 1.25 * u, colour)]
     return [Panel(x, y - 5.0 * u, width, 10.0 * u, 1.0 * u, faded(colour, 0.18), colour)]
 
 

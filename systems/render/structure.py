@@ -64,12 +64,13 @@ def draw_ghost(sheet: Sheet) -> None:
     original = sheet.view.camera.to_pixels(sheet.model.particles.position)
     moved = np.hypot(*(sheet.centres - original).T)
     far = (moved[sheet.ends] > _GHOST_FROM * sheet.unit).any(axis=1)
-    ends = sheet.ends[far]
-    start, end, _ = clip_segments(original[ends[:, 0]], original[ends[:, 1]], *bounds(sheet.viewport))
+    rows = np.flatnonzero(far)
+    first, last = sheet.ends[rows].T
+    start, end, seen = clip_segments(original[first], original[last], *bounds(sheet.viewport))
     if len(start):
         sheet.occupancy.line(start, end, FAINT)
-        dashes = dashed(start, end, _DASH * sheet.unit)
-        sheet.marks.append(Strokes(*dashes, sheet.unit, sheet.theme.ghost))
+        start, end, of = dashed(start, end, _DASH * sheet.unit)
+        sheet.marks.append(Strokes(start, end, sheet.unit, sheet.theme.ghost, ("rods", rows[seen][of])))
 
 
 def draw_halos(sheet: Sheet) -> None:
@@ -81,7 +82,9 @@ def draw_halos(sheet: Sheet) -> None:
         if rods.sum() > MANY:
             continue
         if rods.any():
-            sheet.marks.append(Strokes(sheet.start[rods], sheet.end[rods], 11.0 * u, glow))
+            sheet.marks.append(
+                Strokes(sheet.start[rods], sheet.end[rods], 11.0 * u, glow, ("rods", sheet.rods[rods]))
+            )
         chosen = sheet.chosen(sheet.tagged(tag, "particles"), sheet.particles)
         _draw_circles(sheet, sheet.particles[chosen], glow, glow, 0.0, 5.0 * u)
 
@@ -110,20 +113,21 @@ def draw_rods(sheet: Sheet) -> None:
 
 def _draw_lines(sheet: Sheet, mask: NDArray[np.bool_] | slice, width: float, colour: Colour) -> None:
     """The lines of some rods, of one colour."""
-    rods, start, end = sheet.model.rods, sheet.start[mask], sheet.end[mask]
-    cables = rods.tension_only[sheet.rods[mask]]
+    rods, rows, start, end = sheet.model.rods, sheet.rods[mask], sheet.start[mask], sheet.end[mask]
+    cables = rods.tension_only[rows]
     if not cables.any():
-        sheet.marks.append(Strokes(start, end, width, colour))
+        sheet.marks.append(Strokes(start, end, width, colour, ("rods", rows)))
         return
     thin, slack = _CABLE * width, np.zeros_like(cables)
     if sheet.view.forces_known:
-        slack = cables & (rods.axial_force[sheet.rods[mask]] <= 0.0)
+        slack = cables & (rods.axial_force[rows] <= 0.0)
     if slack.any():
-        sheet.marks.append(Strokes(*dashed(start[slack], end[slack], _DASH * sheet.unit), thin, colour))
+        first, last, of = dashed(start[slack], end[slack], _DASH * sheet.unit)
+        sheet.marks.append(Strokes(first, last, thin, colour, ("rods", rows[slack][of])))
         sheet.legend.append("slack")
     for kind, thick in ((~cables, width), (cables & ~slack, thin)):
         if kind.any():
-            sheet.marks.append(Strokes(start[kind], end[kind], thick, colour))
+            sheet.marks.append(Strokes(start[kind], end[kind], thick, colour, ("rods", rows[kind])))
 
 
 def draw_particles(sheet: Sheet) -> None:
@@ -146,28 +150,31 @@ def _draw_circles(sheet: Sheet, rows: Rows, ink: Colour, hollow: Colour, rim: fl
     large = radii > LARGEST_STAMP * sheet.unit
     if large.any():
         for radius in np.unique(radii[large]).tolist():
-            _draw_large_circles(sheet, at[radii == radius], radius, ink, hollow, rim)
-        at, radii = at[~large], radii[~large]
+            alike = radii == radius
+            _draw_large_circles(sheet, rows[alike], at[alike], radius, ink, hollow, rim)
+        rows, at, radii = rows[~large], at[~large], radii[~large]
     if len(at):
-        sheet.marks.append(Discs(at, radii, ink, hollow, rim))
+        sheet.marks.append(Discs(at, radii, ink, hollow, rim, ("particles", rows)))
 
 
 def _draw_large_circles(
-    sheet: Sheet, at: Points, radius: float, ink: Colour, hollow: Colour, rim: float
+    sheet: Sheet, rows: Rows, at: Points, radius: float, ink: Colour, hollow: Colour, rim: float
 ) -> None:
     """Circles as polygons; of those so large that the whole viewport may lie inside, the arcs that may be seen."""
     low, high = bounds(sheet.viewport)
     if radius < _LARGEST_FILLED:
         corners = at[:, None] + circle(radius - rim / 2)
-        sheet.marks.append(Fills(corners, hollow if rim else ink))
+        sheet.marks.append(Fills(corners, hollow if rim else ink, ("particles", rows)))
         first, last = corners.reshape(-1, 2), np.roll(corners, -1, axis=1).reshape(-1, 2)
     else:
-        points = arcs(at, radius - rim / 2, (low + high) / 2, float(np.hypot(*(high - low))))
+        points, passing = arcs(at, radius - rim / 2, (low + high) / 2, float(np.hypot(*(high - low))))
+        rows = rows[passing]
         first, last = points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2)
     if rim:
         overlap = 0.5 * (last - first) / np.hypot(*(last - first).T)[:, None]  # pixel, so that joints close
-        start, end, _ = clip_segments(first - overlap, last + overlap, low - rim, high + rim)
-        sheet.marks.append(Strokes(start, end, rim, ink))
+        start, end, seen = clip_segments(first - overlap, last + overlap, low - rim, high + rim)
+        of = np.repeat(rows, len(first) // max(len(rows), 1))[seen]
+        sheet.marks.append(Strokes(start, end, rim, ink, ("particles", of)))
 
 
 def draw_shape(sheet: Sheet) -> None:
@@ -209,7 +216,7 @@ def label_names(sheet: Sheet) -> None:
                 label = Label(name, at, size, sheet.theme.text, -1e12, weight, backing, key=key)
             else:
                 label = Label(name, at, size, sheet.theme.muted, 1e12, weight, lines="avoid", key=key)
-            sheet.labels.append(label)
+            sheet.labels.append(label._replace(of=(table, row)))
 
 
 def _beside_particle(sheet: Sheet, row: int, half: tuple[float, float]) -> list[tuple[float, float]]:

@@ -15,7 +15,7 @@ from components.particle import Particle
 from components.tags import Hovered, Selected
 from components.view import View, drawn_positions
 from components.world import Derivation
-from systems.render.marks import Discs, Rectangles, Stamps, Strokes
+from systems.render.marks import Bars, Discs, Fills, Panel, Rectangles, Stamps, Strokes, Text
 from systems.render.picture import compose
 from systems.render.supports import DOWN, LEFT, NO_SUPPORT, RIGHT, UP, freest_sides
 from tests.systems.render.pictures import LIGHT, fill, marks_of, picture_of, triangle, view_of
@@ -192,3 +192,25 @@ def test_discs_of_any_size_are_drawn_by_few_lines(radius: float) -> None:
         assert len(points)
         edge = view.camera.to_pixels((0.0, 0.0))
         np.testing.assert_allclose(points[:, 0], edge[0], atol=5.0)
+
+
+def test_every_mark_of_an_element_says_whose_it_is() -> None:
+    model = triangle()
+    model.tag(model.rods["AB"], Selected)
+    fill(model, "particles.displacement", [(0, 0), (0.5, 0), (0, 0)])
+    picture = picture_of(model, all_diagrams=True, legend=False)
+    marks = [mark for mark in picture.marks if not isinstance(mark, Rectangles) and mark.of]
+    places = {Strokes: "start", Bars: "start", Stamps: "at", Discs: "at", Fills: "corners"}
+    for mark in marks:
+        if isinstance(mark, Panel | Text):
+            continue
+        assert len(mark.of[1]) == len(getattr(mark, places[type(mark)]))
+    said = {(mark.text, *mark.of) for mark in marks if isinstance(mark, Text)}
+    assert {
+        ("−28.34 kN", "rods", 0),
+        ("BC", "rods", 1),
+        ("C", "particles", 2),
+        ("20.01 kN", "particles", 0),
+    } <= said
+    anonymous = [mark for mark in picture.marks if getattr(mark, "of", None) is None]
+    assert not [mark for mark in anonymous if isinstance(mark, Bars | Stamps | Discs)]
