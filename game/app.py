@@ -18,14 +18,14 @@ from components.camera import Viewport
 from components.field import Vector
 from components.model import Model
 from components.view import MAGNIFICATIONS, View, magnified
-from game.documents import library
+from game.documents import library, models
 from game.documents.autosave import Autosave, unkept
 from game.documents.open_documents import ModelFile, OpenDocument
 from game.documents.preferences import DEFAULT_THEME, preferred_magnification, preferred_theme, remember
 from game.editor.frame import Frame
 from game.editor.scenes.load import Load
 from game.interrupts import closed_by_signals
-from game.pictures import on_paper, save, write
+from game.pictures import on_paper, write
 from game.preparation import Preparation
 from game.scripts.performance import FOOTER, LARGER, Performance
 from game.scripts.playing import Failure, Recorder
@@ -34,6 +34,7 @@ from game.session import Session
 from systems.base import System
 from systems.edit.hover import Hover
 from systems.input.pygame_input import PygameInput
+from systems.render.pygame_images import encoded
 from systems.render.pygame_render import PygameRender
 from systems.render.raster import load_raster
 
@@ -301,7 +302,8 @@ class App:
         """
         drawn = [(model, on_paper(view)) for model, view in self.session.stages if isinstance(model, Model)]
         if not drawn:
-            save(self.render.surface, path := _unused(Path.cwd() / "pinjoint.png"))
+            path = _unused(Path.cwd() / "pinjoint.png")
+            models.replace(path, encoded(self.render.surface, ".png"))
             return str(path)
         path = _unused(Path.cwd() / f"pinjoint{suffix}")
         write(drawn, path, self.render.surface.get_size(), self.session.view.theme)

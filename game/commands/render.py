@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+from game import pictures
 from game.commands.arguments import Parser, UsageError, positive
 from game.commands.options import ANSWERED, NOT_ANSWERED, add_model, session_of
 from game.commands.output import writable, writing
@@ -85,8 +86,6 @@ def _show_shape(session: Session, options: argparse.Namespace) -> None:
 
 
 def _draw(session: Session, options: argparse.Namespace, size: tuple[int, int]) -> str:
-    from game import pictures
-
     status = "time reached"
     if options.until_rest:
         status = session.run(until="rest", limit=options.limit)

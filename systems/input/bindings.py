@@ -130,6 +130,8 @@ BINDINGS: list[Binding] = [
     Binding("f1", "toggle help", EVERY, "these keys"),
     Binding("f11", "toggle full screen", EVERY, "full screen"),
     Binding("f12", "screenshot", EVERY, "save a picture"),
+    Binding("shift+f12", "picture as svg", EVERY, "save a picture as SVG"),
+    Binding("ctrl+f12", "picture as pdf", EVERY, "save a picture as PDF"),
     Binding("click", "select", LIVE, "select"),
     Binding("ctrl+click", "add to selection", LIVE, "add to the selection"),
     Binding("drag", "drag", (PAUSE,), "move it; or select in a box"),

@@ -99,8 +99,11 @@ def grouped(picture: Picture) -> list[tuple[Whose, Parts]]:
             key = of or order
             groups.setdefault(key, []).append(shape)
             painted[key] = painted.get(key, order) if label else order
-    keys = sorted(groups, key=painted.__getitem__)
-    return [(key if isinstance(key, tuple) else None, groups[key]) for key in keys]
+    owners = {key: key if isinstance(key, tuple) else None for key in groups}
+    return [
+        (owners[key], groups[key])
+        for key in sorted(groups, key=lambda key: (painted[key], owners[key] or ("", 0)))
+    ]
 
 
 def _whose(of: Owners | None, count: int) -> list[Whose]:

@@ -1,7 +1,8 @@
 """SVG: pictures as drawings in which every element is a group with its path as id, and texts are texts.
 
 Others can restyle them and check what they show: all lines, areas and texts of the rod AB stand in the group `rods.AB`,
-which has the class `rods`. Coordinates are pixels; the same picture gives the same file.
+which has the class `rods`. Ids have no spaces, which are written %20 there; `data-path` is the path as it is.
+Coordinates are pixels; the same picture gives the same file.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
+from itertools import groupby
 from urllib.parse import quote
 
 from components.wording import UNPRINTABLE
@@ -52,11 +54,17 @@ def as_svg(pictures: Sequence[tuple[Picture, Name]], size: tuple[int, int], titl
             if owner is not None:
                 name = _NOT_IN_IDS.sub(lambda found: quote(found[0], errors="replace"), path(owner))
                 known = f"{number}.{name}" if number > 1 else name
-                into = ET.SubElement(drawn, "g", {"id": known, "class": owner[0]})
-            for shape in parts:
-                _add(into, shape)
+                told = UNPRINTABLE.sub("�", path(owner))
+                into = ET.SubElement(drawn, "g", {"id": known, "class": owner[0], "data-path": told})
+            for alike, run in groupby(parts, _look):
+                if alike is not None:
+                    _add_lines(into, list(run))  # type: ignore[arg-type]
+                else:
+                    for shape in run:
+                        _add(into, shape)
     ET.indent(root)
-    return ET.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
+    made: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return made + b"\n"
 
 
 def _frame(root: ET.Element, picture: Picture) -> ET.Element:
@@ -66,12 +74,24 @@ def _frame(root: ET.Element, picture: Picture) -> ET.Element:
     return ET.SubElement(root, "svg", _box(v.left, v.top, v.width, v.height) | view)
 
 
+def _look(shape: Shape) -> tuple[float, Colour] | None:
+    """What lines have in common that one path can hold; None for other shapes."""
+    return (shape.width, shape.colour) if isinstance(shape, Line) else None
+
+
+def _add_lines(into: ET.Element, lines: Sequence[Line]) -> None:
+    """Lines of one look as a path: the dashes of a line, the sides of a diagram."""
+    points: list[tuple[str, tuple[float, float]]] = []
+    for line in lines:
+        if not points or points[-1][1] != line.start:
+            points.append(("M", line.start))
+        points.append(("L", line.end))
+    way = " ".join(f"{step}{_number(x)},{_number(y)}" for step, (x, y) in points)
+    ET.SubElement(into, "path", {"d": way, "fill": "none"} | _stroke(lines[0].colour, lines[0].width))
+
+
 def _add(into: ET.Element, shape: Shape) -> None:
     match shape:
-        case Line():
-            (x, y), (far_x, far_y) = shape.start, shape.end
-            ends = _numbers(x1=x, y1=y, x2=far_x, y2=far_y)
-            ET.SubElement(into, "line", ends | _stroke(shape.colour, shape.width))
         case Polygon():
             points = " ".join(f"{_number(x)},{_number(y)}" for x, y in shape.corners)
             ET.SubElement(into, "polygon", {"points": points} | _fill(shape.colour))
