@@ -21,6 +21,7 @@ COMFORTABLE_HEIGHT, LEAST_HEIGHT = 480.0, 240.0  # points that are left in a win
 BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
 COLUMN, COLUMN_SHARE, WIDEST_COLUMN = 306.0, 0.34, 340.0  # points, share of the canvas: the column of panels
+SIDE, LEAST_MODEL = 332.0, 240.0  # points: boxes to type into; what the model keeps beside them, or they take all
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
 
 
@@ -139,6 +140,7 @@ class View:
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
     panel appeared.
+    aside: the part of the window, at its left or right, that boxes to type into take; None: none.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -166,6 +168,7 @@ class View:
     shape: Shape | None = None
     fitted: bool = False
     shares: bool = False
+    aside: Viewport | None = None
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model."""
@@ -174,10 +177,14 @@ class View:
 
     def follow(self, model: Model) -> None:
         """Fit the model anew if it has left the picture, unless somebody looks closer."""
+        if self.fitted and not self.shows(model):
+            self.fit(model)
+
+    def shows(self, model: Model) -> bool:
+        """True if nothing of the model lies outside the room for it."""
         room, (x, y) = self.room, self.camera.to_pixels(drawn_places(model)).T
         across = (x >= room.left) & (x <= room.left + room.width)
-        if self.fitted and not (across & (y >= room.top) & (y <= room.top + room.height)).all():
-            self.fit(model)
+        return bool((across & (y >= room.top) & (y <= room.top + room.height)).all())
 
     def share(self, model: Model, *, shares: bool) -> None:
         """Leave room for panels, or not, and fit the model into what is left, unless somebody looks closer."""
@@ -198,7 +205,23 @@ class View:
     def canvas(self) -> Viewport:
         """The part of the viewport that is left for the model."""
         window, taken = self.camera.viewport, self.strip.width
-        return Viewport(window.left + taken, window.top, window.width - taken, window.height)
+        left, right = window.left + taken, window.left + window.width
+        if self.aside is not None and self.aside.left > left:
+            right = self.aside.left
+        elif self.aside is not None:
+            left = self.aside.left + self.aside.width
+        return Viewport(left, window.top, right - left, window.height)
+
+    def beside(self, *, at_left: bool) -> Viewport | None:
+        """Where boxes to type into stand beside the model; None where they would leave too little of it."""
+        c, width = self.canvas, round(SIDE * self.pixel_ratio)
+        if c.width - width < LEAST_MODEL * self.pixel_ratio:
+            return None
+        return replace(c, left=c.left if at_left else c.left + c.width - width, width=width)
+
+    def covers(self, pixel: Vector) -> bool:
+        """True if the toolbar or boxes to type into are at a pixel of the window, not the model."""
+        return self.strip.contains(pixel) or (self.aside is not None and self.aside.contains(pixel))
 
     @property
     def panels(self) -> Viewport:

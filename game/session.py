@@ -266,8 +266,8 @@ class Session(Context):
         self.offer_tools()
 
     def offer_tools(self) -> None:
-        """Let the toolbar show what can be done now; behind a panel it stays as it was."""
-        if self.scene not in FORMS:
+        """Let the toolbar show what can be done now; where it is not seen it stays as it was."""
+        if not self.scenes.active.covers(self):
             self.view.toolbar = toolbar_of(self)
 
     def press(self, key: str, pixel: Vector | None = None) -> None:
@@ -292,7 +292,24 @@ class Session(Context):
                 self.on_press(key, pixel)
             if self.time_passes:
                 self.get_ready()
-            self.act(name, pixel)
+            left = self._left_for_tools() if self._on_toolbar(key, pixel) else ""
+            if name != left:  # the tool that opens a scene closes it, too
+                self.act(name, pixel)
+
+    def _on_toolbar(self, key: str, pixel: Vector) -> bool:
+        """True if a press belongs to the toolbar."""
+        seen = not self.scenes.active.covers(self)
+        return key in ON_TOOLBAR and seen and self.view.strip.contains(pixel)
+
+    def _left_for_tools(self) -> str:
+        """Leave a scene in which tools do not act, for the one in which they do; returns its name, or ""."""
+        scene, tools = self.scene, self.scenes.active.tools
+        if tools == scene:
+            return ""
+        self.scenes.request(*dict.fromkeys(("pause", tools)))
+        self.scenes.apply(self)
+        self.offer_tools()
+        return scene
 
     def _action_at(self, key: str, pixel: Vector) -> str | None:
         """The action of a key or button with the pointer at a pixel; clicks on the toolbar take its tools.
@@ -301,7 +318,7 @@ class Session(Context):
         """
         if key == "escape" and self.view.help:
             return "close help"
-        if key not in ON_TOOLBAR or self.scene in FORMS or not self.view.strip.contains(pixel):
+        if not self._on_toolbar(key, pixel):
             return action_for(self.scene, key)
         buttons = self.view.toolbar.buttons(self.view.camera.viewport, self.view.pixel_ratio)
         hit = (button.tool for button in buttons if button.contains(pixel))
@@ -394,7 +411,7 @@ class Session(Context):
     def stages(self) -> Sequence[Stage]:
         """All that is drawn: models and forms of the active scene, each in its view, toolbar and footer."""
         stages = list(self.scenes.active.stages(self))
-        if self.scene not in FORMS:
+        if not self.scenes.active.covers(self):
             stages.append((self.view.toolbar, self.view))
         if self.footer is not None:
             stages.append((self._blank, self.footer))

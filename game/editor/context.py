@@ -122,6 +122,11 @@ class Scene:
     mod: Mod | None = None
 
     @property
+    def tools(self) -> str:
+        """The scene whose tools the toolbar offers; one in which they do not act is left when one is clicked."""
+        return self.name
+
+    @property
     def message(self) -> str:
         """The question, answer or refusal of the scene; "" if none.
 
@@ -151,6 +156,10 @@ class Scene:
     def fit(self, context: Context) -> None:
         """Show everything."""
         context.view.fit(context.model)
+
+    def covers(self, context: Context) -> bool:
+        """True if boxes or pictures of models take the whole window, the toolbar included."""
+        return False
 
     def helped(self, context: Context) -> Viewport:
         """The part of the window for the list of keys."""

@@ -16,14 +16,14 @@ Condition = Callable[[Context], bool]
 
 def toolbar_of(context: Context) -> Toolbar:
     """The buttons of the active scene; those whose keys would do nothing now are not enabled."""
-    groups = toolbar(context.scene)
+    groups = toolbar(context.scenes.active.tools)
     return Toolbar(tuple(tuple(_tool(context, binding) for binding in group) for group in groups))
 
 
 def _tool(context: Context, binding: Binding) -> Tool:
     action = binding.action
     pressed = action == _in_hand(context) or (action in _PRESSED and _PRESSED[action](context))
-    enabled = context.scene in binding.scenes and (action not in _NEEDS or _NEEDS[action](context))
+    enabled = context.scenes.active.tools in binding.scenes and (action not in _NEEDS or _NEEDS[action](context))
     icon = "pause" if action == "toggle run" and pressed else action
     return Tool(action, binding.title, binding.key, icon, pressed, enabled)
 
@@ -49,9 +49,10 @@ def _guided(condition: Callable[[Any], bool]) -> Condition:
 
 # By action that switches something: whether it is on.
 _PRESSED: dict[str, Condition] = {
-    "toggle run": lambda context: context.scene == "simulation",
+    "toggle run": lambda context: context.scenes.active.tools == "simulation",
     "toggle diagrams": _shows_diagrams,
     "toggle diagrams of sets": _shows_diagrams,
+    "properties": lambda context: context.scene == "properties",
     "toggle theory": lambda context: context.view.theory,
     "toggle energy": lambda context: context.view.energy,
     "toggle help": lambda context: context.view.help > 0,

@@ -25,9 +25,7 @@ class Theme:
     force: arrows of external forces and reactions.
     heading, problem, problem_panel: the mode's name; why something stopped, and what it is written on.
     running, resting, halted: the state's dot in the status bar.
-    form, form_raised: behind the boxes of properties, save and load; what stands out of it.
-    form_text, form_muted, form_problem: what is written there.
-    box, box_text, box_muted: a box to type into; its contents; what is said in it in passing.
+    focus: the box that is typed into, and the tile that Return opens.
     """
 
     title: str
@@ -53,14 +51,7 @@ class Theme:
     running: Colour
     resting: Colour
     halted: Colour
-    form: Colour
-    form_raised: Colour
-    form_text: Colour
-    form_muted: Colour
-    form_problem: Colour
-    box: Colour
-    box_text: Colour
-    box_muted: Colour
+    focus: Colour
 
 
 def theme_names() -> list[str]:

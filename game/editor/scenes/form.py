@@ -60,6 +60,9 @@ class FormScene(Scene):
         """The part of the window that the form takes."""
         return context.view.camera.viewport
 
+    def covers(self, context: Context) -> bool:
+        return True
+
     def helped(self, context: Context) -> Viewport:
         return self.viewport(context)
 
@@ -168,7 +171,7 @@ class FormScene(Scene):
         layout, heading = self.layout(context), self.form.heading
         if layout.place_of(item) is not None:
             return
-        row, above = row_of(self.form, item, layout)
+        row, above = row_of(layout, item)
         heading.first = min(layout.first, above)
         while heading.first < row and self.layout(context).place_of(item) is None:
             heading.first += 1

@@ -164,7 +164,7 @@ def test_steps_by_the_toolbar_ignore_the_selection() -> None:
     assert session.particles["B"].position == (1.0, 1.0)
 
 
-def test_the_force_method_has_its_own_tools_and_panels_none() -> None:
+def test_the_force_method_has_its_own_tools_and_sheets_none() -> None:
     session = opened("hyperstatic")
     push(session, "force method")
     assert session.scene == "force method"
@@ -172,11 +172,24 @@ def test_the_force_method_has_its_own_tools_and_panels_none() -> None:
     assert "undo" not in buttons(session)
     push(session, "back")
     assert session.scene == "pause"
+    push(session, "load")
+    assert session.scene == "load"
+    assert not any(shown is session.view.toolbar for shown, _ in session.stages)
+
+
+def test_tools_beside_properties_leave_them_and_act() -> None:
+    session = opened("isostatic")
     push(session, "properties")
     assert session.scene == "properties"
-    push(session, "toggle run")  # there is no toolbar to click now
+    session.click_box("drag")
+    session.type("3")
+    push(session, "toggle run")
+    assert session.scene == "simulation"
+    assert session.environment.drag == 3.0, "what was typed counts"
+    push(session, "properties")
     assert session.scene == "properties"
-    assert not any(shown is session.view.toolbar for shown, _ in session.stages)
+    push(session, "properties")
+    assert session.scene == "simulation", "the same button closes them"
 
 
 def test_the_tip_names_the_action_and_its_key() -> None:
