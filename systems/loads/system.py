@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from pkgutil import resolve_name
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from components.load import CONSTANT, HISTORIES, HistoryKind
+from components.load import CONSTANT, HISTORIES, History, HistoryKind
 from components.model import Model
 from systems.base import Law
 
@@ -52,6 +53,16 @@ class VaryingLoads(Law):
             f"{prefix}_values": np.array(values, dtype=np.float64),
             f"{prefix}_first": np.array(first, dtype=np.uint32),
         }
+
+
+def factor_at(history: History, time: float) -> float:
+    """The factor of a history at a time (s); NaN where the mod that brought it is off."""
+    kind = HISTORIES[history["kind"]]
+    factor = resolve_name(kind.factor) if isinstance(kind.factor, str) else kind.factor
+    values = np.array(_flattened(history[name] for name in kind.parameters), dtype=np.float64)
+    if kind.mod is None:
+        return float(factor(time, values, 0))
+    return float(kind.mod.call("a load's factor", factor, time, values, 0, otherwise=np.nan, declared=float))
 
 
 def _flattened(parameters: Iterable[Any]) -> list[float]:

@@ -13,6 +13,7 @@ from systems.render.marks import Picture
 from systems.render.overlays import draw_notice, draw_overlays, draw_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
+from systems.render.pointed import draw_pointed
 from systems.render.readouts import draw_readouts
 from systems.render.sheet import ABOVE, BELOW, measure
 from systems.render.structure import (
@@ -65,5 +66,5 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Pla
     overlays += draw_notice(sheet, room)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
     scale = draw_scale(sheet, room) if model.particles.count else []
-    over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays]
+    over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *draw_pointed(sheet), *overlays]
     return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over])

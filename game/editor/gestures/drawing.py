@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
+from components import written
 from components.field import Vector
 from components.handle import Handle
 from components.model import Model
@@ -82,17 +83,17 @@ class DrawRod(DrawFromParticle):
         if other is None:
             raise Refusal("A rod ends at a particle; point at one. P makes a new one.")
         rod = join(context.model, self.particle, other)
-        context.notice = f"{context.name(rod)}: {rod.rest_length:.6g} m"
+        context.notice = f"{context.name(rod)}: {written.length(rod.rest_length)}"
 
     def preview(self, context: Context, pixel: Vector) -> Preview | None:
         start = self.start(context)
         other = pick_particle(context.model, context.view, pixel)
         if other is None or other is self.particle:
             end = context.view.camera.to_model(pixel)
-            return Preview("rod", start, end, f"{math.dist(start, end):.3g} m")
+            return Preview("rod", start, end, written.length(math.dist(start, end), 3))
         try:
             check_ends(context.model, self.particle, other)
-            label = f"{distance(self.particle, other):.6g} m"
+            label = written.length(distance(self.particle, other))
         except Refusal:
             label = "joined already"
         return Preview("rod", start, drawn_at(context, other), label)
@@ -116,7 +117,7 @@ class DrawArrow(DrawFromParticle):
 
     def shown(self, value: Vector) -> str:
         """The text of a vector."""
-        return f"({value[0]:g}, {value[1]:g}) {self.unit}"
+        return f"{written.vector(value)} {self.unit}"
 
     def drop(self, context: Context, pixel: Vector) -> None:
         value = self.value(context, pixel)
@@ -183,7 +184,7 @@ class DrawElement(Drawing):
 
 def _length_and_angle(start: Vector, end: Vector) -> str:
     angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0])) + 0.0
-    return f"{math.dist(start, end):.6g} m, {angle:.4g}°"
+    return f"{written.length(math.dist(start, end))}, {written.given(angle, 4)}°"
 
 
 def drawing_of(kind: type[Handle], tool: str, key: str) -> type[DrawElement]:
