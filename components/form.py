@@ -57,12 +57,12 @@ class Form(World):
     """The boxes, readings and tiles of one screen.
 
     They are entities of a world of their own, apart from the undo log and the run of the model.
-    check: why a box's text is refused, or "".
+    check: why a box's text is refused, or "". accept: the title of the button that does what Return does; "": none.
     """
 
-    def __init__(self, text: str, check: Callable[[Box], str] = lambda box: "") -> None:
+    def __init__(self, text: str, check: Callable[[Box], str] = lambda box: "", accept: str = "") -> None:
         super().__init__((Heading, Box, Tile, Reading))
-        self.check = check
+        self.check, self.accept = check, accept
         self.heading.text = text
 
     @property

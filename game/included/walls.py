@@ -13,9 +13,10 @@ from components.tags import Hovered
 from game.mods import App
 from systems.render.clip import bounds, clip_segments
 from systems.render.labels import STRONG, Label, half_size
-from systems.render.marks import Discs, Mark, Strokes
-from systems.render.sheet import Sheet
-from systems.render.theme import faded
+from systems.render.marks import Discs, Mark, Points, Strokes
+from systems.render.sheet import Rows, Sheet
+from systems.render.structure import HALO_OPACITY
+from systems.render.theme import Colour, faded
 
 WIDTH = 4.0  # points, of the line that is drawn
 
@@ -64,14 +65,22 @@ def draw(sheet: Sheet) -> Iterator[Mark]:
     start, end, rows = clip_segments(ends[:, 0], ends[:, 1], low - 2 * width, high + 2 * width)
     sheet.occupancy.line(start, end, STRONG)
     selected, hovered = (sheet.tagged(tag, "walls") for tag in (Selected, Hovered))
-    layers = [(selected, sheet.theme.selected), (hovered, sheet.theme.hover)]
-    for colour, chosen in sheet.colours_of(rows, layers, sheet.theme.ink):
-        of = rows[chosen]
-        yield Strokes(start[chosen], end[chosen], width, colour, ("walls", of))
-        caps = np.concatenate([start[chosen], end[chosen]])
-        yield Discs(caps, np.full(len(caps), 0.5 * width), colour, colour, of=("walls", np.tile(of, 2)))
+    for marked, halo in ((hovered, sheet.theme.hover), (selected, sheet.theme.selected)):
+        chosen = sheet.chosen(marked, rows)
+        glow = faded(halo, HALO_OPACITY)
+        yield from _thick(start[chosen], end[chosen], 3.5 * width, glow, rows[chosen])
+    yield from _thick(start, end, width, sheet.theme.ink, rows)
     for row in np.union1d(selected, hovered).tolist():
         name_wall(sheet, row, *ends[row])
+
+
+def _thick(start: Points, end: Points, width: float, colour: Colour, rows: Rows) -> Iterator[Mark]:
+    """Lines with round ends."""
+    if len(start):
+        yield Strokes(start, end, width, colour, ("walls", rows))
+        caps = np.concatenate([start, end])
+        radius = np.full(len(caps), 0.5 * width)
+        yield Discs(caps, radius, colour, colour, of=("walls", np.tile(rows, 2)))
 
 
 def name_wall(sheet: Sheet, row: int, start: NDArray[np.float64], end: NDArray[np.float64]) -> None:

@@ -57,12 +57,16 @@ def heading(model: Model, selected: Sequence[Handle]) -> str:
 
 
 def subjects(model: Model, selected: Sequence[Handle]) -> list[Subject]:
-    """The selected elements by kind, the loads on a single particle, and the settings of all of a kind."""
+    """The selected elements by kind, the loads on a single particle, and the settings of all of a kind.
+
+    Without any, the environment and the shown grid.
+    """
     kinds = dict.fromkeys(map(type, selected))
     groups: list[list[Handle]] = [[h for h in selected if type(h) is kind] for kind in kinds]
     found = [_subject(model, heading(model, group), group) for group in groups]
     if not selected:
         found = [_subject(model, heading(model, []), [model.environment])]
+        found += [_subject(model, model.describe(grid), [grid]) for grid in model.grids if grid.shown]
     found += [_subject(model, model.describe(load), [load]) for load in _loads_on(model, selected)]
     for section, kind, of_rods in (("All particles", Particle, False), ("All rods", Rod, True)):
         if not selected or kind in kinds:

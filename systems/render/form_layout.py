@@ -23,6 +23,7 @@ MESSAGE, MESSAGE_LINE = 12.0, 16.0  # points, size of type and distance of lines
 SECTION = 28.0
 COLUMN_GAP = 14.0
 HEADING = 104.0  # points, where a low viewport has the box beside the heading
+CLOSE, ACCEPT = 24.0, 64.0  # points, side of the button that leaves; width of that which does what Return does
 NARROW = 130.0  # points, a box less wide does not share its row
 TILE, TILE_GAP, CAPTION, PROPORTION = 172.0, 16.0, 38.0, 0.6
 LOWEST = 0.65  # share of a picture's height that it keeps where one more row fits then
@@ -46,6 +47,7 @@ class FormLayout:
     unit: pixels per point. left, right: the edges of all text. header: the middle of the heading's line, whose text
     has the room `heading_width`. message: the middle of the message's first line. top, bottom: the edges of the rows.
     rows: those that are scrolled. first, shown: the number of the first one in sight, and of those in sight.
+    close, accept: the buttons that leave it, and that do what Return does.
     """
 
     viewport: Viewport
@@ -57,6 +59,8 @@ class FormLayout:
     message: float
     top: float
     bottom: float
+    close: Rectangle
+    accept: Rectangle | None
     first: int = 0
     shown: int = 0
     rows: list[Row] = field(default_factory=list)
@@ -87,14 +91,18 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
     top = header + (16.0 if low else 24.0) * u
     bottom = v.top + v.height - (22.0 if low else 58.0) * u
     fixed: list[Place] = []
+    close = Rectangle(left + width - CLOSE * u, header - CLOSE * u / 2, CLOSE * u, CLOSE * u)
+    accept = None
     if _has_files(form):
         beside_heading = HEADING * u if low else 0.0
         top = v.top + 6.0 * u if low else top + TITLE * u
-        room = min(width - beside_heading, 420.0 * u)
+        taken = (ACCEPT + 8.0 + (CLOSE + 8.0 if low else 0.0)) * u
+        room = max(min(width - beside_heading - taken, 420.0 * u), 40.0 * u)
+        accept = Rectangle(left + beside_heading + room + 8.0 * u, top, ACCEPT * u, BOX * u)
         fixed = [Place(left + beside_heading, top, room, BOX * u, box) for box in form.boxes]
         top += (BOX + 22.0) * u
     shares_line = low and bool(fixed)
-    heading_width = (HEADING - 8.0) * u if shares_line else width
+    heading_width = (HEADING - 8.0) * u if shares_line else width - (CLOSE + 8.0) * u
     message, lines = top - 11.0 * u, message_lines(form, width, u)
     top += max(len(lines) - 1, 0) * MESSAGE_LINE * u
     rows = list(_tile_rows(form, width / u) if _has_files(form) else _box_rows(form, width / u))
@@ -105,7 +113,7 @@ def lay_out(form: Form, viewport: Viewport, unit: float) -> FormLayout:
         height = _height(row, 0.0, u)
         fixed += _placed(row, left, top, width, height, u)
         top += height
-    layout = FormLayout(v, u, left, left + width, header, heading_width, message, top, bottom)
+    layout = FormLayout(v, u, left, left + width, header, heading_width, message, top, bottom, close, accept)
     return _with_rows(form, layout, fixed, rows)
 
 

@@ -122,7 +122,7 @@ def _heading(sheet: Sheet) -> tuple[list[Mark], tuple[float, float]]:
     for number, line in enumerate(lines):
         y = top + 9.0 * u + number * line_height(size)
         sheet.occupancy.block(left, y - size / 2, text_width(line, size, "semibold"), size)
-        marks.append(Text(line, left, y, size, sheet.theme.heading, "semibold"))
+        marks.append(Text(line, left, y, size, sheet.theme.text, "semibold"))
     right = left + max(text_width(line, size, "semibold") for line in lines)
     return marks, (right, top + len(lines) * line_height(size) - 4.0 * u)
 
@@ -143,7 +143,7 @@ def _caption(sheet: Sheet, top: float) -> tuple[list[Mark], float]:
     for line in (*sheet.view.caption, *shape):
         weight, colour = ("semibold", theme.text) if number == 0 else ("regular", theme.muted)
         if line in shape:
-            weight, colour = "semibold", theme.hover
+            weight, colour = "semibold", theme.sketch
         for text in wrapped(line, room, size, weight):
             y = top + 8.0 * u + (number + 0.5) * line_height(size)
             width = text_width(text, size, weight)
@@ -217,8 +217,8 @@ _MEANINGS = {
     "compression": "compression (kN)",
     "yielding": "yielding",
     "slack": "slack cable",
-    "force": "external force (kN)",
-    "load": "load",
+    "load": "load (kN)",
+    "reaction": "reaction (kN)",
     "velocity": "velocity",
 }
 
@@ -267,10 +267,10 @@ def _rows(widths: list[float], gap: float, room: float) -> list[tuple[int, int]]
 def _swatch(sheet: Sheet, name: str, x: float, y: float, width: float) -> list[Mark]:
     """A small sample of what a colour means: a diagram, a yielding rod, a slack cable, an arrow."""
     u, theme = sheet.unit, sheet.theme
-    role = {"slack": "ink", "load": "force", "velocity": "ink"}.get(name, name)
+    role = {"slack": "ink", "velocity": "ink"}.get(name, name)
     colour = getattr(theme, role)
     ends = np.array([[x, y]]), np.array([[x + width, y]])
-    if name in ("force", "load", "velocity"):
+    if name in ("load", "reaction", "velocity"):
         return [Stamps("arrow", ends[0], width, u, colour, colour)]
     if name == "yielding":
         return [Strokes(*ends, 3.0 * u, colour)]

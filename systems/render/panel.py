@@ -23,7 +23,7 @@ from systems.render.form_layout import (
     message_lines,
 )
 from systems.render.help import draw_help
-from systems.render.marks import Fills, Mark, Panel, Picture, Text, boxes
+from systems.render.marks import Fills, Mark, Panel, Picture, Text, boxes, cross
 from systems.render.sheet import BELOW, measure
 from systems.render.structure import draw_particles, draw_rods
 from systems.render.supports import draw_supports, support_sides
@@ -82,6 +82,23 @@ class _Writer:
         for number, line in enumerate(message_lines(self.form, layout.right - layout.left, u)):
             y = layout.message + number * MESSAGE_LINE * u
             marks.append(Text(line, layout.left, y, small, self.theme.problem))
+        return [*marks, *self._buttons()]
+
+    def _buttons(self) -> list[Mark]:
+        """The one that leaves the form, and the one that does what Return does."""
+        layout, theme, u = self.layout, self.theme, self.unit
+        marks: list[Mark] = []
+        for place, title in ((layout.close, ""), (layout.accept, self.form.accept)):
+            if place is None or not (title or place is layout.close):
+                continue
+            under = self.view.pointer is not None and place.contains(self.view.pointer)
+            if under or title:
+                marks.append(_grown(place, 0.0, 4.0 * u, faded(theme.text, 0.22 if under else 0.12)))
+            if title:
+                x, y = place.left + place.width / 2, place.top + place.height / 2
+                marks.append(Text(title, x, y, self.font(_TEXT), theme.text, "semibold", "centre"))
+            else:
+                marks.append(cross(place, u, theme.muted))
         return marks
 
     def footer(self) -> list[Mark]:

@@ -44,7 +44,7 @@ class _Drawing:
         labels = max((text_width(text, self.size) for _, text in self.y_ticks), default=0.0)
         self.left, self.right = left + labels + 6.0 * unit, left + width - 4.0 * unit
         self.top, self.bottom = top + 16.0 * unit, top + height - 30.0 * unit
-        colours = theme.force, theme.tension, theme.running, theme.halted, theme.yielding, theme.ink
+        colours = theme.curve_1, theme.curve_2, theme.curve_3, theme.curve_4
         self.coloured = list(zip(plot.curves, itertools.cycle(colours), strict=False))
 
     def pixels(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> Points:

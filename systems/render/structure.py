@@ -22,6 +22,8 @@ _DASH = 5.0  # points
 _GHOST_FROM = 4.0  # points of displacement
 _SHAPE_WIDTH, _SHAPE_RADIUS, _SHAPE_FROM = 1.5, 2.5, 0.5  # points; drawn from so large a displacement on
 _SHAPE_OPACITY = 0.75
+HALO_OPACITY = 0.4
+_HALO = 0.12  # of the length of rods, by which halos stand out, within limits
 _LARGEST_FILLED = 10_000.0  # pixels, well within the 16 bits of filled polygons
 
 
@@ -74,23 +76,21 @@ def draw_ghost(sheet: Sheet) -> None:
 
 
 def draw_halos(sheet: Sheet) -> None:
-    """A soft glow around selected elements, unless they are very many, and around the one that a click would hit."""
+    """Neutral halos around selected elements and, lighter, the one that a click would hit; forces keep their colours."""
     theme, u = sheet.theme, sheet.unit
-    for tag, colour, opacity in ((Selected, theme.selected, 0.16), (Hovered, theme.hover, 0.22)):
-        glow = faded(colour, opacity)
+    around = float(np.clip(_HALO * typical_length(sheet.start, sheet.end), 1.5 * u, 5.0 * u))
+    for tag, colour in ((Hovered, theme.hover), (Selected, theme.selected)):
+        glow = faded(colour, HALO_OPACITY)
         rods = sheet.chosen(sheet.tagged(tag, "rods"), sheet.rods)
-        if rods.sum() > MANY:
-            continue
         if rods.any():
-            sheet.marks.append(
-                Strokes(sheet.start[rods], sheet.end[rods], 11.0 * u, glow, ("rods", sheet.rods[rods]))
-            )
+            width, of = 2.0 * around + _rod_width(sheet), ("rods", sheet.rods[rods])
+            sheet.marks.append(Strokes(sheet.start[rods], sheet.end[rods], width, glow, of))
         chosen = sheet.chosen(sheet.tagged(tag, "particles"), sheet.particles)
-        _draw_circles(sheet, sheet.particles[chosen], glow, glow, 0.0, 5.0 * u)
+        _draw_circles(sheet, sheet.particles[chosen], glow, glow, 0.0, around)
 
 
 def draw_rods(sheet: Sheet) -> None:
-    """A line between the drawn positions of the ends: red if selected, violet while yielding.
+    """A line between the drawn positions of the ends, violet while yielding.
 
     Cables are thin, and dashed while they are slack.
     """
@@ -98,17 +98,21 @@ def draw_rods(sheet: Sheet) -> None:
     yielding, limited = sheet.rods[:0], np.isfinite(rods.tension_limit) | np.isfinite(rods.compression_limit)
     if sheet.view.forces_known and limited.any():
         yielding = np.flatnonzero(rods.yielding)
-    selected = sheet.tagged(Selected, "rods")
-    width = float(np.clip(0.12 * typical_length(sheet.start, sheet.end) / sheet.unit, 0.5, 2.5)) * sheet.unit
+    width = _rod_width(sheet)
     by_force = {"compression": sheet.pushed, "tension": sheet.pulled}
     layers = [(wanted, getattr(theme, name)) for name, wanted in by_force.items()]
-    layers += [(yielding, theme.yielding), (selected, theme.selected)]
+    layers.append((yielding, theme.yielding))
     for colour, mask in sheet.colours_of(sheet.rods, layers, theme.ink):
-        wider = 1.35 if colour in (theme.yielding, theme.selected) else 1.0
+        wider = 1.35 if colour == theme.yielding else 1.0
         _draw_lines(sheet, mask, width * wider, colour)
     named = {**by_force, "yielding": yielding}
     sheet.legend += [name for name, wanted in named.items() if len(wanted)]
     sheet.occupancy.line(sheet.start, sheet.end, STRONG)
+
+
+def _rod_width(sheet: Sheet) -> float:
+    """Pixels; less where rods are short."""
+    return float(np.clip(0.12 * typical_length(sheet.start, sheet.end) / sheet.unit, 0.5, 2.5)) * sheet.unit
 
 
 def _draw_lines(sheet: Sheet, mask: NDArray[np.bool_] | slice, width: float, colour: Colour) -> None:
@@ -131,15 +135,12 @@ def _draw_lines(sheet: Sheet, mask: NDArray[np.bool_] | slice, width: float, col
 
 
 def draw_particles(sheet: Sheet) -> None:
-    """Open circles of their own radius; red if selected. Very small ones are filled."""
-    theme = sheet.theme
-    layers = [(sheet.tagged(Selected, "particles"), theme.selected)]
-    for colour, mask in sheet.colours_of(sheet.particles, layers, theme.ink):
-        rows = sheet.particles[mask]
-        small = sheet.radii[rows] < 3.0 * sheet.unit
-        for chosen, rim in ((rows[small], 0.0), (rows[~small], RIM * sheet.unit)):
-            if len(chosen):
-                _draw_circles(sheet, chosen, colour, theme.hollow, rim, 0.0)
+    """Open circles of their own radius. Very small ones are filled."""
+    theme, rows = sheet.theme, sheet.particles
+    small = sheet.radii[rows] < 3.0 * sheet.unit
+    for chosen, rim in ((rows[small], 0.0), (rows[~small], RIM * sheet.unit)):
+        if len(chosen):
+            _draw_circles(sheet, chosen, theme.ink, theme.hollow, rim, 0.0)
     if len(sheet.particles) <= MANY:
         sheet.occupancy.block_squares(sheet.centres[sheet.particles], 0.8 * sheet.radii[sheet.particles])
 
@@ -185,7 +186,7 @@ def draw_shape(sheet: Sheet) -> None:
     if shape.about is not None:
         position = position + shape.about * sheet.model.settings.displacement_scale
     places = sheet.view.camera.to_pixels(position + shape.displacement)
-    colour = faded(sheet.theme.hover, _SHAPE_OPACITY)
+    colour = faded(sheet.theme.sketch, _SHAPE_OPACITY)
     pixels = np.hypot(*shape.displacement.T) * sheet.view.camera.scale
     moving = pixels > _SHAPE_FROM * sheet.unit
     ends = sheet.ends[moving[sheet.ends].any(axis=1)]

@@ -17,7 +17,6 @@ from systems.render.marks import Points
 
 Parts = list[tuple[str, Points]]  # ("ink" or "hollow", corners (k, 2)), in painter's order
 
-ARROW_LENGTH = 20.0  # points
 SUPPORT_DEPTH = 25.0  # points from the particle's rim to the far side of the ground
 RIM = 1.75  # points
 LARGEST_STAMP = 64.0  # points, greatest radius of a circle drawn as a stamp

@@ -35,7 +35,7 @@ def test_displacements_too_small_to_be_seen_are_told(displacement: float, told: 
 
 
 def test_legend_names_only_what_occurs() -> None:
-    meanings = {"tension (kN)", "compression (kN)", "yielding", "external force (kN)"}
+    meanings = {"tension (kN)", "compression (kN)", "yielding", "load (kN)", "reaction (kN)"}
     model = triangle()
     assert not meanings & set(picture_of(model).texts)
     assert meanings & set(picture_of(model, all_diagrams=True).texts) == meanings - {"yielding"}
@@ -50,7 +50,7 @@ def test_heading_and_displacement_scale_are_written() -> None:
     model.settings.displacement_scale = 50.0
     picture = picture_of(model, heading="Pause")
     (heading,) = [mark for mark in marks_of(picture, Text) if mark.text == "Pause"]
-    assert heading.colour == LIGHT.heading
+    assert heading.colour == LIGHT.text
     assert heading.x < 100
     assert heading.y < 50
     assert any("displacements ×50" in text for text in picture.texts)

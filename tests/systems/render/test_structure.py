@@ -72,16 +72,17 @@ def test_selection_hovering_and_yielding_show() -> None:
     model.tag(model.rods["AB"], Hovered)
     picture = picture_of(model, pointer=(0.0, 0.0))
     view = view_of(model)
-    a, _, c = view.camera.to_pixels(model.particles.position)
+    a, b, c = view.camera.to_pixels(model.particles.position)
     strokes = reversed(marks_of(picture, Strokes))  # the first of each colour, since the legend comes later
     opaque = {s.colour: s for s in strokes if s.colour[3] == 255}
-    np.testing.assert_allclose(opaque[LIGHT.selected].end[0], c)  # selected wins over yielding
-    np.testing.assert_allclose(opaque[LIGHT.yielding].start[0], c)
-    (halo,) = marks_of(picture, Strokes, LIGHT.hover)
-    assert halo.colour[3] < 128
-    np.testing.assert_allclose(halo.start[0], a)
-    (ring,) = [discs for discs in marks_of(picture, Discs) if discs.rim and discs.ink == LIGHT.selected]
-    np.testing.assert_allclose(ring.at, [a])
+    np.testing.assert_allclose(opaque[LIGHT.yielding].end[0], c)  # BC, though it is selected
+    np.testing.assert_allclose(opaque[LIGHT.yielding].start[1], c)
+    halos = [*marks_of(picture, Strokes, LIGHT.hover), *marks_of(picture, Strokes, LIGHT.selected)]
+    assert all(halo.colour[3] < 128 and halo.width > 3 * opaque[LIGHT.ink].width for halo in halos)
+    np.testing.assert_allclose([halo.start[0] for halo in halos], [a, b])
+    (glow,) = [discs for discs in marks_of(picture, Discs) if discs.ink[:3] == LIGHT.selected[:3]]
+    np.testing.assert_allclose(glow.at, [a])
+    assert {discs.ink for discs in marks_of(picture, Discs) if discs.rim} == {LIGHT.ink}
 
 
 def test_cables_are_thin_and_slack_ones_dashed() -> None:

@@ -9,7 +9,7 @@ from components.toolbar import Button, Tool
 from components.view import drawn_positions
 from game import Session
 from game.editor.actions import ACTIONS
-from systems.input.bindings import ADDED_TOOLS, BINDINGS, TOOLBAR
+from systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, BINDINGS, TOOLBAR
 from systems.render.icons import ADDED, icon, icons
 from systems.render.marks import Stamps
 from systems.render.picture import compose
@@ -51,7 +51,8 @@ def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
         assert action in ACTIONS
         assert icon(action)
         assert any(binding.action == action and binding.title for binding in BINDINGS)
-    assert {*icons(), *ADDED} == {*offered, "pause"}
+    added = [binding.action for binding in ADDED_BUTTONS]
+    assert {*icons(), *ADDED} == {*offered, *added, "pause"}
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -207,6 +208,6 @@ def test_pressed_and_unavailable_tools_look_different() -> None:
     toolbar, view = session.stages[-1]
     theme = load_theme()
     inks = {mark.symbol: mark.ink for mark in compose(toolbar, view, theme).marks if isinstance(mark, Stamps)}
-    assert inks["toggle diagrams"] == theme.hover
+    assert inks["toggle diagrams"] == theme.focus
     assert inks["place"] == theme.text
     assert inks["redo"][3] < 128
