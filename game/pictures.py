@@ -53,6 +53,7 @@ def on_paper(view: View, camera: Camera | None = None) -> View:
         shares=False,
         preview=None,
         pointer=None,
+        pointed=None,
         help=0,
     )
 

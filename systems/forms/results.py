@@ -13,11 +13,10 @@ from components import written
 from components.field import Field, Role
 from components.form import Form, Reading
 from components.handle import Handle
-from components.load import CONSTANT, Load
+from components.load import CONSTANT, Load, factor_at
 from components.model import Model
 from components.particle import Particle
 from components.rod import Rod
-from systems.loads.system import factor_at
 
 SECTION = "Results"
 RESIDUAL = 1e-12  # of a length (m), force (kN) or speed (m/s): nothing, where all of them are as small
@@ -49,6 +48,19 @@ def results(model: Model, selected: Sequence[Handle]) -> Iterator[Result]:
         yield from _of_rods(model, rows["rods"])
     if len(rows["particles"]):
         yield from _of_particles(model, rows["particles"])
+
+
+def told(model: Model, handle: Handle, *, forces_known: bool) -> list[tuple[str, str]]:
+    """What is said of an element that is pointed at: its results, the loads on it, what a mod's element was given.
+
+    Results only once forces are known.
+    """
+    found = [*results(model, [handle])] if forces_known else []
+    if isinstance(handle, Particle):
+        found += _of_loads(model, handle.row)
+    elif handle.points:
+        found += _of_others(model, handle)
+    return [(result.title, result.text) for result in found]
 
 
 # --- rods ---------------------------------------------------------------------------------------------
@@ -123,7 +135,7 @@ def _of_particles(model: Model, rows: NDArray[np.intp]) -> Iterator[Result]:
 # --- loads, and elements of mods -----------------------------------------------------------------------
 
 
-def of_loads(model: Model, particle: int) -> Iterator[Result]:
+def _of_loads(model: Model, particle: int) -> Iterator[Result]:
     """What the loads on a particle are now, of those that vary beside their force at factor 1."""
     for row in np.flatnonzero(model.loads.on == particle).tolist():
         load = model.loads[row]
@@ -134,7 +146,7 @@ def of_loads(model: Model, particle: int) -> Iterator[Result]:
         yield _result(model.describe(load), text, Load.force)
 
 
-def of_others(model: Model, handle: Handle) -> Iterator[Result]:
+def _of_others(model: Model, handle: Handle) -> Iterator[Result]:
     """The numbers that a person gave an element of a mod's kind."""
     table = model.tables[handle.table]
     for field in table.fields_in(Role.DOCUMENT):

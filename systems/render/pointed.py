@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from components.field import Vector
 from components.handle import Handle
 from components.particle import Particle
 from components.rod import Rod
 from components.tags import Hovered
-from systems.forms.results import of_loads, of_others, results
 from systems.render.clip import bounds, clip_segments
 from systems.render.marks import Mark, Panel, Points, Text
 from systems.render.sheet import Sheet
@@ -26,23 +24,22 @@ Box = tuple[float, float, float, float]  # left, top, width, height
 
 def draw_pointed(sheet: Sheet) -> list[Mark]:
     """A box with the results of the element under the pointer, near that, where it covers neither it nor much else."""
-    pointer, handle = sheet.view.pointer, _hovered(sheet)
-    if handle is None or pointer is None or sheet.view.preview is not None or sheet.view.help:
+    pointed, handle = sheet.view.pointed, _hovered(sheet)
+    if pointed is None or handle is None or sheet.view.preview is not None or sheet.view.help:
         return []
-    u, theme, size = sheet.unit, sheet.theme, sheet.font(12.0)
-    heading, rows = sheet.model.describe(handle), _rows(sheet, handle)
+    u, theme, size, rows = sheet.unit, sheet.theme, sheet.font(12.0), pointed.rows[:_MOST]
     names = max((text_width(name, size) for name, _ in rows), default=0)
     values = max((text_width(value, size, "semibold") for _, value in rows), default=0)
-    inner = max(names + _GAP * u + values if rows else 0.0, text_width(heading, size, "semibold"))
+    inner = max(names + _GAP * u + values, text_width(pointed.title, size, "semibold"))
     line = line_height(size)
-    place = _place(sheet, handle, pointer, inner + 2 * _PAD * u, (len(rows) + 1) * line + _PAD * u)
-    if place is None or not rows:
+    place = _place(sheet, handle, inner + 2 * _PAD * u, (len(rows) + 1) * line + _PAD * u)
+    if place is None:
         return []
     left, top, width, height = place
     x, y = left + _PAD * u, top + (_PAD * u + line) / 2
     marks: list[Mark] = [
         Panel(left, top, width, height, 5.0 * u, faded(theme.panel, 0.96), theme.line),
-        Text(heading, x, y, size, theme.text, "semibold"),
+        Text(pointed.title, x, y, size, theme.text, "semibold"),
     ]
     for name, value in rows:
         y += line
@@ -59,20 +56,9 @@ def _hovered(sheet: Sheet) -> Handle | None:
     return None
 
 
-def _rows(sheet: Sheet, handle: Handle) -> list[tuple[str, str]]:
-    """What is said of an element; nothing that forces tell before they are known."""
-    model, known = sheet.model, sheet.view.forces_known
-    found = [*results(model, [handle])] if known and isinstance(handle, Rod | Particle) else []
-    if isinstance(handle, Particle):
-        found += of_loads(model, handle.row)
-    elif handle.points:
-        found += of_others(model, handle)
-    return [(result.title, result.text) for result in found][:_MOST]
-
-
-def _place(sheet: Sheet, handle: Handle, pointer: Vector, width: float, height: float) -> Box | None:
+def _place(sheet: Sheet, handle: Handle, width: float, height: float) -> Box | None:
     """The box beside the pointer that covers least, and never the element; None where there is no such place."""
-    low, high = bounds(sheet.viewport)
+    (low, high), pointer = bounds(sheet.viewport), sheet.view.pointer or sheet.view.camera.middle
     best: tuple[float, Box] | None = None
     for rank, (reach, (across, down)) in enumerate((r, way) for r in (1.0, 2.0, 4.0, 7.0) for way in _AROUND):
         gap = reach * _NEAR * sheet.unit

@@ -64,7 +64,7 @@ def test_several_elements_show_the_extremes_and_whose_they_are() -> None:
     assert shown["largest compression"] == "−198.0 kN (BC)"
     assert shown["largest utilisation"] == "92.1 % (BC)"
     assert shown["largest displacement"].endswith("(B)")
-    assert shown["sum of reactions"] == "x −120   y 160 kN"
+    assert shown["sum of reactions"] == "x −120.0   y 160.0 kN"
 
 
 def test_results_follow_an_accepted_value_at_once() -> None:
