@@ -67,7 +67,8 @@ class Grid(NamedTuple):
     boxes: left, bottom, right, top, shape (n, 4), m. layer: of each disc, shape (n,). levels: the cells of
     layer k have the size cell × 2^levels[k], ascending, shape (64,); inverse: one by that size, 1/m. heads: first entry
     of each bucket; the number of buckets is a power of two. after, before: the next entry in the same bucket and the one
-    before, shape (4 × a power of two,). found: the discs that searches find, shape (2 n + 2,); times: of impacts with them, s.
+    before, shape (4 × a power of two,). found: the discs that searches find, shape (2 n + 2,); times: of impacts with
+    them, s.
     """
 
     boxes: Floats

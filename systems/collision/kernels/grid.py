@@ -7,7 +7,8 @@ a very large or very fast disc costs no more than a look at all others. They may
 of the left bottom corner of what overlaps.
 
 Corner × (a power of two) + kind × discs + disc is the entry of a disc in a layer, with kind = 2 × layer, + 1 for guests,
-and corner from 0 to 3 for the cells that its box overlaps, most often one. The entries of a bucket are chained, to and fro. The buckets of neighbouring cells differ.
+and corner from 0 to 3 for the cells that its box overlaps, most often one. The entries of a bucket are chained, to and
+fro. The buckets of neighbouring cells differ.
 """
 
 import math
