@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.kind import all_points
+from components.menu import Menu
 from components.model import Model
 from components.toolbar import Toolbar
 
@@ -21,6 +22,10 @@ COMFORTABLE_HEIGHT, LEAST_HEIGHT = 480.0, 240.0  # points that are left in a win
 BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
 COLUMN, COLUMN_SHARE, WIDEST_COLUMN = 306.0, 0.34, 340.0  # points, share of the canvas: the column of panels
+SIDE, LEAST_MODEL = (
+    332.0,
+    240.0,
+)  # points: boxes to type into; what the model keeps beside them, or they take all
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
 
 
@@ -124,7 +129,7 @@ class Shape:
 class View:
     """How one model is shown in one viewport.
 
-    heading: the word top left in red ("Pause"), or "". all_diagrams: force diagrams of all elements.
+    heading: the word top left ("Pause"), or "". all_diagrams: force diagrams of all elements.
     legend: show the meaning of colours. help: the page of keys that is shown, from 1; 0: none. keys: its lines
     (key, meaning). more_keys: there is another page.
     pointer: the pixel under the mouse, or None outside. pixel_ratio: device pixels per point (HiDPI).
@@ -133,12 +138,15 @@ class View:
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
     flashes: points (m) where particles collided just now, shape (k, 2).
+    menu: the list of what can be done somewhere, while it is open.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
+    largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     theory, energy: show theory beside the run, and its energy account, among them.
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
     shares: the model is fitted beside the panels; else panels may cover it. since: by title, the rank in which each
     panel appeared.
+    aside: the part of the window, at its left or right, that boxes to type into take; None: none.
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -158,14 +166,17 @@ class View:
     caption: tuple[str, ...] = ()
     page: Page | None = None
     toolbar: Toolbar = field(default_factory=Toolbar)
+    menu: Menu | None = None
     theme: str = "light"
     readouts: tuple[Readout, ...] = ()
     since: dict[str, int] = field(default_factory=dict)
+    largest_force: float = 0.0
     theory: bool = False
     energy: bool = False
     shape: Shape | None = None
     fitted: bool = False
     shares: bool = False
+    aside: Viewport | None = None
 
     def fit(self, model: Model) -> None:
         """Let the camera show the whole model."""
@@ -174,10 +185,14 @@ class View:
 
     def follow(self, model: Model) -> None:
         """Fit the model anew if it has left the picture, unless somebody looks closer."""
+        if self.fitted and not self.shows(model):
+            self.fit(model)
+
+    def shows(self, model: Model) -> bool:
+        """True if nothing of the model lies outside the room for it."""
         room, (x, y) = self.room, self.camera.to_pixels(drawn_places(model)).T
         across = (x >= room.left) & (x <= room.left + room.width)
-        if self.fitted and not (across & (y >= room.top) & (y <= room.top + room.height)).all():
-            self.fit(model)
+        return bool((across & (y >= room.top) & (y <= room.top + room.height)).all())
 
     def share(self, model: Model, *, shares: bool) -> None:
         """Leave room for panels, or not, and fit the model into what is left, unless somebody looks closer."""
@@ -198,7 +213,23 @@ class View:
     def canvas(self) -> Viewport:
         """The part of the viewport that is left for the model."""
         window, taken = self.camera.viewport, self.strip.width
-        return Viewport(window.left + taken, window.top, window.width - taken, window.height)
+        left, right = window.left + taken, window.left + window.width
+        if self.aside is not None and self.aside.left > left:
+            right = self.aside.left
+        elif self.aside is not None:
+            left = self.aside.left + self.aside.width
+        return Viewport(left, window.top, right - left, window.height)
+
+    def beside(self, *, at_left: bool) -> Viewport | None:
+        """Where boxes to type into stand beside the model; None where they would leave too little of it."""
+        c, width = self.canvas, round(SIDE * self.pixel_ratio)
+        if c.width - width < LEAST_MODEL * self.pixel_ratio:
+            return None
+        return replace(c, left=c.left if at_left else c.left + c.width - width, width=width)
+
+    def covers(self, pixel: Vector) -> bool:
+        """True if the toolbar or boxes to type into are at a pixel of the window, not the model."""
+        return self.strip.contains(pixel) or (self.aside is not None and self.aside.contains(pixel))
 
     @property
     def panels(self) -> Viewport:

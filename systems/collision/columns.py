@@ -67,7 +67,7 @@ class Grid(NamedTuple):
     boxes: left, bottom, right, top, shape (n, 4), m. layer: of each disc, shape (n,). levels: the cells of
     layer k have the size cell × 2^levels[k], ascending, shape (64,); inverse: one by that size, 1/m. heads: first entry
     of each bucket; the number of buckets is a power of two. after, before: the next entry in the same bucket and the one
-    before, shape (capacity,). found: the discs that searches find, shape (2 n + 2,); times: of impacts with them, s.
+    before, shape (8 n × layers,). found: the discs that searches find, shape (2 n + 2,); times: of impacts with them, s.
     """
 
     boxes: Floats
@@ -90,8 +90,8 @@ class Grid(NamedTuple):
             levels=np.zeros(64, dtype=np.int64),
             inverse=np.zeros(64),
             heads=np.full(buckets, NONE, dtype=np.int32),
-            after=np.zeros(2 * n * layers, dtype=np.int32),
-            before=np.zeros(2 * n * layers, dtype=np.int32),
+            after=np.zeros(8 * n * layers, dtype=np.int32),
+            before=np.zeros(8 * n * layers, dtype=np.int32),
             found=np.zeros(2 * n + 2, dtype=np.int64),
             times=np.zeros(2 * n + 2),
         )

@@ -22,7 +22,7 @@ from systems.collision.columns import (
     Travel,
 )
 from systems.collision.kernels import compiled
-from systems.collision.kernels.grid import enclose, enter, neighbours, sort
+from systems.collision.kernels.grid import enclose, enter, has_room, neighbours, sort
 from systems.collision.kernels.horizon import is_joined, set_layers
 from systems.collision.kernels.persistent_contact import (
     enter_persistent,
@@ -108,7 +108,7 @@ def _list_pairs(h, discs, grid, constraints, pile, numbers, counts):
         grid.boxes[i, 3] += room
     set_layers(grid, numbers, counts)
     layers = counts[Count.LAYERS]
-    if 2 * discs.shape[0] * layers > grid.after.shape[0]:
+    if not has_room(grid, layers):
         return Reason.GRID_FULL
     grid.heads[:] = NONE
     pairs = 0
