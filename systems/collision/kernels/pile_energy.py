@@ -6,7 +6,7 @@ push one another, is compared with that before the step. Velocities v₁ that ho
     p·N v₁ − ½ |v₁ − v₀|²_M.
 A part that gains by its bounces is solved anew without. Then p·(N v₁ + gap/h) ≤ 0, which impulses that are not exact are
 reduced to, leaves it as gain only what undoes overlaps, which gave as much when the discs sank in; and all parts together
-never gain more than the run has lost so far.
+never gain more than the run has lost so far, but for what lifts everything by a thousandth of a radius.
 """
 
 from systems.collision.columns import Disc, Motion, Number, Part, PileContact, PilePair
@@ -15,7 +15,8 @@ from systems.collision.kernels.pile_solver import KEPT, PLASTIC, opening, withou
 
 ROUND_OFF = 1e-12  # of the energy of a part
 SAME = 0.999  # of a bias that is a gap by the length of a step, in spite of round-off
-MISLED = 0.99  # share of impulses that may be kept, below which those of the step before misled, as in a row come loose
+DEEPER = 1e-4  # of the smallest radius, to which reduced impulses may let a disc sink in; above it, they misled
+LIFT = 1e-3  # of the smallest radius, by which a run may lift all discs above where they began
 
 
 @compiled
@@ -24,12 +25,12 @@ def supplies_energy(active, h, discs, pile, numbers):
     _find_parts(active, discs, pile)
     _measure_discs(h, discs, pile)
     _measure_contacts(active, h, pile)
-    spare = numbers[Number.LOSS]
+    spare = numbers[Number.LOSS] + _lifting(LIFT * numbers[Number.SMALLEST], discs)
     for i in range(discs.shape[0]):
         spare -= max(pile.parts[Part.GAIN, i], 0.0)
     anew, reduced = False, False
     for i in range(discs.shape[0]):
-        law = _law_of_gain(pile.part[i], spare, pile.parts)
+        law = _law_of_gain(pile.part[i], spare, DEEPER * numbers[Number.SMALLEST] / h, pile.parts)
         if law > pile.parts[Part.LAW, i]:
             pile.parts[Part.LAW, i] = law
             anew = True
@@ -78,6 +79,18 @@ def _measure_discs(h, discs, pile):
                 parts[Part.GAIN, p] += 0.5 * (after - before) * (after + before) - h * pull * after
                 parts[Part.ENERGY, p] += 0.5 * (before * before + after * after) + abs(h * pull * after)
                 parts[Part.CHANGE, p] += change * change
+                parts[Part.FASTEST, p] = max(parts[Part.FASTEST, p], abs(change * w))
+
+
+@compiled
+def _lifting(height, discs):
+    """Energy that lifts all discs by a height."""
+    energy = 0.0
+    for i in range(discs.shape[0]):
+        for d in range(2):
+            if discs[i, Disc.WX + d] > 0.0:
+                energy += height * abs(discs[i, Disc.GX + d]) / discs[i, Disc.WX + d]
+    return energy
 
 
 @compiled
@@ -98,10 +111,10 @@ def _measure_contacts(active, h, pile):
 
 
 @compiled
-def _law_of_gain(p, spare, parts):
+def _law_of_gain(p, spare, misled, parts):
     """The law that the discs of a part must obey from now on; sets the share of the impulses that they may keep.
 
-    spare: energy lost so far that the parts do not demand back.
+    spare: energy lost so far that the parts do not demand back. misled: speed of which impulses may deprive a disc.
     """
     gain = parts[Part.GAIN, p]
     parts[Part.SHARE, p] = 1.0
@@ -113,7 +126,7 @@ def _law_of_gain(p, spare, parts):
         return KEPT
     if parts[Part.BOUNCED, p] > 0.0:
         return PLASTIC if gain > parts[Part.PUSHED_OUT, p] else 0.0
-    return PLASTIC if parts[Part.SHARE, p] < MISLED else 0.0
+    return PLASTIC if (1.0 - parts[Part.SHARE, p]) * parts[Part.FASTEST, p] > misled else 0.0
 
 
 @compiled
