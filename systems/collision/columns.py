@@ -352,7 +352,6 @@ class Part(IntEnum):
     CHANGE = 5  # twice the energy of the change of velocities by impulses, J
     WORK = 6  # of the impulses beyond what the biases demand, J
     SHARE = 7  # of the impulses, that is kept
-    FASTEST = 8  # change of a velocity by impulses in a direction, m/s
 
 
 class Report(NamedTuple):

@@ -15,7 +15,7 @@ from systems.collision.kernels.pile_solver import KEPT, PLASTIC, opening, withou
 
 ROUND_OFF = 1e-12  # of the energy of a part
 SAME = 0.999  # of a bias that is a gap by the length of a step, in spite of round-off
-DEEPER = 1e-4  # of the smallest radius, to which reduced impulses may let a disc sink in; above it, they misled
+MISLED = 0.5  # share of impulses that may be kept, below which those of the step before misled, as in a row come loose
 LIFT = 1e-3  # of the smallest radius, by which a run may lift all discs above where they began
 
 
@@ -30,7 +30,7 @@ def supplies_energy(active, h, discs, pile, numbers):
         spare -= max(pile.parts[Part.GAIN, i], 0.0)
     anew, reduced = False, False
     for i in range(discs.shape[0]):
-        law = _law_of_gain(pile.part[i], spare, DEEPER * numbers[Number.SMALLEST] / h, pile.parts)
+        law = _law_of_gain(pile.part[i], spare, pile.parts)
         if law > pile.parts[Part.LAW, i]:
             pile.parts[Part.LAW, i] = law
             anew = True
@@ -79,7 +79,6 @@ def _measure_discs(h, discs, pile):
                 parts[Part.GAIN, p] += 0.5 * (after - before) * (after + before) - h * pull * after
                 parts[Part.ENERGY, p] += 0.5 * (before * before + after * after) + abs(h * pull * after)
                 parts[Part.CHANGE, p] += change * change
-                parts[Part.FASTEST, p] = max(parts[Part.FASTEST, p], abs(change * w))
 
 
 @compiled
@@ -111,10 +110,10 @@ def _measure_contacts(active, h, pile):
 
 
 @compiled
-def _law_of_gain(p, spare, misled, parts):
+def _law_of_gain(p, spare, parts):
     """The law that the discs of a part must obey from now on; sets the share of the impulses that they may keep.
 
-    spare: energy lost so far that the parts do not demand back. misled: speed of which impulses may deprive a disc.
+    spare: energy lost so far that the parts do not demand back.
     """
     gain = parts[Part.GAIN, p]
     parts[Part.SHARE, p] = 1.0
@@ -126,7 +125,7 @@ def _law_of_gain(p, spare, misled, parts):
         return KEPT
     if parts[Part.BOUNCED, p] > 0.0:
         return PLASTIC if gain > parts[Part.PUSHED_OUT, p] else 0.0
-    return PLASTIC if (1.0 - parts[Part.SHARE, p]) * parts[Part.FASTEST, p] > misled else 0.0
+    return PLASTIC if parts[Part.SHARE, p] < MISLED else 0.0
 
 
 @compiled
