@@ -15,7 +15,13 @@ UNKNOWN_SHARE = 1e-3  # of a radius: how well places must be known for impacts
 
 _TABLES = ("particles", "rods", "loads", "environment", "settings")
 _FOLLOWING = ("rest_length", "mass")  # derived, from positions that may be too near or too far
-_MOVING = ("displacement", "velocity", "plastic_strain")  # state that a person can type
+_MOVING = (
+    "displacement",
+    "velocity",
+    "rotation",
+    "angular_velocity",
+    "plastic_strain",
+)  # state that a person can type
 
 
 def incomputable(model: Model) -> str:

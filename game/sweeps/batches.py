@@ -115,7 +115,9 @@ class Batches:
         stored = np.array([target.field.stored(value) for value in values], dtype=column.dtype)
         rows = slice(None) if target.element == EVERY else target.handles[0].row
         if target.axis:
-            column[:, rows, "xy".index(target.axis)] = stored[:, None] if target.element == EVERY else stored
+            column[:, rows, target.field.axes.index(target.axis)] = (
+                stored[:, None] if target.element == EVERY else stored
+            )
         else:
             column[:, rows] = stored.reshape(-1, *(1,) * (column[:, rows].ndim - 1))
 

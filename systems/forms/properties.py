@@ -27,6 +27,11 @@ KIND = "kind"  # the part of a history that is its kind
 EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in full, others rounded
 _OF_RODS = ("diagram_scale", "plasticity", "sleeping")  # settings that concern rods; the others particles
 _DECIDED = (Particle.asleep,)  # anew after every edit
+OF_BENDING = (  # set by files, scripts and --set
+    *(Particle.rotation, Particle.angular_velocity, Particle.fixed_rotation, Particle.moment),
+    *(Particle.prescribed_inertia, Rod.bending_stiffness, Rod.hinged, Rod.distributed_force),
+    *(Rod.temperature_gradient, Rod.bending_damping, Load.moment),
+)
 _NUMBERS = (float, int)
 _EDITABLE = (*_NUMBERS, bool, str)
 
@@ -86,7 +91,7 @@ def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
     kind = type(elements[0])
     fields = model.tables[kind.table].fields_in(Role.DOCUMENT, Role.STATE)
     wanted = [field for field in fields if field.dtype in _EDITABLE or field is Load.history]
-    wanted = [field for field in wanted if field not in _DECIDED]
+    wanted = [field for field in wanted if field not in (*_DECIDED, *OF_BENDING)]
     if len(elements) > 1:
         wanted = [field for field in wanted if field.name != "name"]
     rows = model.row_of_entity[[element.entity for element in elements]].astype(np.intp)

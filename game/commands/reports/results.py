@@ -161,7 +161,7 @@ def _element_rows(group: str, elements: Mapping[str, Mapping[str, Any]]) -> list
         for field in reported(group)
         for axis in (range(2) if field.shape else (None,))
     ]
-    titles = [field.title + ("" if axis is None else " " + "xy"[axis]) for field, axis, _, _ in columns]
+    titles = [field.title + ("" if axis is None else " " + field.axes[axis]) for field, axis, _, _ in columns]
     rows = [[_KINDS[group].noun, *titles], ["", *(unit for _, _, unit, _ in columns)]]
     for name, values in elements.items():
         cells = [name]
