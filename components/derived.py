@@ -110,19 +110,15 @@ def derive_diagrams(world: World) -> None:
     """
     particles, rods = world.tables["particles"], world.tables["rods"]
     first, second = rods.between.astype(np.intp).T
-    relative = particles.displacement[second] - particles.displacement[first]
-    difference, rest = rods.difference, rods.rest_length
-    present = difference + relative
+    rest = rods.rest_length
+    present = rods.difference + particles.displacement[second] - particles.displacement[first]
     length = np.hypot(present[:, 0], present[:, 1])
     along = present / np.where(length > 0.0, length, 1.0)[:, None]
     left = np.stack([-along[:, 1], along[:, 0]], axis=1)
     force = rods.distributed_force
     transverse, tangential = (force * left).sum(axis=1), (force * along).sum(axis=1)
-    sine = difference[:, 0] * relative[:, 1] - difference[:, 1] * relative[:, 0]
-    chord = np.arctan2(sine, (difference * present).sum(axis=1))
-    shares, rotation = rods.turning_shares, particles.rotation[rods.between]
-    chord = chord + 2.0 * np.pi * np.rint(((shares * rotation).sum(axis=1) - chord) / (2.0 * np.pi))
-    rigid = shares > 0.0
+    chord, rotation = chord_rotation(world), particles.rotation[rods.between]
+    rigid = rods.turning_shares > 0.0
     slopes = np.where(rigid, rotation - chord[:, None], 0.0)
     couple = -tangential * (rods.load_shares * slopes).sum(axis=1)
     moment = rods.end_moment
@@ -135,6 +131,19 @@ def derive_diagrams(world: World) -> None:
     )
     world.writable("rods.bending_moment")[...] = moment * [-1.0, 1.0]
     world.writable("rods.end_rotation")[...] = chord[:, None] + _all_slopes(world, slopes, transverse)
+
+
+def chord_rotation(world: World) -> Column:
+    """How far the chord of every rod has turned (rad), with the full turns that its rigid ends tell; shape (rods,)."""
+    particles, rods = world.tables["particles"], world.tables["rods"]
+    first, second = rods.between.astype(np.intp).T
+    relative = particles.displacement[second] - particles.displacement[first]
+    difference = rods.difference
+    sine = difference[:, 0] * relative[:, 1] - difference[:, 1] * relative[:, 0]
+    chord = np.arctan2(sine, (difference * (difference + relative)).sum(axis=1))
+    mean = (rods.turning_shares * particles.rotation[rods.between]).sum(axis=1)
+    turned: Column = chord + 2.0 * np.pi * np.rint((mean - chord) / (2.0 * np.pi))
+    return turned
 
 
 def _all_slopes(world: World, slopes: Column, transverse: Column) -> Column:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.field import Column, FieldError
+from components.rod import bends
 from components.settings import AUTOMATIC
 from game.commands.reports.results import reported
 from game.documents.document import ModelError
@@ -140,7 +141,8 @@ class Batches:
             with suppress(*refused), self._runner.taken_back():
                 self._runner.override(self._plan.overrides_of(number))
                 simulation = self._runner.simulation
-                if not any(system.impulsive for system in simulation.plan):
+                alone = bends(simulation.model) or any(system.impulsive for system in simulation.plan)
+                if not alone:
                     self._programs[key] = BatchProgram(
                         simulation.programs.compiled, self._threads, varied_arrays=self._loads_vary
                     )

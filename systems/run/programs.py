@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from components.model import Model
-from components.rod import is_warm
+from components.rod import bears_between, is_warm
 from components.settings import AUTOMATIC
 from components.snapshot import Snapshot
 from systems.base import Integrator, Phase, StepSystem
@@ -199,6 +199,7 @@ class Programs:
 
     def _key(self, plan: list[StepSystem]) -> Key:
         warmth = ("rods.misfit",) if is_warm(self._model) else ()
+        warmth += ("rods.distributed_force",) if bears_between(self._model) else ()
         names = (system.name for system in plan)
         return (*names, self.integrator.name, form_of(self._model, self.integrator, plan), *warmth)
 
