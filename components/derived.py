@@ -49,7 +49,8 @@ def derive_bending(world: World) -> None:
     """
     rods = world.tables["rods"]
     length, stiffness = rods.rest_length, rods.bending_stiffness
-    rigid = ~rods.hinged & (stiffness > 0.0)[:, None]
+    bent: Column = stiffness > 0.0
+    rigid = ~rods.hinged & bent[:, None]
     both = rigid.all(axis=1)
     start, end = (rigid & ~both[:, None]).T  # the only rigid end
 

@@ -67,7 +67,9 @@ class Control(IntEnum):
     STEP_ERROR = 2  # of the last step; 1 is the tolerance
     LARGEST_DISPLACEMENT = 3  # Euclidean norm over all particles, so far (m)
     LARGEST_SPEED = 4  # the same of velocities (m/s)
-    LARGEST_ROTATION = 5  # of rotations (rad), at least a share of what displacements amount to by the longest rod
+    LARGEST_ROTATION = (
+        5  # of rotations (rad), at least a share of what displacements amount to by the longest rod
+    )
     LARGEST_SPIN = 6  # the same of angular velocities (rad/s)
 
 

@@ -78,7 +78,10 @@ def bending(slope_start, slope_end, rods_end_stiffness):
 def bending_energy(slope_start, slope_end, rods_end_stiffness):
     """½ φᵀ K φ (kN·m)."""
     start, mixed, end = rods_end_stiffness
-    return 0.5 * (start * slope_start * slope_start + end * slope_end * slope_end) + mixed * slope_start * slope_end
+    return (
+        0.5 * (start * slope_start * slope_start + end * slope_end * slope_end)
+        + mixed * slope_start * slope_end
+    )
 
 
 @compiled

@@ -137,13 +137,11 @@ class FrameOperator(RodOperator):
         return bounds
 
 
-def largest_eigenvalues(
-    operator: Callable[[Array], Array], rows: int, bounds: Array, width: int = 2
-) -> Array:
+def largest_eigenvalues(operator: Callable[[Array], Array], rows: int, bounds: Array, width: int = 2) -> Array:
     """Upper bounds of the largest eigenvalues of equal blocks of a symmetric operator by Lanczos' method.
 
-    rows: of each block. width: entries of a row. bounds: what no result exceeds, one for each block. The result is the Ritz value
-    plus its residual. The start vector is fixed, sums are in a fixed order, so that the result (and with it
+    rows: of each block. width: entries of a row. bounds: what no result exceeds, one for each block. The result is the Ritz
+    value plus its residual. The start vector is fixed, sums are in a fixed order, so that the result (and with it
     the step size) is the same on every run, and for a block alone. Its entries, k²φ mod 1, differ differently
     from row to row: it must not be blind to a direction, as kφ is to that of (1, −1).
     """

@@ -146,9 +146,8 @@ class ControlledWriter(Writer):
             bending=self._tangent_of_ends() if self.bends else [],
         )
         loop = RodLoop(self.shift | self.drift, [*self.geometry(), *tangent])
-        return pasted(
-            implicit.tangent, "compiled", particles=particles, rods=loop.one_by_one(), **self.second_block
-        )
+        inserts: dict[str, str | list[str]] = {"particles": particles, "rods": loop.one_by_one()}
+        return pasted(implicit.tangent, "compiled", "", **(inserts | self.second_block))
 
     def _tangent_of_ends(self) -> list[str]:
         return fragment(

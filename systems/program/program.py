@@ -17,7 +17,6 @@ from components.field import Column, Role
 from components.handle import Handle
 from components.load import load_breaks, loads_end
 from components.model import Model
-from components.rod import bends
 from systems.base import Event, Integrator, StepSystem, StopReason
 from systems.collision.driven.columns import Phase, Real, Whole
 from systems.entries import ACCOUNT, ACCOUNTS, CONTROL, Mark, Measure, Search, Side
@@ -196,7 +195,10 @@ class Program:
             extra |= {"support": self._support, "unpushed": np.zeros_like(self._support)}
         if self._writer.bends:
             turning = self._column("particles.turning")
-            extra |= {"lever": np.ascontiguousarray(levers(self.model)[self._held_rows]), "particles_turning": turning.reshape(-1, 1)}
+            extra |= {
+                "lever": np.ascontiguousarray(levers(self.model)[self._held_rows]),
+                "particles_turning": turning.reshape(-1, 1),
+            }
         self._sides = [(b, self._sides_of(b)) for b in self._writer.events]
         extra |= {sides_of(b): sides for b, sides in self._sides}
         self._columns = [

@@ -124,7 +124,9 @@ _BOTH_BLOCKS = {
     "vectors": ("vector", "product", "turning_vector", "turning_product"),
     "multiplied": ("search", "product", "turning_search", "turning_product"),
 }
-_LEAST_TURN = 1e-3  # share of what displacements amount to by the longest rod, below which no error of rotations counts
+_LEAST_TURN = (
+    1e-3  # share of what displacements amount to by the longest rod, below which no error of rotations counts
+)
 EVERY = "displacement.shape[0]"  # particles
 _IN_BLOCK = "{0}[block], {0}[block + 1]"
 
@@ -305,7 +307,9 @@ class Writer:
     @property
     def _parts_of_both(self) -> list[str]:
         """Parts of the integrator that are written for both blocks of coordinates, if there are two."""
-        return [part for part in self.integrator.parts if self.bends and part.partition(":")[2] in _SECOND_PARTS]
+        return [
+            part for part in self.integrator.parts if self.bends and part.partition(":")[2] in _SECOND_PARTS
+        ]
 
     @property
     def groups(self) -> dict[str, Sequence[str]]:
@@ -365,7 +369,9 @@ class Writer:
 
     def _copies(self, template: Callable[[], None], to: str, of: str) -> list[str]:
         loops = [
-            fragment(driven.copy, to=to.format(name), of=of.format(name), row="r, 0" if name in TURNED_STATE else "r")
+            fragment(
+                driven.copy_turned if name in TURNED_STATE else driven.copy, to=to.format(name), of=of.format(name)
+            )
             for name in self.kept
         ]
         return fragment(template, others=[line for loop in loops for line in loop])
@@ -433,7 +439,9 @@ class Writer:
     def _of_steps(self) -> list[str]:
         """Functions that the integrator's templates call."""
         loads = [
-            line for b in self.of[StepRole.LOAD] for line in self._each_load(b, f"power += {self._load_power(b)}")
+            line
+            for b in self.of[StepRole.LOAD]
+            for line in self._each_load(b, f"power += {self._load_power(b)}")
         ]
         return [
             self._forces("accept", self.commits),

@@ -84,7 +84,9 @@ def forces(model: Model) -> tuple[np.ndarray, np.ndarray]:
     return found[:, :2], found[:, 2]
 
 
-def random_frame(lot: np.random.Generator, count: int = 5, *, loaded: bool = True, warm: bool = True) -> dict[str, Any]:
+def random_frame(
+    lot: np.random.Generator, count: int = 5, *, loaded: bool = True, warm: bool = True
+) -> dict[str, Any]:
     """A frame of so many particles in any state, with hinges, bars, distributed forces and warm sides."""
     angles = np.sort(lot.uniform(0.0, 2.0 * math.pi, count))
     position = np.column_stack([np.cos(angles), np.sin(angles)]) * lot.uniform(1.0, 3.0, (count, 1))

@@ -121,7 +121,12 @@ def put_back():
 
 def copy():
     for r in range(insert(of).shape[0]):
-        insert(to)[insert(row)] = insert(of)[insert(row)]
+        insert(to)[r] = insert(of)[r]
+
+
+def copy_turned():
+    for r in range(insert(of).shape[0]):
+        insert(to)[r, 0] = insert(of)[r, 0]
 
 
 # --- integrators with fixed steps --------------------------------------------------------------------
