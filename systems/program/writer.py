@@ -370,7 +370,9 @@ class Writer:
     def _copies(self, template: Callable[[], None], to: str, of: str) -> list[str]:
         loops = [
             fragment(
-                driven.copy_turned if name in TURNED_STATE else driven.copy, to=to.format(name), of=of.format(name)
+                driven.copy_turned if name in TURNED_STATE else driven.copy,
+                to=to.format(name),
+                of=of.format(name),
             )
             for name in self.kept
         ]

@@ -38,10 +38,10 @@ def bent():
     sine = dx * sy - dy * sx
     cosine = dx * x + dy * y
     reach = length * original + abs(cosine)
-    half = sine / reach if reach > 0.0 else 0.0
-    steep = abs(half)
-    folded = steep > 0.66
-    z = (steep - 1.0) / (steep + 1.0) if folded else steep
+    steep = abs(sine)
+    folded = steep > 0.66 * reach
+    under = steep + reach if folded else reach
+    z = (steep - reach if folded else steep) / under if under > 0.0 else 0.0
     w = z * z
     above = (
         ((-0.8750608600031904 * w - 16.157537187333652) * w - 75.00855792314705) * w - 122.88666844901361
