@@ -249,7 +249,10 @@ class Integrator(StepSystem):
     """
 
     reads: ClassVar[tuple[str, ...]] = ("particles.mobility",)
-    writes: ClassVar[tuple[str, ...]] = ("particles.displacement", "particles.velocity", "clock.time")
+    writes: ClassVar[tuple[str, ...]] = (
+        *("particles.displacement", "particles.velocity", "particles.rotation", "particles.angular_velocity"),
+        "clock.time",
+    )
     order: ClassVar[int] = 0
     entry: ClassVar[str] = "systems.program.templates.fixed_steps:advance"
     begins: ClassVar[str] = ""

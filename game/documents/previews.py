@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from components.model import Model
+from components.rod import bends
 from game.documents import models
 
 LARGEST_SOLVED = 60  # rods, up to which a structure that never moved is solved for its picture
@@ -45,7 +46,7 @@ def with_forces(model: Model) -> Model:
     from systems.statics.theory import linear  # scipy
 
     rods = model.rods
-    if not 0 < rods.count <= LARGEST_SHOWN:
+    if not 0 < rods.count <= LARGEST_SHOWN or bends(model):  # statics knows bars only
         return model
     moved = model.particles.displacement.any() or model.particles.velocity.any()
     force = Structure.of(model).respond(model.particles.displacement, rods.plastic_strain).axial_force

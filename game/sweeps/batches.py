@@ -211,7 +211,7 @@ def _finite(batch: Batch, energy: dict[str, Any], residual: Column) -> NDArray[n
     """Which blocks have a state that can be reported."""
     columns = [residual, *(energy[name] for name in ENERGIES)]
     for table in _REPORTED:
-        for field in reported(table):
+        for field in reported(batch.model.as_model(), table):
             column = batch.model[f"{table}.{field.name}"]
             columns.append(np.where(np.isnan(column), 0.0, column) if field.nullable else column)
     finite = np.ones(batch.model.variants, dtype=bool)

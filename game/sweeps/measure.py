@@ -86,4 +86,4 @@ def _read(model: Model, path: str) -> list[Measure]:
 
 
 def _reported(table: Table[Any]) -> Mapping[str, Field[Any]]:
-    return {field.name: field for field in reported(table.name)} if table.name in _TABLES else {}
+    return {field.name: field for field in reported(table.world, table.name)} if table.name in _TABLES else {}

@@ -135,7 +135,7 @@ def _compiled_loop(bound: Bound, columns: Sequence[NDArray[Any]]) -> Callable[..
     arguments = [written_row(n, "i", c.shape[1:]) for n, c in zip(names, columns, strict=True)]
     if bound.each == "loads":
         arguments = ["c0[i]", "c2", "c1[i]"]
-    pair = bound.each in ("particles", "pairs", "")
+    pair = bound.each in ("particles", "pairs", "ends", "")
     lines = [
         "from systems.kernels import kept",
         "@kept()",
