@@ -77,6 +77,9 @@ class Rod(Handle):
         doc="A cable: slack, without force, where its ends are nearer than its length without force.",
     )
     plastic_strain: Field[float] = state(doc="Permanent part of the strain.")
+    yielded_at: Field[float | None] = state(
+        "s", default=None, nullable=True, absent="not yet", doc="When the run first brought it to a strength."
+    )
     rest_length: Field[float] = derived(
         "m",
         doc="Prescribed, or the distance between the original positions.",

@@ -57,6 +57,7 @@ _PRESSED: dict[str, Condition] = {
     "properties": lambda context: context.scene == "properties",
     "toggle theory": lambda context: context.view.theory,
     "toggle energy": lambda context: context.view.energy,
+    "toggle events": lambda context: context.view.events,
     "toggle help": lambda context: context.view.help > 0,
 }
 # By action: whether it would do something now.

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from components.load import CONSTANT, HISTORIES, HistoryKind
 from components.model import Model
 from systems.base import Law
+from systems.program.binding import find
 
 
 class VaryingLoads(Law):
@@ -52,6 +53,19 @@ class VaryingLoads(Law):
             f"{prefix}_values": np.array(values, dtype=np.float64),
             f"{prefix}_first": np.array(first, dtype=np.uint32),
         }
+
+
+def load_factor(model: Model, time: float) -> float | None:
+    """The factor at a time (s) that all varying loads share, 1 being the whole load; None if there are none, or several."""
+    varying = [history for history in model.loads.history if history["kind"] != CONSTANT["kind"]]
+    if not varying or any(history != varying[0] for history in varying):
+        return None
+    kind = HISTORIES[varying[0]["kind"]]
+    if kind.mod is not None:
+        return None
+    law = VaryingLoads(kind)
+    values = np.array(_flattened(varying[0][name] for name in kind.parameters))
+    return float(find(kind.factor, law)(time, values, 0))
 
 
 def _flattened(parameters: Iterable[Any]) -> list[float]:
