@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.kind import all_points
+from components.menu import Menu
 from components.model import Model
 from components.toolbar import Toolbar
 
@@ -21,10 +22,8 @@ COMFORTABLE_HEIGHT, LEAST_HEIGHT = 480.0, 240.0  # points that are left in a win
 BETWEEN = " " * 5  # the steps of a hint
 MARGIN = 110.0  # points around a fitted model, room for supports, diagrams and labels
 COLUMN, COLUMN_SHARE, WIDEST_COLUMN = 306.0, 0.34, 340.0  # points, share of the canvas: the column of panels
-SIDE, LEAST_MODEL = (
-    332.0,
-    240.0,
-)  # points: boxes to type into; what the model keeps beside them, or they take all
+SIDE, LEAST_SIDE, SIDE_SHARE = 332.0, 286.0, 0.54  # points, and share of the canvas: boxes to type into
+LEAST_MODEL = 240.0  # points that the model keeps beside them, or they take all
 LEAST_BESIDE, LEAST_ABOVE = 520.0, 300.0  # points of a canvas's width or height that is shared with panels
 
 
@@ -137,6 +136,7 @@ class View:
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
     flashes: points (m) where particles collided just now, shape (k, 2).
+    menu: the list of what can be done somewhere, while it is open.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
@@ -164,6 +164,7 @@ class View:
     caption: tuple[str, ...] = ()
     page: Page | None = None
     toolbar: Toolbar = field(default_factory=Toolbar)
+    menu: Menu | None = None
     theme: str = "light"
     readouts: tuple[Readout, ...] = ()
     since: dict[str, int] = field(default_factory=dict)
@@ -220,14 +221,16 @@ class View:
 
     def beside(self, *, at_left: bool) -> Viewport | None:
         """Where boxes to type into stand beside the model; None where they would leave too little of it."""
-        c, width = self.canvas, round(SIDE * self.pixel_ratio)
-        if c.width - width < LEAST_MODEL * self.pixel_ratio:
+        c, u = self.canvas, self.pixel_ratio
+        width = round(min(max(SIDE_SHARE * c.width, LEAST_SIDE * u), SIDE * u))
+        if c.width - width < LEAST_MODEL * u:
             return None
         return replace(c, left=c.left if at_left else c.left + c.width - width, width=width)
 
     def covers(self, pixel: Vector) -> bool:
-        """True if the toolbar or boxes to type into are at a pixel of the window, not the model."""
-        return self.strip.contains(pixel) or (self.aside is not None and self.aside.contains(pixel))
+        """True if the toolbar, a slider or boxes to type into are at a pixel of the window, not the model."""
+        taken = self.strip.contains(pixel) or under(self.slider_places, pixel) is not None
+        return taken or (self.aside is not None and self.aside.contains(pixel))
 
     @property
     def panels(self) -> Viewport:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, TypeVar
 
 from components.camera import Viewport
 from components.field import Vector
@@ -39,6 +39,8 @@ from systems.run.simulation import Simulation
 from systems.run.system import Time
 from systems.schedule import Schedule
 from systems.statics.events import Event
+
+H = TypeVar("H", bound=Handle)
 
 Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 
@@ -313,10 +315,10 @@ class Context:
         else:
             self.adopt(models.load(source), file_of(source))
 
-    def adopt(self, model: Model, file: ModelFile = ModelFile()) -> None:  # noqa: B008
-        """Open a model. A document with unsaved work stays open, and undo goes back to it."""
+    def adopt(self, model: Model, file: ModelFile = ModelFile(), *, keep: bool = False) -> None:  # noqa: B008
+        """Open a model. A document with unsaved work, or any to `keep`, stays open, and undo goes back to it."""
         self.leave_gesture()
-        self.documents.add(model, file)
+        self.documents.add(model, file, keep=keep)
         self.begin_document()
 
     def begin_document(self) -> None:
@@ -418,8 +420,8 @@ class Context:
         return status
 
     def restart(self) -> None:
-        """Go back to the beginning of time, keeping all edits. Can be undone."""
-        if not self.at_beginning:
+        """Go back to before it was run or settled, keeping all edits. Can be undone."""
+        if not self.document.is_undeformed:
             self.document.restart()
             self._go_on()
 
@@ -521,6 +523,10 @@ class Context:
     def selected(self) -> list[Handle]:
         """The selected elements, in order of creation."""
         return self.model.tagged(Selected)
+
+    def selected_of(self, *kinds: type[H]) -> list[H]:
+        """Those of the selected elements that are of these kinds."""
+        return [handle for handle in self.selected if isinstance(handle, kinds)]
 
     @property
     def has_selected(self) -> bool:

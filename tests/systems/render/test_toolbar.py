@@ -9,7 +9,7 @@ from components.toolbar import Button, Tool
 from components.view import drawn_positions
 from game import Session
 from game.editor.actions import ACTIONS
-from systems.input.bindings import ADDED_TOOLS, BINDINGS, TOOLBAR
+from systems.input.bindings import ADDED_BUTTONS, ADDED_TOOLS, BINDINGS, TOOLBAR
 from systems.render.icons import ADDED, icon, icons
 from systems.render.marks import Stamps
 from systems.render.picture import compose
@@ -51,7 +51,8 @@ def test_every_tool_is_an_action_with_a_key_and_an_icon() -> None:
         assert action in ACTIONS
         assert icon(action)
         assert any(binding.action == action and binding.title for binding in BINDINGS)
-    assert {*icons(), *ADDED} == {*offered, "pause"}
+    added = [binding.action for binding in ADDED_BUTTONS]
+    assert {*icons(), *ADDED} == {*offered, *added, "pause"}
 
 
 @pytest.mark.parametrize("size", SIZES)
