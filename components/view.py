@@ -138,6 +138,7 @@ class View:
     flashes: points (m) where particles collided just now, shape (k, 2).
     menu: the list of what can be done somewhere, while it is open.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
+    pointed: what is said of the element under the pointer, beside it.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     theory, energy, events: show theory beside the run, its energy account, and what happened, among them.
@@ -173,6 +174,7 @@ class View:
     energy: bool = False
     events: bool = False
     shape: Shape | None = None
+    pointed: Readout | None = None
     fitted: bool = False
     shares: bool = False
     aside: Viewport | None = None
@@ -228,9 +230,8 @@ class View:
         return replace(c, left=c.left if at_left else c.left + c.width - width, width=width)
 
     def covers(self, pixel: Vector) -> bool:
-        """True if the toolbar, a slider or boxes to type into are at a pixel of the window, not the model."""
-        taken = self.strip.contains(pixel) or under(self.slider_places, pixel) is not None
-        return taken or (self.aside is not None and self.aside.contains(pixel))
+        """True if the toolbar or boxes to type into are at a pixel of the window, not the model."""
+        return self.strip.contains(pixel) or (self.aside is not None and self.aside.contains(pixel))
 
     @property
     def panels(self) -> Viewport:

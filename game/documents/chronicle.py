@@ -8,10 +8,10 @@ import numpy as np
 
 from components import written
 from components.field import Column, Role
+from components.load import load_factor
 from components.model import Model
 from components.rod import can_yield, has_cables
 from systems.base import StopReason
-from systems.loads.system import load_factor
 from systems.run.simulation import Simulation
 from systems.statics.stability import LARGEST, is_held
 

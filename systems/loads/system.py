@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from components.load import CONSTANT, HISTORIES, HistoryKind
+from components.load import CONSTANT, HISTORIES, HistoryKind, flattened
 from components.model import Model
 from systems.base import Law
-from systems.program.binding import find
 
 
 class VaryingLoads(Law):
@@ -44,7 +43,7 @@ class VaryingLoads(Law):
             history = model.loads.history[row]
             if id(history) not in begun:
                 begun[id(history)] = len(values)
-                values += _flattened(history[name] for name in self.kind.parameters)
+                values += flattened(history[name] for name in self.kind.parameters)
             first.append(begun[id(history)])
         prefix = self.name.replace(".", "_")
         return {
@@ -53,27 +52,6 @@ class VaryingLoads(Law):
             f"{prefix}_values": np.array(values, dtype=np.float64),
             f"{prefix}_first": np.array(first, dtype=np.uint32),
         }
-
-
-def load_factor(model: Model, time: float) -> float | None:
-    """The factor at a time (s) that all varying loads share, 1 being the whole load; None if there are none, or several."""
-    varying = [history for history in model.loads.history if history["kind"] != CONSTANT["kind"]]
-    if not varying or any(history != varying[0] for history in varying):
-        return None
-    kind = HISTORIES[varying[0]["kind"]]
-    if kind.mod is not None:
-        return None
-    law = VaryingLoads(kind)
-    values = np.array(_flattened(varying[0][name] for name in kind.parameters))
-    return float(find(kind.factor, law)(time, values, 0))
-
-
-def _flattened(parameters: Iterable[Any]) -> list[float]:
-    """Numbers in order, lists preceded by their length."""
-    values: list[float] = []
-    for parameter in parameters:
-        values += (len(parameter), *parameter) if isinstance(parameter, tuple) else (parameter,)
-    return values
 
 
 def varying_loads() -> list[VaryingLoads]:
