@@ -167,9 +167,13 @@ def has_cables(world: World) -> bool:
 
 def can_yield(world: World) -> bool:
     """True if plasticity is on and some rod has a strength."""
+    return bool(world.tables["settings"].plasticity[0]) and has_strength(world)
+
+
+def has_strength(world: World) -> bool:
+    """True if some rod has a strength, whether plasticity is on or not."""
     rods = world.tables["rods"]
-    limited = (rods.tension_limit < np.inf) | (rods.compression_limit < np.inf)
-    return bool(world.tables["settings"].plasticity[0]) and bool(limited.any())
+    return bool(((rods.tension_limit < np.inf) | (rods.compression_limit < np.inf)).any())
 
 
 def has_plastic_strain(world: World) -> bool:

@@ -140,6 +140,7 @@ class View:
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     pointed: what is said of the element under the pointer, beside it.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
+    utilisation: rods show in colours how much of their strength they bear.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     theory, energy, events: show theory beside the run, its energy account, and what happened, among them.
     fitted: the camera shows the whole model, and follows the size of the window until a person zooms or pans.
@@ -170,6 +171,7 @@ class View:
     readouts: tuple[Readout, ...] = ()
     since: dict[str, int] = field(default_factory=dict)
     largest_force: float = 0.0
+    utilisation: bool = False
     theory: bool = False
     energy: bool = False
     events: bool = False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from components.field import Vector
+from components.rod import has_strength
 from game.documents.shapes import NoShape
 from game.editor.context import Action, Context, action
 from game.editor.view_model import pages_of_help
@@ -50,6 +51,15 @@ def _next_shape(context: Context, pixel: Vector) -> None:
     except NoShape as error:
         raise Refusal(str(error)) from None
     context.view.shape = context.document.shapes.shown
+
+
+@action("toggle utilisation", while_drawing=True)
+def _toggle_utilisation(context: Context, pixel: Vector) -> None:
+    """Show how much of its strength each rod bears, or hide it."""
+    view = context.view
+    if not view.utilisation and not has_strength(context.model):
+        raise Refusal("No rod has a strength: select some and give them a tensile or compressive one (Return).")
+    view.utilisation = not view.utilisation
 
 
 @action("next theme", while_drawing=True)
