@@ -56,7 +56,7 @@ class FakeWindow:
         self.asked += 1
         return "110 %"
 
-    def screenshot(self) -> str:
+    def screenshot(self, suffix: str) -> str:
         self.asked += 1
         return "picture.png"
 
@@ -193,6 +193,8 @@ PREPARED: dict[tuple[str, str], Callable[[Session], None]] = {
     ("release another", FORCE_METHOD): _part(7),
     ("toggle full screen", ""): _window,
     ("screenshot", ""): _window,
+    ("picture as svg", ""): _window,
+    ("picture as pdf", ""): _window,
     ("larger", ""): _window,
     ("smaller", ""): _window,
     ("usual size", ""): _window,
