@@ -138,6 +138,7 @@ class View:
     flashes: points (m) where particles collided just now, shape (k, 2).
     menu: the list of what can be done somewhere, while it is open.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
+    pointed: what is said of the element under the pointer, beside it.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
     largest_force: that (kN) of pictures beside this one, with which its arrows share a scale; 0: none.
     theory, energy: show theory beside the run, and its energy account, among them.
@@ -172,6 +173,7 @@ class View:
     theory: bool = False
     energy: bool = False
     shape: Shape | None = None
+    pointed: Readout | None = None
     fitted: bool = False
     shares: bool = False
     aside: Viewport | None = None

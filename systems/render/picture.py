@@ -15,6 +15,7 @@ from systems.render.marks import Picture
 from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
+from systems.render.pointed import draw_pointed
 from systems.render.readouts import draw_readouts
 from systems.render.sheet import ABOVE, BELOW, Sheet, measure
 from systems.render.structure import (
@@ -44,7 +45,11 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Pla
     if isinstance(model, Toolbar):
         return compose_toolbar(model, view, theme)
     sheet = measure(model, view, theme, placed)
-    return _composed(sheet)[0] if view.page is None else Picture(sheet.viewport, theme.background, draw_page(sheet))
+    return (
+        _composed(sheet)[0]
+        if view.page is None
+        else Picture(sheet.viewport, theme.background, draw_page(sheet))
+    )
 
 
 def lies_under(model: Model, view: View, theme: Theme, pixel: Vector) -> bool:
@@ -83,5 +88,5 @@ def _composed(sheet: Sheet) -> tuple[Picture, list[Rectangle]]:
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
     sheet.placed |= sheet.scales
     scale = draw_scale(sheet, room) if model.particles.count else []
-    over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays]
+    over = [*scale, *draw_flashes(sheet), *draw_preview(sheet), *overlays, *draw_pointed(sheet)]
     return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over]), panels
