@@ -83,7 +83,9 @@ def _of_rods(model: Model, rows: NDArray[np.intp]) -> Iterator[Result]:
         if not math.isnan(rods.area[row]):
             stress = 1e-3 * rods.axial_force / np.where(np.isnan(rods.area), np.inf, rods.area)
             text = _number(stress[row], stress, "MPa")
-            yield Result(SECTION, "stress", text, "Axial force per area of the cross-section; tension positive.")
+            yield Result(
+                SECTION, "stress", text, "Axial force per area of the cross-section; tension positive."
+            )
         yield _result("length", _number(rods.length[row], rods.length, "m"), Rod.length)
         if rods.plastic_strain[row]:
             plastic = 1000.0 * rods.plastic_strain
