@@ -39,6 +39,7 @@ class Tile(Handle):
     picture: Field[Any] = Field(dtype=object, doc="The model to draw; None: not read yet.")
     symbol: Field[str] = Field(dtype=str, doc="A sign in place of a picture.")
     hidden: Field[bool] = Field(doc="Filtered out.", dtype=bool)
+    rest: Field[bool] = Field(doc="Stands for those of its section for which one row has no room.", dtype=bool)
 
 
 class Reading(Handle):
@@ -57,12 +58,12 @@ class Form(World):
     """The boxes, readings and tiles of one screen.
 
     They are entities of a world of their own, apart from the undo log and the run of the model.
-    check: why a box's text is refused, or "".
+    check: why a box's text is refused, or "". accept: the title of the button that does what Return does; "": none.
     """
 
-    def __init__(self, text: str, check: Callable[[Box], str] = lambda box: "") -> None:
+    def __init__(self, text: str, check: Callable[[Box], str] = lambda box: "", accept: str = "") -> None:
         super().__init__((Heading, Box, Tile, Reading))
-        self.check = check
+        self.check, self.accept = check, accept
         self.heading.text = text
 
     @property

@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from components.field import CM, Field, FieldError, derived, state
+from components.field import Field, FieldError, derived, state
 from components.handle import Handle
 from components.particle import Particle, rods_without_length
 from components.table import Table, flags
 from components.world import World
+
+DEFAULT_STIFFNESS = 164640.0  # kN, of a rod of which no other is known
 
 
 class Rod(Handle):
@@ -29,7 +31,35 @@ class Rod(Handle):
         title="ends",
         doc="The particles at its two ends: in files names, in Python rows.",
     )
-    stiffness: Field[float] = Field("kN", default=164640.0, above=0.0, doc="EA: force per unit of strain.")
+    prescribed_stiffness: Field[float | None] = Field(
+        "kN",
+        default=None,
+        nullable=True,
+        above=0.0,
+        title="stiffness",
+        key="stiffness",
+        doc="EA: force per unit of strain; automatic: Young's modulus × area, 164640 kN where one is unknown.",
+        overrides="stiffness",
+    )
+    youngs_modulus: Field[float | None] = Field(
+        "kN/m²",
+        default=None,
+        nullable=True,
+        absent="unknown",
+        above=0.0,
+        title="Young's modulus",
+        doc="E of the material: steel 210 GPa, aluminium 70, concrete 30, timber 11.",
+        shown=("GPa", 1e-6),
+    )
+    area: Field[float | None] = Field(
+        "m²",
+        default=None,
+        nullable=True,
+        absent="unknown",
+        above=0.0,
+        doc="A of the cross-section: E·A is the stiffness, axial force / A the stress.",
+        shown=("cm²", 1e4),
+    )
     prescribed_rest_length: Field[float | None] = Field(
         "m",
         default=None,
@@ -38,7 +68,6 @@ class Rod(Handle):
         title="rest length",
         key="rest_length",
         doc="Length without force; automatic: the distance between the original positions.",
-        shown=CM,
         overrides="rest_length",
     )
     tensile_strength: Field[float | None] = Field(
@@ -59,9 +88,7 @@ class Rod(Handle):
         title="damping coefficient",
         doc="Axial force per elongation rate.",
     )
-    density: Field[float] = Field(
-        "kg/m", default=6.15, minimum=0.0, doc="Mass per length.", shown=("kg/cm", 0.01)
-    )
+    density: Field[float] = Field("kg/m", default=6.15, minimum=0.0, doc="Mass per length.")
     temperature_change: Field[float] = Field(
         "K", doc="Warming since it had its rest length; it expands as it warms."
     )
@@ -77,10 +104,18 @@ class Rod(Handle):
         doc="A cable: slack, without force, where its ends are nearer than its length without force.",
     )
     plastic_strain: Field[float] = state(doc="Permanent part of the strain.")
+    yielded_at: Field[float | None] = state(
+        "s", default=None, nullable=True, absent="not yet", doc="When the run first brought it to a strength."
+    )
+    stiffness: Field[float] = derived(
+        "kN",
+        default=DEFAULT_STIFFNESS,
+        doc="EA: prescribed, or Young's modulus × area, or 164640 kN where one is unknown.",
+        overridden_by="prescribed_stiffness",
+    )
     rest_length: Field[float] = derived(
         "m",
         doc="Prescribed, or the distance between the original positions.",
-        shown=CM,
         overridden_by="prescribed_rest_length",
     )
     difference: Field[tuple[float, float]] = derived(
@@ -96,7 +131,7 @@ class Rod(Handle):
     tension_limit: Field[float] = derived("kN", doc="Tensile strength; infinite if unlimited.")
     compression_limit: Field[float] = derived("kN", doc="Compressive strength; infinite if unlimited.")
     axial_force: Field[float] = derived("kN", doc="Without the damper's; tension positive.")
-    length: Field[float] = derived("m", doc="Present distance between the ends.", shown=CM)
+    length: Field[float] = derived("m", doc="Present distance between the ends.")
     strain: Field[float] = derived(doc="Elongation / rest length, without thermal expansion.")
     yielding: Field[bool] = derived(dtype=bool, doc="Axial force is at a strength.")
 
@@ -168,9 +203,13 @@ def has_cables(world: World) -> bool:
 
 def can_yield(world: World) -> bool:
     """True if plasticity is on and some rod has a strength."""
+    return bool(world.tables["settings"].plasticity[0]) and has_strength(world)
+
+
+def has_strength(world: World) -> bool:
+    """True if some rod has a strength, whether plasticity is on or not."""
     rods = world.tables["rods"]
-    limited = (rods.tension_limit < np.inf) | (rods.compression_limit < np.inf)
-    return bool(world.tables["settings"].plasticity[0]) and bool(limited.any())
+    return bool(((rods.tension_limit < np.inf) | (rods.compression_limit < np.inf)).any())
 
 
 def has_plastic_strain(world: World) -> bool:

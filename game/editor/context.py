@@ -8,7 +8,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, TypeVar
 
 from components.camera import Viewport
 from components.field import Vector
@@ -21,6 +21,7 @@ from components.toolbar import Toolbar
 from components.view import Preview, Readout, View
 from game.documents import models
 from game.documents.autosave import Autosave
+from game.documents.chronicle import Happening
 from game.documents.document import missing_mods
 from game.documents.history.history import History
 from game.documents.history.timeline import Timeline
@@ -38,6 +39,8 @@ from systems.run.simulation import Simulation
 from systems.run.system import Time
 from systems.schedule import Schedule
 from systems.statics.events import Event
+
+H = TypeVar("H", bound=Handle)
 
 Stage = tuple[Model | Form | Toolbar, View]  # what is shown, and how
 
@@ -312,10 +315,10 @@ class Context:
         else:
             self.adopt(models.load(source), file_of(source))
 
-    def adopt(self, model: Model, file: ModelFile = ModelFile()) -> None:  # noqa: B008
-        """Open a model. A document with unsaved work stays open, and undo goes back to it."""
+    def adopt(self, model: Model, file: ModelFile = ModelFile(), *, keep: bool = False) -> None:  # noqa: B008
+        """Open a model. A document with unsaved work, or any to `keep`, stays open, and undo goes back to it."""
         self.leave_gesture()
-        self.documents.add(model, file)
+        self.documents.add(model, file, keep=keep)
         self.begin_document()
 
     def begin_document(self) -> None:
@@ -380,6 +383,11 @@ class Context:
         return self.document.assessment.remarks
 
     @property
+    def events(self) -> tuple[Happening, ...]:
+        """What happened in the run so far, in order of time: rods that yield, cables that go slack, collapse, rest."""
+        return self.document.chronicle.happenings
+
+    @property
     def fault(self) -> str:
         """The mod that failed last and why, until Escape is pressed; "" if none did."""
         return FAULTS[-1] if len(FAULTS) > self.faults_seen else ""
@@ -412,8 +420,8 @@ class Context:
         return status
 
     def restart(self) -> None:
-        """Go back to the beginning of time, keeping all edits. Can be undone."""
-        if not self.at_beginning:
+        """Go back to before it was run or settled, keeping all edits. Can be undone."""
+        if not self.document.is_undeformed:
             self.document.restart()
             self._go_on()
 
@@ -441,6 +449,7 @@ class Context:
         finally:
             self.history.end_run()
             self._go_on()
+            self.document.chronicle.look()
         return bool(self.model.clock.steps == target)
 
     def _go_on(self) -> None:
@@ -468,6 +477,7 @@ class Context:
             return
         with self.timeline.recording():
             self.document.live.frame(elapsed)
+        self.document.chronicle.look()
 
     def has_program(self, simulation: Simulation) -> bool:
         """False while a large model waits for another process to compile its step program (see `awaited`)."""
@@ -513,6 +523,10 @@ class Context:
     def selected(self) -> list[Handle]:
         """The selected elements, in order of creation."""
         return self.model.tagged(Selected)
+
+    def selected_of(self, *kinds: type[H]) -> list[H]:
+        """Those of the selected elements that are of these kinds."""
+        return [handle for handle in self.selected if isinstance(handle, kinds)]
 
     @property
     def has_selected(self) -> bool:
@@ -593,5 +607,5 @@ class Context:
         Called after actions, never because of time or frames, so that a recording is replayed in the same picture.
         """
         view = self.view
-        wanted = view.theory or view.energy or any(readout.is_large for readout in self.panels())
+        wanted = view.theory or view.energy or view.events or any(readout.is_large for readout in self.panels())
         view.share(self.model, shares=view.legend and wanted)

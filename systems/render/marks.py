@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from components.camera import Viewport
+from components.camera import Rectangle, Viewport
 from systems.render.theme import Colour
 
 Points = NDArray[np.float64]
@@ -135,6 +135,14 @@ class Text(NamedTuple):
     weight: str = "regular"
     anchor: str = "left"
     of: Owner | None = None
+
+
+def cross(place: Rectangle, unit: float, colour: Colour) -> Strokes:
+    """The sign on a button that closes something."""
+    x, y, reach = place.left + place.width / 2, place.top + place.height / 2, 4.5 * unit
+    start = np.array([[x - reach, y - reach], [x - reach, y + reach]])
+    end = np.array([[x + reach, y + reach], [x + reach, y - reach]])
+    return Strokes(start, end, 1.6 * unit, colour)
 
 
 Mark = Strokes | Fills | Bars | Stamps | Discs | Rectangles | Panel | Text

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from components.camera import Rectangle
+from components.field import Vector
 from components.form import Form
 from components.model import Model
 from components.toolbar import Toolbar
@@ -10,11 +12,12 @@ from systems.render.arrows import draw_loads, draw_velocities
 from systems.render.diagrams import draw_particle_diagrams, draw_rod_diagrams
 from systems.render.labels import Placed, place_labels
 from systems.render.marks import Picture
-from systems.render.overlays import draw_notice, draw_overlays, draw_scale, place_scale
+from systems.render.overlays import BAR, draw_notice, draw_overlays, draw_scale, place_scale
 from systems.render.page import draw_page
 from systems.render.panel import compose_form
+from systems.render.pointed import draw_pointed
 from systems.render.readouts import draw_readouts
-from systems.render.sheet import ABOVE, BELOW, measure
+from systems.render.sheet import ABOVE, BELOW, Sheet, measure
 from systems.render.structure import (
     draw_ghost,
     draw_grid,
@@ -28,6 +31,7 @@ from systems.render.supports import draw_supports, support_sides
 from systems.render.theme import Theme
 from systems.render.toolbar import compose_toolbar
 from systems.render.tools import draw_flashes, draw_preview
+from systems.render.utilisation import shade_rods
 
 
 def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Placed | None = None) -> Picture:
@@ -42,8 +46,26 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Pla
     if isinstance(model, Toolbar):
         return compose_toolbar(model, view, theme)
     sheet = measure(model, view, theme, placed)
-    if view.page is not None:
-        return Picture(sheet.viewport, theme.background, draw_page(sheet))
+    return (
+        _composed(sheet)[0]
+        if view.page is None
+        else Picture(sheet.viewport, theme.background, draw_page(sheet))
+    )
+
+
+def lies_under(model: Model, view: View, theme: Theme, pixel: Vector) -> bool:
+    """True if a pixel of the picture of a model shows a panel or the status bar, not the model."""
+    v = view.canvas
+    if view.status.state and v.contains(pixel) and pixel[1] >= v.bottom - BAR * view.pixel_ratio:
+        return True
+    if not (view.readouts and view.legend and view.panels.contains(pixel)):
+        return False
+    return any(panel.contains(pixel) for panel in _composed(measure(model, view, theme))[1])
+
+
+def _composed(sheet: Sheet) -> tuple[Picture, list[Rectangle]]:
+    """The picture of a model, and where its panels are."""
+    model, theme = sheet.model, sheet.theme
     draw_grid(sheet)
     for layer in BELOW:
         sheet.marks += layer(sheet)
@@ -52,6 +74,7 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Pla
     draw_halos(sheet)
     sides = support_sides(sheet)
     draw_supports(sheet, sides)
+    shade_rods(sheet)
     draw_rods(sheet)
     draw_particles(sheet)
     sheet.marks += [*draw_loads(sheet), *draw_velocities(sheet)]
@@ -61,10 +84,17 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Pla
     for layer in ABOVE:
         sheet.marks += layer(sheet)
     overlays, room = draw_overlays(sheet)
-    overlays += draw_readouts(sheet, room)
+    readouts, panels = draw_readouts(sheet, room)
+    overlays += readouts
     overlays += draw_notice(sheet, room)
     scale = place_scale(sheet, room) if model.particles.count else None
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)
-    over = [*draw_scale(sheet, scale), *draw_flashes(sheet), *draw_preview(sheet), *overlays]
+    over = [
+        *draw_scale(sheet, scale),
+        *draw_flashes(sheet),
+        *draw_preview(sheet),
+        *overlays,
+        *draw_pointed(sheet),
+    ]
     sheet.placed |= sheet.scales
-    return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over])
+    return Picture(sheet.viewport, theme.background, [*sheet.marks, *labels, *over]), panels

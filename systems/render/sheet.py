@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from components.camera import Viewport
 from components.model import Model
+from components.tags import Hovered
 from components.view import View, drawn_positions
 from systems.render.clip import bounds, clip_rods
 from systems.render.labels import Label, Placed
@@ -35,6 +36,7 @@ class Sheet:
     ends: rows of the particles at the rods' ends (m, 2). rods: rows of the rods that can be seen; start,
     end: their visible parts in pixels, aligned with `rods`. particles: rows of those that can be seen.
     pulled, pushed: rows of the rods that are coloured by their axial force, since they have no room for more.
+    shades: rows of rods and the colours that show a quantity of theirs.
     placed: where labels were in the last picture. legend: names of the colours that occur and mean something.
     notes: scales to be shown. scales: those of arrows in this picture, to be kept in `placed`. values: how many values
     there are to show, if there were room for all.
@@ -59,6 +61,7 @@ class Sheet:
     labels: list[Label] = field(default_factory=list)
     legend: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    shades: list[tuple[Rows, Colour]] = field(default_factory=list)
     scales: Placed = field(default_factory=dict)
     values: int = 0
 
@@ -79,7 +82,9 @@ class Sheet:
         return inside
 
     def tagged(self, tag: type, table: str) -> Rows:
-        """Rows of the entities of one table that carry a tag."""
+        """Rows of the entities of one table that carry a tag; nothing is pointed at in a picture without a pointer."""
+        if tag is Hovered and self.view.pointer is None:
+            return np.empty(0, dtype=np.intp)
         return self.model.rows_tagged(tag)[table]
 
     def chosen(self, wanted: Rows, rows: Rows) -> NDArray[np.bool_]:

@@ -49,6 +49,8 @@ def _drop(context: Context, pixel: Vector) -> None:
     gesture, context.gesture = context.gesture, None
     if gesture is not None:
         gesture.drop(context, pixel)
+    if isinstance(gesture, Drawing):
+        context.gesture = gesture.following(context)
 
 
 def _draw(context: Context, tool: str, pixel: Vector) -> None:
@@ -59,7 +61,7 @@ def _draw(context: Context, tool: str, pixel: Vector) -> None:
     if tool not in TOOLS:
         ACTIONS[tool](context, pixel)
         return
-    begun = TOOLS[tool].begin(context, pixel)
+    begun = TOOLS[tool].begin_anywhere(context, pixel)
     if begun is not None:
         context.gesture = begun
     elif context.gesture is None:

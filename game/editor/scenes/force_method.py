@@ -42,12 +42,17 @@ class _Work:
 
 
 class ForceMethod(Scene):
-    """The seven parts of the force method. shown_guide: the guide as pictures show it, announced work not yet done."""
+    """The seven parts of the force method.
+
+    shown_guide: the guide as pictures show it, announced work not yet done. first_unknown: the name of the rod to
+    release when it begins; "": a person will choose.
+    """
 
     name = "force method"
 
     def __init__(self) -> None:
         self.shown_guide: Guide | None = None
+        self.first_unknown = ""
         self._work: _Work | None = None
         self._problem = ""
         self._mechanism: Mechanism | None = None  # the whole structure, if it cannot be solved
@@ -68,9 +73,10 @@ class ForceMethod(Scene):
 
     def enter(self, context: Context) -> None:
         self._problem, self._mechanism, self._page_of = "", None, -1
-        self.work(context, "Solving the structure", partial(self._begin, context))
+        unknown, self.first_unknown = self.first_unknown, ""
+        self.work(context, "Solving the structure", partial(self._begin, context, unknown))
 
-    def _begin(self, context: Context) -> None:
+    def _begin(self, context: Context, unknown: str) -> None:
         # Here only, since they import scipy.
         from game.force_method.guide import Guide, Mechanism, base_structure, view_like
         from systems.statics.force_method import ForceMethodError
@@ -82,6 +88,10 @@ class ForceMethod(Scene):
             if error.motion is not None:
                 copy = base_structure(context.model, [])
                 self._mechanism = Mechanism(copy, error.motion, view_like(context.view))
+        else:
+            if unknown:
+                self.shown_guide.next()
+                self.shown_guide.pick(self.shown_guide.sets[0].model.rods[unknown])
 
     def exit(self, context: Context) -> None:
         self.shown_guide = self._mechanism = self._work = None

@@ -16,16 +16,16 @@ class Pause(Scene):
     def hint(self, context: Context) -> str:
         if context.model.particles.count == 0:
             return (
-                "P new particle under the pointer     L rod from one to another     C support     F force"
-                "     D open a model     F1 all keys"
+                "P new particle under the pointer     L rods, from place to place     C support     F force"
+                "     Right\u00a0click menu     D open a model     F1 all keys"
             )
         selected = context.model.rows_tagged(Selected)
         kinds = [context.model.tables[name].kind for name, rows in selected.items() if len(rows)]
         if kinds and all(kind.points for kind in kinds):
             return "drag it or its ends     Return properties     Esc deselect     F1 keys"
         if kinds:
-            return "Return properties     I its forces     Esc deselect     F1 keys"
-        return "Space run     click select     I forces     wheel zoom     F1 keys"
+            return "right click menu     Return properties     I its forces     Esc deselect     F1 keys"
+        return "Space run     click select     right click menu     I forces     wheel zoom     F1 keys"
 
 
 class Simulation(Scene):
