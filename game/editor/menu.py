@@ -19,6 +19,7 @@ Groups = Sequence[Sequence[Entry]]
 
 IN_MENU = (
     "open menu",
+    "more tools",
     "choose entry",
     *(f"menu {way}" for way in ("up", "down", "left", "right")),
 )  # keep it open

@@ -198,6 +198,7 @@ WITHOUT_KEY: tuple[Binding, ...] = (
     Binding("", "toggle cable", LIVE, "cable: tension only"),
     Binding("", "release", (PAUSE,), "release it in the force method"),
     Binding("", "environment", LIVE, "properties of the environment"),
+    Binding("", "more tools", (*LIVE, FORCE_METHOD), "more"),
 )
 
 # The actions of the toolbar, in groups from the top to the bottom.
