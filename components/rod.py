@@ -104,6 +104,9 @@ class Rod(Handle):
         doc="A cable: slack, without force, where its ends are nearer than its length without force.",
     )
     plastic_strain: Field[float] = state(doc="Permanent part of the strain.")
+    yielded_at: Field[float | None] = state(
+        "s", default=None, nullable=True, absent="not yet", doc="When the run first brought it to a strength."
+    )
     stiffness: Field[float] = derived(
         "kN",
         default=DEFAULT_STIFFNESS,
@@ -200,9 +203,13 @@ def has_cables(world: World) -> bool:
 
 def can_yield(world: World) -> bool:
     """True if plasticity is on and some rod has a strength."""
+    return bool(world.tables["settings"].plasticity[0]) and has_strength(world)
+
+
+def has_strength(world: World) -> bool:
+    """True if some rod has a strength, whether plasticity is on or not."""
     rods = world.tables["rods"]
-    limited = (rods.tension_limit < np.inf) | (rods.compression_limit < np.inf)
-    return bool(world.tables["settings"].plasticity[0]) and bool(limited.any())
+    return bool(((rods.tension_limit < np.inf) | (rods.compression_limit < np.inf)).any())
 
 
 def has_plastic_strain(world: World) -> bool:

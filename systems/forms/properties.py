@@ -26,9 +26,9 @@ MIXED = "mixed"
 KIND = "kind"  # the part of a history that is its kind
 EXACT, DIGITS = 12, 9  # significant digits: numbers with so few are shown in full, others rounded
 _OF_RODS = ("diagram_scale", "plasticity", "sleeping")  # settings that concern rods; the others particles
+_DECIDED = (Particle.asleep, Rod.yielded_at)  # by the run
 CROSS_SECTION = "Cross-section"
 _OF_SECTION = (Rod.youngs_modulus, Rod.area)  # which may give the stiffness instead of a person
-_DECIDED = (Particle.asleep,)  # anew after every edit
 _NUMBERS = (float, int)
 _EDITABLE = (*_NUMBERS, bool, str)
 
