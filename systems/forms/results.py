@@ -16,8 +16,7 @@ from components.handle import Handle
 from components.load import CONSTANT, Load, factor_at
 from components.model import Model
 from components.particle import Particle
-from components.rod import Rod
-from components.table import Table
+from components.rod import Rod, utilisation
 
 SECTION = "Results"
 RESIDUAL = 1e-12  # of a length (m), force (kN) or speed (m/s): nothing, where all of them are as small
@@ -118,20 +117,13 @@ def _utilisation(columns: _Columns, rows: NDArray[np.intp]) -> Iterator[Result]:
     rods = columns.model.rods
     if not np.isfinite(np.minimum(rods.tension_limit, rods.compression_limit)[rows]).any():
         return
-    used, text = utilisation(rods, columns("rods.axial_force"))[rows], "—"
+    used, text = utilisation(columns.model, columns("rods.axial_force"))[rows], "—"
     if not np.isnan(used).all():
         most = int(np.nanargmax(used))
         whose = f" ({rods.column('name')[rows[most]]})" if len(rows) > 1 else ""
         text = f"{written.share(used[most])}{whose}"
     title = "largest utilisation" if len(rows) > 1 else "utilisation"
     yield Result(SECTION, title, text, "Axial force, as a share of the strength in its direction.")
-
-
-def utilisation(rods: Table[Rod], force: NDArray[np.float64]) -> NDArray[np.float64]:
-    """|axial force| / strength in its direction, of every rod (m,); NaN where that is unlimited."""
-    limit = np.where(force < 0.0, rods.compression_limit, rods.tension_limit)
-    share: NDArray[np.float64] = np.where(np.isfinite(limit), np.abs(force) / limit, np.nan)
-    return share
 
 
 # --- particles ----------------------------------------------------------------------------------------

@@ -123,7 +123,7 @@ _BY_PURPOSE: dict[str, tuple[Binding, ...]] = {
         Binding("return", "accept", (PROPERTIES,), "accept the box; without one, go back"),
         Binding("return", "accept", (SAVE,), "save"),
         Binding("return", "accept", (LOAD,), "open"),
-        Binding("escape", "cancel", (PROPERTIES,), "restore the box; without one, apply all and go back"),
+        Binding("escape", "cancel", (PROPERTIES,), "restore the box; without one, go back"),
         Binding("escape", "cancel", (SAVE, LOAD), "restore the box; without one, go back"),
         Binding("tab", "next box", FORMS, "next box", repeats=True),
         Binding("shift+tab", "previous box", FORMS, "previous box", repeats=True),
