@@ -12,6 +12,7 @@ from components.camera import Camera, Viewport
 from components.field import Vector
 from components.kind import all_points
 from components.model import Model
+from components.slider import Place, SliderStack, under
 from components.toolbar import Toolbar
 
 # Sizes of type and symbols that a person can choose, relative to the usual one.
@@ -133,6 +134,7 @@ class View:
     tool: "place", "rod", "support", "force" or "velocity" while clicks and drags make one, or "".
     preview: what is being drawn. toolbar: what can be clicked at the left edge; hidden with the legend.
     flashes: points (m) where particles collided just now, shape (k, 2).
+    sliders: what can be moved at the lower left; none with the legend hidden.
     theme: the name of its colours. readouts: panels at the right edge; hidden with the legend.
     shape: a mechanism or mode that is drawn over the model, with its title below the caption.
     theory, energy: show theory beside the run, and its energy account, among them.
@@ -158,6 +160,7 @@ class View:
     caption: tuple[str, ...] = ()
     page: Page | None = None
     toolbar: Toolbar = field(default_factory=Toolbar)
+    sliders: SliderStack = field(default_factory=SliderStack)
     theme: str = "light"
     readouts: tuple[Readout, ...] = ()
     since: dict[str, int] = field(default_factory=dict)
@@ -201,6 +204,19 @@ class View:
         return Viewport(window.left + taken, window.top, window.width - taken, window.height)
 
     @property
+    def slider_places(self) -> list[Place]:
+        """Where the sliders are: at the lower left of the canvas, above panels that take its lower half."""
+        c, panels = self.canvas, self.panels
+        beside = not self.shares or panels.width < c.width or panels == c
+        return self.sliders.places(
+            c if beside else replace(c, height=c.height - panels.height), self.pixel_ratio
+        )
+
+    def covers(self, pixel: Vector) -> bool:
+        """True if the toolbar or a slider lies over the model there."""
+        return self.strip.contains(pixel) or under(self.slider_places, pixel) is not None
+
+    @property
     def panels(self) -> Viewport:
         """Where panels stand: in a column at the right, if that is too narrow in the lower half, else anywhere."""
         c, u = self.canvas, self.pixel_ratio
@@ -215,7 +231,8 @@ class View:
     def room(self) -> Viewport:
         """The part of the canvas that a model is fitted into."""
         c, panels = self.canvas, self.panels
-        if not self.shares or panels == c:
+        c = replace(c, height=max(c.height - self.sliders.further_height(self.pixel_ratio), 1))
+        if not self.shares or panels == self.canvas:
             return c
         if panels.width < c.width:
             return replace(c, width=c.width - panels.width)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from components.camera import Camera, Viewport
 from components.field import Vector
 from components.model import Model
+from components.slider import SliderStack
 from components.toolbar import Toolbar
 from components.view import MAGNIFICATIONS, MARGIN, Plot, View, drawn_places, magnified
 from game.documents import library, models
@@ -324,6 +325,7 @@ def _unused(path: Path) -> Path:
 
 def render_png(session: Session, path: str, size: tuple[int, int], theme: str = "light") -> None:
     """Draw a session to a PNG file, without a display. Raises OSError if it cannot be written."""
+    session.exaggerate()
     surface = _drawn(session, size, theme, drawn_places(session.model))
     _save(surface, Path(path))
 
@@ -346,7 +348,9 @@ def _drawn(
     session.update_view()
     status = replace(session.view.status, hint="")  # a picture takes no keys
     camera = Camera(viewport=Viewport(0, 0, *size))
-    view = replace(session.view, camera=camera, toolbar=Toolbar(), heading="", status=status)
+    view = replace(
+        session.view, camera=camera, toolbar=Toolbar(), sliders=SliderStack(), heading="", status=status
+    )
     view.camera.fit(around, MARGIN, view.room, view.pixel_ratio)
     Canvas(load_raster).draw(surface, compose(session.model, view, load_theme(theme), placed))
     return surface

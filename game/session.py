@@ -27,6 +27,7 @@ from game.editor.actions import ACTIONS, WHILE_DRAWING
 from game.editor.context import FAULTS, Context, Stage
 from game.editor.frame import Actions, Frame, HeadlessFrame, ShowView
 from game.editor.scenes import all_scenes, scene_systems
+from game.editor.sliders import slider_stack
 from game.editor.toolbar import toolbar_of
 from game.editor.view_model import show
 from game.mods import load_all
@@ -48,6 +49,12 @@ if TYPE_CHECKING:  # they import scipy
 
 CLICKS = ("click", "ctrl+click", "drag", "ctrl+drag")  # the pointer may slip a little in a click on a button
 ON_TOOLBAR = (*CLICKS, "wheel up", "wheel down")
+ON_SLIDER = {
+    **dict.fromkeys(("click", "ctrl+click"), "click slider"),
+    **dict.fromkeys(("drag", "ctrl+drag"), "drag slider"),
+    "wheel up": "slider up",
+    "wheel down": "slider down",
+}
 FARTHEST = 1e9  # pixels from the corner of the window to which a click may be
 LARGEST_SIDE, LARGEST_RATIO = 65_536, 64.0  # of a window, in pixels, and in pixels per point
 DEFAULT_LIMIT = 60.0  # s of simulated time in which a model is expected to come to rest
@@ -257,18 +264,23 @@ class Session(Context):
             raise ValueError(missing("actions", name, ACTIONS))
         if name not in WHILE_DRAWING:
             self.leave_gesture()
+        self.exaggerate()
         try:
             ACTIONS[name](self, pixel if pixel is not None else self.pointer)
         except (Refusal, FieldError) as error:
             self.notice = str(error)
         self.scenes.apply(self)
-        self.make_room()
         self.offer_tools()
+        self.make_room()
 
     def offer_tools(self) -> None:
-        """Let the toolbar show what can be done now; behind a panel it stays as it was."""
+        """Let the toolbar and the sliders show what can be done now; behind a panel they stay as they were."""
+        view = self.view
         if self.scene not in FORMS:
-            self.view.toolbar = toolbar_of(self)
+            room = view.room
+            view.toolbar, view.sliders = toolbar_of(self), slider_stack(self)
+            if view.room != room and view.fitted:
+                view.fit(self.model)
 
     def press(self, key: str, pixel: Vector | None = None) -> None:
         """Press a key, such as "k", "escape" or "ctrl+z"; one that means nothing in this scene does nothing.
@@ -295,14 +307,16 @@ class Session(Context):
             self.act(name, pixel)
 
     def _action_at(self, key: str, pixel: Vector) -> str | None:
-        """The action of a key or button with the pointer at a pixel; clicks on the toolbar take its tools.
+        """The action of a key or button with the pointer at a pixel; clicks on toolbar and sliders are for those.
 
         Where the keys are listed, Escape leaves the list and nothing else.
         """
         if key == "escape" and self.view.help:
             return "close help"
-        if key not in ON_TOOLBAR or self.scene in FORMS or not self.view.strip.contains(pixel):
+        if key not in ON_TOOLBAR or self.scene in FORMS or not self.view.covers(pixel):
             return action_for(self.scene, key)
+        if not self.view.strip.contains(pixel):
+            return ON_SLIDER[key]
         buttons = self.view.toolbar.buttons(self.view.camera.viewport, self.view.pixel_ratio)
         hit = (button.tool for button in buttons if button.contains(pixel))
         return next((tool.action for tool in hit if tool.enabled and key in CLICKS), None)
@@ -382,6 +396,7 @@ class Session(Context):
     def frame(self, elapsed: float) -> Frame:
         """One frame, `elapsed` s after the last: input, edit, step, events and render. Raises ValueError."""
         frame = Frame(self, _forward("elapsed", elapsed))
+        self.exaggerate()
         try:
             for phase in Phase:
                 self.schedule.run(phase, frame)

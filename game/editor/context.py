@@ -578,6 +578,12 @@ class Context:
         """The panels of mods beside the model."""
         return (readout for panel in PANELS for readout in panel(self))
 
+    def exaggerate(self) -> None:
+        """Let the automatic displacement scale suit the model, but not in the middle of a drag."""
+        still = not self.time_passes or self.simulation.halted
+        if self.gesture is None and self.document.exaggeration.review(still=still) and still:
+            self.view.follow(self.model)
+
     def make_room(self) -> None:
         """Fit the model beside panels that are large enough to cover it.
 

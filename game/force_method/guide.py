@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from components.commands import Assign
-from components.field import Column, Role
+from components.field import MADE, Column
 from components.handle import Handle
 from components.model import Model
 from components.particle import Particle
@@ -261,7 +261,7 @@ def elastic_copy(model: Model) -> Model:
     """The same structure without yielding, at rest at the beginning of time; only moved supports are displaced."""
     copy = Model()
     for name, table in model.tables.items():
-        kept = [field.name for field in table.fields_in(Role.DOCUMENT)] + ["plastic_strain"] * (name == "rods")
+        kept = [field.name for field in table.fields_in(*MADE)] + ["plastic_strain"] * (name == "rods")
         columns = {field: table.column(field) for field in kept}
         if name == "particles":
             columns["displacement"] = np.where(table.fixed, table.displacement, 0.0)

@@ -35,10 +35,11 @@ class Hover(System):
         """Move the mark if the pointer is over something else now."""
         model, view = frame.session.focus
         pointer = frame.session.view.pointer
-        if self._looked == (model.context, model.revision, view.camera, view.strip, pointer):
+        if self._looked == (model.context, model.revision, view.camera, view.strip, view.sliders, pointer):
             return
         self._mark(model, view, pointer)
-        self._looked = (model.context, model.revision, replace(view.camera), view.strip, pointer)
+        now = replace(view.camera), view.strip, view.sliders, pointer
+        self._looked = (model.context, model.revision, *now)
 
     def _mark(self, model: Model, view: View, pointer: Vector | None) -> None:
         hit = None

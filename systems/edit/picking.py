@@ -39,7 +39,7 @@ class Grip:
 
 def pick(model: Model, view: View, pixel: Vector) -> Handle | None:
     """The particle, else the rod, the element of a mod or the shown grid under a pixel; None if there is nothing."""
-    if view.strip.contains(pixel):
+    if view.covers(pixel):
         return None
     return pick_particle(model, view, pixel) or pick_line(model, view, pixel) or _grid_at(model, view, pixel)
 
@@ -50,8 +50,8 @@ def pick_line(model: Model, view: View, pixel: Vector) -> Handle | None:
 
 
 def pick_particle(model: Model, view: View, pixel: Vector) -> Particle | None:
-    """The particle within reach of a pixel, the nearest relative to its reach; None under the toolbar."""
-    if model.particles.count == 0 or view.strip.contains(pixel):
+    """The particle within reach of a pixel, the nearest relative to its reach; None under the toolbar and sliders."""
+    if model.particles.count == 0 or view.covers(pixel):
         return None
     x, y = (view.camera.to_pixels(drawn_positions(model)) - pixel).T
     reach = np.maximum(model.particles.radius * view.camera.scale, PARTICLE_REACH * view.pixel_ratio)

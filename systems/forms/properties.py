@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from components.box import NUMBER, TEXT, WORD, Box
-from components.field import Field, Role
+from components.field import SAVED, Field
 from components.form import Form
 from components.handle import Handle
 from components.load import HISTORIES, Load
@@ -80,7 +80,7 @@ def _loads_on(model: Model, selected: Sequence[Handle]) -> list[Load]:
 
 def _subject(model: Model, section: str, elements: Sequence[Handle]) -> Subject:
     kind = type(elements[0])
-    fields = model.tables[kind.table].fields_in(Role.DOCUMENT, Role.STATE)
+    fields = model.tables[kind.table].fields_in(*SAVED)
     wanted = [field for field in fields if field.dtype in _EDITABLE or field is Load.history]
     wanted = [field for field in wanted if field not in _DECIDED]
     if len(elements) > 1:

@@ -90,6 +90,7 @@ BINDINGS: list[Binding] = [
     Binding("ctrl+d", "duplicate", LIVE, "duplicate the selection"),
     Binding("m", "toggle theory", LIVE, "theory beside the run, on / off"),
     Binding("j", "toggle energy", LIVE, "energy account on / off"),
+    Binding("n", "new slider", LIVE, "slider for the force or stiffness selected"),
     Binding("b", "next shape", LIVE, "mechanisms, natural modes, none"),
     Binding("home", "fit", (*LIVE, FORCE_METHOD), "fit the view"),
     Binding("tab", "toggle legend", LIVE, "legend and toolbar on / off"),

@@ -15,6 +15,7 @@ from systems.render.page import draw_page
 from systems.render.panel import compose_form
 from systems.render.readouts import draw_readouts
 from systems.render.sheet import ABOVE, BELOW, measure
+from systems.render.sliders import draw_sliders
 from systems.render.structure import (
     draw_ghost,
     draw_grid,
@@ -61,6 +62,7 @@ def compose(model: Model | Form | Toolbar, view: View, theme: Theme, placed: Pla
     for layer in ABOVE:
         sheet.marks += layer(sheet)
     overlays, room = draw_overlays(sheet)
+    overlays += draw_sliders(sheet)
     overlays += draw_readouts(sheet, room)
     overlays += draw_notice(sheet, room)
     labels = place_labels(sheet.labels, sheet.occupancy, sheet.unit, sheet.placed)

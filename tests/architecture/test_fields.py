@@ -31,10 +31,11 @@ vectors, paths also take `.x` and `.y`; where several elements are meant, `*` st
 (`session.settings.tolerance`, `--set settings.tolerance=1e-12`).
 
 * **set**: a person makes it. It is saved, and edits of it can be undone.
+* **drawn**: likewise, but only pictures depend on it: it can be changed in a run without touching that.
 * **moves**: time changes it. It is saved, and can be set, too.
 * **computed**: it follows from the rest and can only be read; **or set**: a value of one's own replaces it.
 """
-ROLES = {Role.DOCUMENT: "set", Role.STATE: "moves", Role.DERIVED: "computed"}
+ROLES = {Role.DOCUMENT: "set", Role.LOOK: "drawn", Role.STATE: "moves", Role.DERIVED: "computed"}
 
 
 def page() -> str:

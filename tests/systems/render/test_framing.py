@@ -98,7 +98,7 @@ MARKS = st.one_of(
     ),
     st.builds(lambda p, r, rim: Discs(p, np.array([r]), INK, PALE, rim), PLACES, SIZES, SIZES),
     st.builds(lambda *box: Rectangles(np.array([box]), INK), *[st.integers(-(2**62), 2**62)] * 4),
-    st.builds(Panel, LENGTHS, LENGTHS, SIZES, SIZES, SIZES, st.just(INK)),
+    st.builds(Panel, LENGTHS, LENGTHS, SIZES, SIZES, SIZES, st.just(INK), st.sampled_from([None, PALE])),
     st.builds(
         Text,
         st.text(),

@@ -1,0 +1,62 @@
+"""Actions of the sliders on the canvas: moving them, making and removing them."""
+
+from __future__ import annotations
+
+from components.field import Vector
+from components.slider import Place, under
+from game.editor.context import Action, Context, action
+from game.editor.gestures.sliding import Slide
+from game.editor.sliders import SCALE, add_usual_slider, move_to, remove_slider, slider_of
+
+WHEEL = 0.02  # of its length, by which the wheel moves a slider
+
+
+def _under(context: Context, pixel: Vector) -> Place | None:
+    return under(context.view.slider_places, pixel)
+
+
+@action("drag slider")
+def _drag_slider(context: Context, pixel: Vector) -> None:
+    place = _under(context, pixel)
+    if place is not None and not place.button.contains(pixel):
+        context.gesture = Slide(context, place, pixel)
+
+
+@action("click slider")
+def _click_slider(context: Context, pixel: Vector) -> None:
+    """Take the knob to a pixel on its line; on the button, remove the slider, or let the scale be automatic."""
+    place = _under(context, pixel)
+    if place is None:
+        return
+    if not place.button.contains(pixel):
+        Slide(context, place, pixel)
+    elif place.control.key == SCALE:
+        automatic(context)
+    else:
+        remove_slider(context, place.control.key)
+        context.notice = f"Slider removed: {place.control.title}. Ctrl+Z brings it back."
+
+
+def automatic(context: Context) -> None:
+    """Let the displacement scale follow from the model, or keep it as it is from now on."""
+    settings = context.settings
+    chosen = settings.prescribed_displacement_scale is None
+    settings.displacement_scale = settings.displacement_scale if chosen else None
+
+
+def _step(by: float) -> Action:
+    def act(context: Context, pixel: Vector) -> None:
+        place = _under(context, pixel)
+        if place is None or place.control.share is None:
+            return
+        value = slider_of(context, place.control.key).value_at(place.control.share + by)
+        with context.history.as_one(("slider", place.control.key)):
+            move_to(context, place.control.key, value)
+
+    return act
+
+
+action("slider up")(_step(WHEEL))
+action("slider down")(_step(-WHEEL))
+action("automatic displacement scale")(lambda context, pixel: automatic(context))
+action("new slider")(lambda context, pixel: add_usual_slider(context))
